@@ -16,7 +16,7 @@ def put_in_place(finished: Path, path: Path) -> None:
     where the name is that of a device or a pipe: a file would take its place.
     """
     if path.exists() and not path.is_file() and not path.is_dir():
-        raise OSError(errno.EINVAL, "it is a device or a pipe, not a file", str(path))
+        raise OSError(errno.EINVAL, "this path is a device or a pipe, not a file", str(path))
     bytes_to_disk(finished)
     finished.replace(path)
     folder_to_disk(path.parent)

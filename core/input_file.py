@@ -15,6 +15,7 @@ from io import BufferedReader
 from pathlib import Path
 
 from core.coded_error import CodedError
+from core.message import Message
 
 MB = 1024 * 1024
 # A pipe without a writer would keep whoever opens it; a terminal is not to become the one of this process.
@@ -37,7 +38,7 @@ def open_input(path: Path, most: int | None = None) -> BufferedReader:
     try:
         file = open(path, "rb", opener=lambda name, flags: os.open(name, flags | _FLAGS))  # noqa: SIM115
     except IsADirectoryError as error:
-        raise NotAFileError(errno.EINVAL, "it is a folder, not a file", str(path)) from error
+        raise NotAFileError(errno.EINVAL, "this path is a folder, not a file", str(path)) from error
     except ValueError as error:  # a zero byte in the name
         raise OSError(errno.EINVAL, "a file cannot have this name", str(path)) from error
     try:
@@ -50,7 +51,7 @@ def open_input(path: Path, most: int | None = None) -> BufferedReader:
 
 def _check(path: Path, status: os.stat_result, most: int | None) -> None:
     if not stat.S_ISREG(status.st_mode):
-        raise NotAFileError(errno.EINVAL, "it is a device or a pipe, not a file", str(path))
+        raise NotAFileError(errno.EINVAL, "this path is a device or a pipe, not a file", str(path))
     if most is not None and status.st_size > most:
         raise _too_large(path, most)
 
@@ -70,7 +71,9 @@ def input_text(path: Path, most: int, encoding: str = "utf-8") -> str:
 
 
 def _too_large(path: Path, most: int) -> TooLargeError:
-    return TooLargeError(errno.EINVAL, f"it is larger than {most // MB} MB", str(path))
+    return TooLargeError(
+        errno.EINVAL, Message("the file is larger than {most_bytes} MB", most_bytes=most // MB), str(path)
+    )
 
 
 @contextmanager

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from dataclasses import fields as fields_of
 from enum import Enum, StrEnum
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple, TypeGuard, TypeVar
 
 from core.coded_error import CodedError
+from core.message import Message
 from core.nearest import nearest
 
 if TYPE_CHECKING:
@@ -119,12 +120,12 @@ class Kind(Enum):
     NUMBER = "a number"
     WHOLE = "a whole number"
     FLAG = "true or false"
-    TEXT = "a text in quotes"
+    TEXT = "nonblank text in quotation marks"
     PAIR = "two numbers, [low, high]"
     TRIPLE = "three numbers, [x, y, z]"
     NUMBERS = "one to four numbers, [first, second]"
     CHOICE = "one of"
-    WORDS = 'a list of words, ["one", "another"]'  # kept as one text, with blanks between them
+    WORDS = 'a list of words, such as ["one", "another"]'  # kept as one text, with blanks between them
 
 
 _HUGE = 10**300
@@ -133,9 +134,10 @@ _NUMERIC = frozenset((Kind.NUMBER, Kind.WHOLE, Kind.PAIR, Kind.TRIPLE, Kind.NUMB
 
 @dataclass(frozen=True, slots=True)
 class Field:
-    """One key: kind, unit, range in the model's unit, and the default; None: the file must say it.
+    """One key: kind, unit, range in the model's unit, and the default; None: the key is required.
 
-    ``derived``: what the file leaves out follows from its other values (``defaults.py``).
+    ``derived``: the default follows from other values of the file (``machine_defaults.py``). ``meaning`` is
+    what the reference of the machine file says about the key.
     """
 
     key: str
@@ -146,6 +148,20 @@ class Field:
     default: Value | None = None
     choices: tuple[str | bool, ...] = ()
     derived: bool = False
+    _: KW_ONLY
+    meaning: str
+
+
+@dataclass(frozen=True, slots=True)
+class TableReference:
+    """A table as the reference of the machine file shows it.
+
+    ``heading`` is the table's name in the file, with … in the place of a name that the owner chooses.
+    """
+
+    heading: str
+    purpose: str
+    fields: tuple[Field, ...] = ()
 
 
 class Values:
@@ -250,8 +266,14 @@ def unknown_keys(table: Mapping[str, object], known: list[str], path: str) -> li
     for key in table:
         if key not in known:
             near = nearest(key, known)
-            hint = f"did you mean {near}?" if near else f"known here: {', '.join(known)}"
-            found.append(Finding(joined(path, key), "", f"unknown key; {hint}", "unknown-key"))
+            hint = (
+                Message("did you mean {nearest}?", nearest=near)
+                if near
+                else Message("use one of these keys: {known}", known=", ".join(known))
+            )
+            found.append(
+                Finding(joined(path, key), "", Message("unknown key; {hint}", hint=hint), "unknown-key")
+            )
     return found
 
 
@@ -263,7 +285,14 @@ def read_table(
     ``children`` are tables inside that somebody else reads.
     """
     if not isinstance(table, dict):
-        return [Finding(path, written(table), f"expected a table, [{path}]", "not-a-table")]
+        return [
+            Finding(
+                path,
+                written(table),
+                Message(("this entry must be a table, [{path}]"), path=path),
+                "not-a-table",
+            )
+        ]
     findings = unknown_keys(table, [*(field.key for field in fields), *children], path)
     for field in fields:
         place = joined(path, field.key)
@@ -291,7 +320,12 @@ def _default(field: Field, place: str, values: Values) -> list[Finding]:
 
 def missing(place: str, field: Field, inch: bool | None) -> Finding:
     """The finding about a value that the file has to say and does not."""
-    return Finding(place, "", f"missing; expected {_expected(field, inch)}", "missing")
+    return Finding(
+        place,
+        "",
+        Message(("this value is missing; expected {field}"), field=_expected(field, inch)),
+        "missing",
+    )
 
 
 def _number(raw: object) -> TypeGuard[int | float]:
@@ -356,7 +390,9 @@ def _converted(raw: object, field: Field, inch: bool) -> Value:
 
 def _expected(field: Field, inch: bool | None) -> str:
     if field.kind is Kind.CHOICE:
-        return "one of " + ", ".join(written(choice) for choice in field.choices)
+        return Message(
+            "one of these values: {choice}", choice=", ".join(written(choice) for choice in field.choices)
+        )
     if field.kind not in _NUMERIC or (inch is None and field.unit in LENGTHS):
         return str(field.kind.value)
     low = f"{to_file(field.low, field.unit, bool(inch)):.6g}"
@@ -414,6 +450,7 @@ class DriverTable:
     ``children`` are tables inside it, read by ``read_children``, which returns what is wrong with them.
     ``rules`` looks at every file, also one without this table. ``model`` is asked once nothing is wrong.
     ``always``: a file without it has its defaults. ``port`` is the key that names a serial port.
+    ``purpose`` is what the reference says about the table, ``parts`` the tables inside it.
     """
 
     path: str
@@ -424,6 +461,9 @@ class DriverTable:
     rules: Callable[[FileReading], Iterable[Finding]] = _nothing
     always: bool = False
     port: str = ""
+    _: KW_ONLY
+    purpose: str
+    parts: tuple[TableReference, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -447,7 +487,9 @@ class Driver:
 
 def expected_table(path: str, raw: object) -> Finding:
     """The finding about something that is no table."""
-    return Finding(path, written(raw), f"expected a table, [{path}]", "not-a-table")
+    return Finding(
+        path, written(raw), Message(("this entry must be a table, [{path}]"), path=path), "not-a-table"
+    )
 
 
 def read_named(raw: object, fields: tuple[Field, ...], path: str, values: Values) -> list[Finding]:

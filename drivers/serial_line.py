@@ -104,12 +104,14 @@ def table_of(parity: str) -> bytes:
 
 
 _TO_DO = {
-    errno.ENOENT: "there is no such port; plug the adapter in. Those there are: turndesk serial ports",
-    errno.EACCES: "no permission; add this user to the group dialout, then log in again",
-    errno.EAGAIN: "another program has it open; close it there",
-    errno.EBUSY: "another program has it open; close it there",
-    errno.ENOTTY: "that is no serial port",
-    errno.EINVAL: "the port does not do that",
+    errno.ENOENT: ("this port does not exist; plug in the adapter. To list the ports: turndesk serial ports"),
+    errno.EACCES: (
+        "this user has no permission for the port; add this user to the group dialout, then log in again"
+    ),
+    errno.EAGAIN: "another program is using the port; close that program",
+    errno.EBUSY: "another program is using the port; close that program",
+    errno.ENOTTY: "this is not a serial port",
+    errno.EINVAL: "the port does not support this setting",
 }
 
 

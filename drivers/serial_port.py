@@ -12,6 +12,7 @@ from typing import NamedTuple
 import serial
 from serial.tools.list_ports import comports
 
+from core.message import Message
 from drivers.serial_line import PARITIES, LineSettings, WireError, table_of, why
 
 # --- What a POSIX terminal makes of damaged characters when told to mark them (PARMRK).
@@ -86,12 +87,22 @@ class SerialWire:
         try:
             self._port = _opened(settings)
         except _NOT_OPENED as error:
-            raise WireError(f"{settings.port} cannot be opened: {why(error)}", reason="not-opened") from error
+            raise WireError(
+                Message("{port} cannot be opened: {error}", port=settings.port, error=why(error)),
+                reason="not-opened",
+            ) from error
         try:
             self._set_up(settings)
         except _NOT_OPENED as error:
             self._port.close()
-            raise WireError(f"{settings.port} cannot be set to {settings.words}: {why(error)}") from error
+            raise WireError(
+                Message(
+                    "{port} cannot be set to {settings}: {error}",
+                    port=settings.port,
+                    settings=settings.words,
+                    error=why(error),
+                )
+            ) from error
 
     def _set_up(self, settings: LineSettings) -> None:
         if sys.platform == "win32":
@@ -203,7 +214,9 @@ class SerialWire:
         return data if self._parities is None else data.translate(self._parities)
 
     def _cut(self, error: Exception) -> WireError:
-        return WireError(f"{self.settings.port} has failed: {why(error)}", reason="failed")
+        return WireError(
+            Message("{port} has failed: {error}", port=self.settings.port, error=why(error)), reason="failed"
+        )
 
 
 def _opened(settings: LineSettings) -> serial.Serial:

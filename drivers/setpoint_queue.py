@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.message import Message
 from core.ports import DriverError, Segments
 from drivers.setpoint_pieces import Piece, PieceQueue
 
@@ -31,13 +32,17 @@ def pieces_of(segments: Segments, axes: int, give_way: Callable[[], None] = _not
     shapes = {segments.p.shape, segments.v.shape, segments.a.shape}
     if count == 0 or shapes != {(count, axes)} or segments.dt.shape != (count,):
         raise DriverError(
-            f"setpoints need one row each of t, dt, p, v, a for {axes} axes", "broken-path", reason="shape"
+            Message("each setpoint must contain t, dt, p, v and a for {axes} axes", axes=axes),
+            "broken-path",
+            reason="shape",
         )
     for part in segments:
         if not np.isfinite(part).all():
-            raise DriverError("setpoints hold a value that is no number", "broken-path", reason="no-number")
+            raise DriverError(
+                "setpoints contain a value that is not a number", "broken-path", reason="no-number"
+            )
     if (segments.dt < 0).any():
-        raise DriverError("setpoints run backwards in time", "broken-path", reason="backwards")
+        raise DriverError("the times of the setpoints decrease", "broken-path", reason="backwards")
     pieces: list[Piece] = []
     for begin in range(0, count, _AT_ONCE):
         t, dt, p, v, a = (part[begin : begin + _AT_ONCE].tolist() for part in segments)
@@ -107,11 +112,19 @@ class SetpointQueue(PieceQueue):
         if start < fixed - 1e-9:
             late = 1000 * (fixed - start)
             raise DriverError(
-                f"setpoints start {late:.1f} ms too early to be changed any more; splice later",
+                Message(
+                    "setpoints start {late} ms too early to replace the queued setpoints; splice at a "
+                    "later time",
+                    late=f"{late:.1f}",
+                ),
                 "late",
                 reason="too-early",
             )
-        self._check_joint(self.demand_at(start), (pieces[0].p, pieces[0].v), "where they take over")
+        self._check_joint(
+            self.demand_at(start),
+            (pieces[0].p, pieces[0].v),
+            ("at the splice point between queued and new setpoints"),
+        )
         self._check_run(segments)
         self.replace(start, pieces)
 
@@ -124,7 +137,9 @@ class SetpointQueue(PieceQueue):
         gaps = np.flatnonzero(np.abs(segments.t[1:] - t_end[:-1]) > _SLOT)
         if gaps.size:
             raise DriverError(
-                f"setpoints have a gap at t = {t_end[gaps[0]]:.4f}; nothing was queued",
+                Message(
+                    "setpoints have a gap at t = {t_end}; nothing was queued", t_end=f"{t_end[gaps[0]]:.4f}"
+                ),
                 "broken-path",
                 reason="gap",
             )
@@ -133,16 +148,36 @@ class SetpointQueue(PieceQueue):
         )
         if jumps.any():
             row, axis = np.argwhere(jumps)[0]
-            before = f"{p_end[row, axis]:.4f} at {v_end[row, axis]:.3f}/s"
-            after = f"{segments.p[row + 1, axis]:.4f} at {segments.v[row + 1, axis]:.3f}/s"
-            where = f"{self.axes[axis]}: setpoints jump at t = {t_end[row]:.4f}"
+            before = Message(
+                ("position {p} at speed {value}/s"),
+                p=f"{p_end[row, axis]:.4f}",
+                value=f"{v_end[row, axis]:.3f}",
+            )
+            after = Message(
+                "position {p} at speed {value}/s",
+                p=f"{segments.p[row + 1, axis]:.4f}",
+                value=f"{segments.v[row + 1, axis]:.3f}",
+            )
+            where = Message(
+                "{axes}: setpoints jump at t = {t_end}", axes=self.axes[axis], t_end=f"{t_end[row]:.4f}"
+            )
             raise DriverError(
-                f"{where} from {before} to {after}; nothing was queued", "broken-path", reason="jump"
+                Message(
+                    "{place} from {before} to {after}; nothing was queued",
+                    place=where,
+                    before=before,
+                    after=after,
+                ),
+                "broken-path",
+                reason="jump",
             )
         moving = [name for name, speed in zip(self.axes, v_end[-1], strict=True) if abs(speed) > _REST]
         if moving:
             raise DriverError(
-                f"setpoints do not end at rest: {', '.join(moving)} still moves at their end",
+                Message(
+                    "at the end of the setpoints, these axes are still moving: {moving}",
+                    moving=", ".join(moving),
+                ),
                 "broken-path",
                 reason="moves-at-end",
             )
@@ -159,7 +194,14 @@ class SetpointQueue(PieceQueue):
             for name, tolerance, before, after in zip(self.axes, limit, one, two, strict=True):
                 if abs(after - before) > tolerance:
                     raise DriverError(
-                        f"{name}: setpoints {where} jump in {what} from {before:.4f} to {after:.4f}",
+                        Message(
+                            "{name}: {place}, setpoints jump in {what} from {before} to {after}",
+                            name=name,
+                            place=where,
+                            what=what,
+                            before=f"{before:.4f}",
+                            after=f"{after:.4f}",
+                        ),
                         reason="jump",
                     )
 

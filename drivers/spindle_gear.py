@@ -116,7 +116,7 @@ class Gearing:
         self.turns = self._goal(phase.t)  # at which the cam is played
         self._speed = cam.sign * phase.speed  # at which it is played, turns/s
         if self._speed < _STANDS:
-            raise DriverError("the spindle does not turn; no slide can follow it", "thread-no-encoder")
+            raise DriverError("the spindle is not turning, so no axis can follow it", "thread-no-encoder")
         self._queue = self._empty()
         self._walls = Walls([], math.inf)
         self.load(cam)
@@ -125,7 +125,7 @@ class Gearing:
         """Replace what lies behind the start of this way."""
         if not self.fits(cam):
             raise DriverError(
-                "slides that follow the spindle cannot change to another index",
+                "axes cannot change to another spindle index pulse while they follow the spindle",
                 "broken-path",
                 reason="other-index",
             )
@@ -282,7 +282,9 @@ class GearedQueue(SetpointQueue):
             return
         if gearing is None and not at_rest(self.horizon(now), now):
             raise DriverError(
-                "slides have to rest before they can follow the spindle", "broken-path", reason="not-at-rest"
+                "the axes must be at rest before they can follow the spindle",
+                "broken-path",
+                reason="not-at-rest",
             )
         self._gearing = Gearing(cam, phase, self._slides, self._rest)
 
@@ -316,7 +318,7 @@ class GearedQueue(SetpointQueue):
         gearing = self._gearing
         if gearing is not None and len(segments.t) and not gearing.still_at(float(segments.t[0])):
             raise DriverError(
-                "the slides follow the spindle; stop them before they can move by time",
+                "the axes are following the spindle; stop them before you start a time-based move",
                 "broken-path",
                 reason="follows-spindle",
             )

@@ -18,6 +18,7 @@ import pytest
 
 from core.alarms import CATALOGUE
 
+NO_VERDICT = "no verdict, this computer was late"
 LOOK, STALL = 0.02, 0.15  # s
 # Codes of alarms and of holds that a late computer alone causes on a machine that is whole.
 LATE = frozenset(
@@ -86,4 +87,4 @@ def without_verdict(item: pytest.Item, report: pytest.TestReport) -> None:
     if report.failed and told_late() and item.get_closest_marker("real_time") is not None:
         path, line, _ = item.location
         report.outcome = "skipped"
-        report.longrepr = (path, (line or 0) + 1, f"Skipped: no verdict, this computer was late ({_told[0]})")
+        report.longrepr = (path, (line or 0) + 1, f"Skipped: {NO_VERDICT} ({_told[0]})")

@@ -10,11 +10,11 @@ MORE=""
 [ "${1:-}" = "--quick" ] || MORE="$WINDOW_LIBRARIES $STORY_PACKAGES"
 # shellcheck disable=SC2046,SC2086
 system_packages ca-certificates $QT_LIBRARIES $MORE $(python_packages)
-[ "${1:-}" = "--quick" ] || optional_packages linuxcnc-uspace mosquitto postgresql git
+[ "${1:-}" = "--quick" ] || optional_packages linuxcnc-uspace mosquitto postgresql git codespell
 find_python
 python_environment tests
 
-QUICK="tests/language tests/geometry tests/interpreter tests/klartext tests/sinumerik tests/motion tests/proving tests/executor tests/alarms tests/machine tests/test_map.py"
+QUICK="tests/language tests/geometry tests/interpreter tests/klartext tests/sinumerik tests/motion tests/proving tests/executor tests/alarms tests/machine tests/documents tests/test_map.py"
 
 cd "$ROOT"
 PATH="$PYTHON_ENV/bin:$PATH"

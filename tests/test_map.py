@@ -141,16 +141,6 @@ def test_the_documents_name_only_files_that_are_there() -> None:
     assert [each for each in named if not (HOUSE / each[1]).exists()] == []
 
 
-def test_every_link_of_a_document_leads_somewhere() -> None:
-    linked = [
-        (document, link)
-        for document in [*HOUSE.glob("*.md"), *sorted((HOUSE / "docs").rglob("*.md"))]
-        for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", document.read_text(encoding="utf-8"))
-    ]
-    assert len(linked) > 150
-    assert [(page.name, link) for page, link in linked if not (page.parent / link).exists()] == []
-
-
 def test_the_records_name_files_by_names_that_are_there() -> None:
     """In a record a file often stands alone, without its folder."""
     there = {path.name for room in (*ROOMS, "resources", "tests") for path in (HOUSE / room).rglob("*.py")}
@@ -161,7 +151,7 @@ def test_the_records_name_files_by_names_that_are_there() -> None:
         for name in re.findall(r"`(?:[\w/]+/)?(\w+\.py)`", record.read_text(encoding="utf-8"))
     ]
     assert len(named) > 80
-    gone = {"page.py"}  # nine files once, which record 0040 is about
+    gone = {"page.py"}  # nine former files, which record 0001 names
     assert [(record, name) for record, name in named if name not in there | gone] == []
 
 

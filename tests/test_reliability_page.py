@@ -23,14 +23,16 @@ def test_what_was_never_measured_is_said(tmp_path: Path) -> None:
 def test_a_count_that_does_not_agree_is_told(tmp_path: Path) -> None:
     figures = json.loads((RESULTS / "night_shift.json").read_text())
     (tmp_path / "night_shift.json").write_text(json.dumps({**figures, "disagree": ["store: 7 of 9"]}))
-    assert "cycles: store: 7 of 9." in page(tmp_path)
+    assert "records disagree: store: 7 of 9." in page(tmp_path)
 
 
 def test_how_far_the_places_at_the_bar_stop_lie_apart_is_told(tmp_path: Path) -> None:
     figures = json.loads((RESULTS / "night_shift.json").read_text())
     places = {"(12.7, -73.5, 0.0)": 90, "(12.7, -73.25, 0.0)": 8, "(12.7, -73.75, 0.0)": 2}
     (tmp_path / "night_shift.json").write_text(json.dumps({**figures, "at the bar stop": places}))
-    assert "lay within 2.5e-01 mm, 10 of 100 ticks not at the usual place" in page(tmp_path)
+    assert "differed by at most 2.5e-01 mm; 10 of 100 ticks were not at the most frequent position" in page(
+        tmp_path
+    )
 
 
 def test_a_half_written_result_is_no_page(tmp_path: Path) -> None:
@@ -46,4 +48,4 @@ def test_a_fault_that_nobody_has_looked_at_is_told_as_such(tmp_path: Path) -> No
     targets["klartext"]["faults"] = [fault]
     (tmp_path / "fuzz.json").write_text(json.dumps({**figures, "targets": targets}))
     (tmp_path / "limits.toml").write_text("")
-    assert "- KeyError core/a.py:1, KeyError('x'): not looked at yet" in page(tmp_path)
+    assert "- KeyError core/a.py:1, KeyError('x'): not examined yet" in page(tmp_path)

@@ -6,9 +6,13 @@ That the tests also ran is looked at when the whole suite is over: ``tests/conft
 from __future__ import annotations
 
 import re
+from types import SimpleNamespace
+from typing import Literal, cast
 
 import pytest
 
+from tests import late_computer
+from tests.conftest import MOST_LATE, SafetyRan
 from tests.named import NAMED, ROOT, SAFETY, file_of, functions_of, named_in, not_run
 
 MODULE = re.compile(r"`((?:app|core|drivers)/[\w/]+(?:\.py)?)`")
@@ -47,3 +51,33 @@ def test_a_test_that_did_not_run_is_found() -> None:
     text = "`test_safety.py::test_what_is_named_exists` `test_safety.py::test_nobody` `nowhere.py::test_x`"
     ran = {"tests/test_safety.py::test_what_is_named_exists", "tests/elsewhere.py::test_nobody"}
     assert not_run(text, ran) == ["nowhere.py::test_x", "test_safety.py::test_nobody"]
+
+
+def names_of_all() -> list[str]:
+    """Return pytest's name of every test that the document names."""
+    files = ((file_of(file), test) for file, test in named_in(SAFETY.read_text(encoding="utf-8")))
+    return [f"{path.relative_to(ROOT).as_posix()}::{test}" for path, test in files if path is not None]
+
+
+def report(name: str, outcome: Literal["passed", "skipped"], reason: str = "") -> pytest.TestReport:
+    return pytest.TestReport(name, ("", 1, name), {}, outcome, ("", 1, reason) if reason else None, "call")
+
+
+@pytest.mark.parametrize(
+    ("count", "reason", "status"),
+    [
+        (0, "", pytest.ExitCode.OK),
+        (MOST_LATE, late_computer.NO_VERDICT, pytest.ExitCode.OK),
+        (MOST_LATE + 1, late_computer.NO_VERDICT, pytest.ExitCode.TESTS_FAILED),
+        (1, "Skipped: no halrun here", pytest.ExitCode.TESTS_FAILED),
+    ],
+)
+def test_few_tests_without_a_verdict_do_not_fail_a_run(count: int, reason: str, status: int) -> None:
+    names = sorted(names_of_all(), key=lambda name: name.partition("::")[2])
+    seen, session = SafetyRan(), SimpleNamespace(exitstatus=pytest.ExitCode.OK)
+    for number, name in enumerate(names):
+        seen.pytest_runtest_logreport(
+            report(name, "skipped", reason) if number < count else report(name, "passed")
+        )
+    seen.pytest_sessionfinish(cast(pytest.Session, session), pytest.ExitCode.OK)
+    assert session.exitstatus == status

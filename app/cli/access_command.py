@@ -13,6 +13,7 @@ from app.cli.who_changes import RESET, add_as_option, asked_pin, demand_own_keyb
 from app.desk.command_errors import EXIT_OK, CommandError
 from core.access.access_table import RULES, Act, Level
 from core.coded_error import error_code
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -27,29 +28,33 @@ _LEVELS = {level.name.lower(): level for level in Level}
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser("access", help="who may change what: people, levels, PINs")
+    parser = subparsers.add_parser("access", help="manage users, access levels and PINs")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     for name, text in (
-        ("list", "the people and their levels"),
-        ("table", "what may be changed from which level on"),
+        ("list", "list the users and their access levels"),
+        ("table", "show the access level that each type of change requires"),
     ):
         actions.add_parser(name, help=text).add_argument(
-            "--json", action="store_true", help="machine-readable output alone on stdout"
+            "--json", action="store_true", help="print only JSON on stdout"
         )
-    add = actions.add_parser("add", help="enter somebody; the first one switches levels on")
+    add = actions.add_parser("add", help="add a user; adding the first user turns access levels on")
     add.add_argument("name", metavar="NAME")
     add.add_argument(
-        "--level", choices=list(_LEVELS), default="service", help="default, and of the first one: service"
+        "--level",
+        choices=list(_LEVELS),
+        default="service",
+        help="access level (default: service); the first user must have level service",
     )
-    pin = actions.add_parser("pin", help="another PIN of somebody")
+    pin = actions.add_parser("pin", help="change the PIN of a user")
     pin.add_argument("name", metavar="NAME")
-    gone = actions.add_parser("remove", help="take somebody away; with the last one levels go off")
+    gone = actions.add_parser("remove", help="remove a user; removing the last user turns access levels off")
     gone.add_argument("name", metavar="NAME")
     for each in (add, pin, gone):
         add_as_option(each)
     actions.add_parser(
         "reset",
-        help="take all PINs away: levels are off; at the machine's own keyboard, without a PIN, in the log",
+        help="delete all users and PINs, which turns access levels off; works without a PIN, only "
+        "at the machine's own keyboard, and is logged",
     )
 
 
@@ -59,7 +64,13 @@ def run(args: argparse.Namespace) -> int:
         sys.stdout.write(_table(json_wanted=args.json))
         return EXIT_OK
     if args.action == "reset":
-        demand_own_keyboard(f"All people and PINs are taken away, which is logged. Type {RESET} to do it: ")
+        demand_own_keyboard(
+            Message(
+                "All users and their PINs will be deleted, and this will be logged. Type {reset} to "
+                "continue: ",
+                reset=RESET,
+            )
+        )
     with opened_store(read_only=args.action == "list") as store:
         sys.stdout.write(_ACTIONS[args.action](store, args))
     return EXIT_OK
@@ -89,7 +100,8 @@ def _add(store: Store, args: argparse.Namespace) -> str:
     level, name = _LEVELS[args.level], check_person(args.name)
     if store.people().named(name) is not None:
         raise CommandError(
-            f"{name} is entered already; 'turndesk access pin' is for another PIN", "name-in-use"
+            Message("user {name} already exists; to change the PIN, use 'turndesk access pin'", name=name),
+            "name-in-use",
         )
     return _kept(store, args, name, level, "entered")
 
@@ -98,9 +110,10 @@ def _pin(store: Store, args: argparse.Namespace) -> str:
     row = store.people().named(args.name)
     if row is None:
         raise CommandError(
-            f"{args.name} is not among the people; 'turndesk access list' names them", "unknown-person"
+            Message("user {name} does not exist; 'turndesk access list' shows all users", name=args.name),
+            "unknown-person",
         )
-    return _kept(store, args, row.name, Level(row.level), "has another PIN")
+    return _kept(store, args, row.name, Level(row.level), "has a new PIN")
 
 
 def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done: str) -> str:
@@ -109,13 +122,13 @@ def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done:
     from core.store import people
 
     who = who_changes(store, args, Act.PEOPLE)
-    pin = asked_pin(f"new PIN of {name}: ")
+    pin = asked_pin(Message("new PIN for {name}: ", name=name))
     try:
         check_pin(pin)
     except PinError as error:
         raise CommandError(str(error), error_code(error)) from error
-    if asked_pin("the same again: ") != pin:
-        raise CommandError("those were two different PINs; nothing was kept", "pins-differ")
+    if asked_pin("repeat the new PIN: ") != pin:
+        raise CommandError("the two PINs do not match; nothing was saved", "pins-differ")
     row = people.PersonRow(name, level, *hashed(pin))
     store.write(lambda c: people.keep_person(c, row)).result()
     store.log_event("access", f"{name} {done}: {level.name}", who=who).result()
@@ -128,11 +141,12 @@ def _remove(store: Store, args: argparse.Namespace) -> str:
     row = store.people().named(args.name)
     if row is None:
         raise CommandError(
-            f"{args.name} is not among the people; 'turndesk access list' names them", "unknown-person"
+            Message("user {name} does not exist; 'turndesk access list' shows all users", name=args.name),
+            "unknown-person",
         )
     who = who_changes(store, args, Act.PEOPLE)
     store.write(lambda c: people.remove_person(c, row.name)).result()
-    store.log_event("access", f"{row.name} removed", who=who).result()
+    store.log_event("access", Message("{row} removed", row=row.name), who=who).result()
     return f"{row.name} is taken away\n"
 
 
@@ -144,7 +158,10 @@ def _reset(store: Store, _args: argparse.Namespace) -> str:
 
     count = store.write(people.remove_all).result()
     store.set_setting("wrong PINs", None)
-    told = f"service reset at the keyboard: {count} people and their PINs are taken away, levels are off"
+    told = Message(
+        "service reset at the keyboard: {count} users and their PINs were deleted, and access levels are off",
+        count=count,
+    )
     store.log_event("access", told, who=getpass.getuser()).result()
     return f"{told}\n"
 

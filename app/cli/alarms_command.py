@@ -8,6 +8,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import EXIT_OK, CommandError
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -16,9 +17,11 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser("alarms", help="every alarm: number, what it means, causes, what to do")
-    parser.add_argument("number", nargs="*", type=int, metavar="NUMBER", help="only these; default: all")
-    parser.add_argument("--json", action="store_true", help="a list of objects on stdout")
+    parser = subparsers.add_parser("alarms", help="list all alarms with number, meaning, causes and remedies")
+    parser.add_argument(
+        "number", nargs="*", type=int, metavar="NUMBER", help="numbers of the alarms to list (default: all)"
+    )
+    parser.add_argument("--json", action="store_true", help="print a JSON list of objects on stdout")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -31,7 +34,11 @@ def run(args: argparse.Namespace) -> int:
         missing = [str(number) for number in args.number if number not in known]
         if missing:
             raise CommandError(
-                f"there is no alarm {', '.join(missing)}; 'turndesk alarms' lists them all", "unknown-alarm"
+                Message(
+                    "no such alarm: {missing}; 'turndesk alarms' lists all alarms",
+                    missing=", ".join(missing),
+                ),
+                "unknown-alarm",
             )
         chosen = [(code, entry) for code, entry in chosen if entry.number in args.number]
     if args.json:

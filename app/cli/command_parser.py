@@ -13,14 +13,15 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from app.desk.command_errors import EXIT_USAGE, CommandError
+from core.message import Message
 from core.nearest import nearest
 
 BEFORE = ("machine", "program", "offsets")
 """Options of the screen."""
 
 _INSTEAD: Mapping[str, str] = {
-    "program": "a command takes the program by its name alone",
-    "machine": "turndesk machine takes the file by its name alone",
+    "program": "write the program name after the command, without --program",
+    "machine": "in turndesk machine commands, write the file name without --machine",
 }
 
 
@@ -37,7 +38,9 @@ class _Once(argparse.Action):
         if option_string is not None:
             given: frozenset[str] = getattr(namespace, "given", frozenset())
             if self.dest in given:
-                parser.error(f"{option_string} is given twice; keep one")
+                parser.error(
+                    Message("{option_string} is specified twice; remove one", option_string=option_string)
+                )
             namespace.given = given | {self.dest}
         setattr(namespace, self.dest, values)
 
@@ -55,11 +58,22 @@ class Parser(argparse.ArgumentParser):
         if action.choices is not None and value not in action.choices:
             if isinstance(action, argparse._SubParsersAction) and Path(str(value)).is_file():
                 self.error(
-                    f"{value} is a file: prove {value} proves it, --program {value} opens it on the screen"
+                    Message(
+                        "{value} is a file, not a command; to prove it, use: turndesk prove {value2}; to "
+                        "open it on the screen, use: turndesk --program {value3}",
+                        value=value,
+                        value2=value,
+                        value3=value,
+                    )
                 )
             near = nearest(str(value), map(str, action.choices))
             if near:
-                raise argparse.ArgumentError(action, f"invalid choice: {value!r}; did you mean {near}?")
+                raise argparse.ArgumentError(
+                    action,
+                    Message(
+                        "invalid choice: {value}; did you mean {nearest}?", value=f"{value!r}", nearest=near
+                    ),
+                )
         super()._check_value(action, value)
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
@@ -68,7 +82,7 @@ class Parser(argparse.ArgumentParser):
         found, rest = self.parse_known_args(args, namespace)
         if rest:
             name = rest[0].partition("=")[0]
-            self._unknown(" ".join(rest), name, f"this command has no option {name}")
+            self._unknown(" ".join(rest), name, Message("this command has no option {name}", name=name))
         return found
 
     def _check_first_options(self, args: Sequence[str]) -> None:
@@ -79,7 +93,11 @@ class Parser(argparse.ArgumentParser):
             if not word.startswith("--"):
                 return
             if name not in known:
-                self._unknown(word, name, f"{name} is an option of a command: write it after the command")
+                self._unknown(
+                    word,
+                    name,
+                    Message("{name} is a command option; write it after the command", name=name),
+                )
             if not value and known[name].nargs != 0:
                 next(words, "")
 
@@ -89,7 +107,13 @@ class Parser(argparse.ArgumentParser):
         if name in options:
             self.error(elsewhere)
         near = nearest(name, options)
-        self.error(f"unrecognized arguments: {words}" + (f"; did you mean {near}?" if near else ""))
+        self.error(
+            Message(
+                "unrecognized arguments: {words}{nearest}",
+                words=words,
+                nearest=f"; did you mean {near}?" if near else "",
+            )
+        )
 
     def print_help(self, file: Any = None) -> None:
         """Write the help, or raise the OSError that argparse would drop: it cannot be written."""
@@ -115,15 +139,17 @@ def add_screen_options(parser: argparse.ArgumentParser) -> None:
     """Those of the screen, which may also stand before a command."""
     parser.add_argument("--version", action="store_true", help="print the version")
     parser.add_argument(
-        "--demo", action="store_true", help="the screen with a store of its own: sample offsets to change"
+        "--demo",
+        action="store_true",
+        help="open the screen with a separate data store of sample offsets that you can change",
     )
     parser.add_argument(
-        "--kiosk", action="store_true", help="the screen fills the panel, and nobody closes its window"
+        "--kiosk", action="store_true", help=("run in full screen; the window cannot be closed")
     )
     texts = {
         "machine": "machine file (default: the shipped simulated lathe)",
-        "program": "program that the screen loads at the start",
-        "offsets": "offsets file, instead of the store's offsets",
+        "program": "program to load at start-up",
+        "offsets": "offsets file to use instead of the stored offsets",
     }
     for name in BEFORE:
         # A command has its own of the same name, which would else write over this one.
@@ -136,10 +162,17 @@ def settled(args: argparse.Namespace) -> argparse.Namespace:
     if args.version and (
         command or args.demo or args.kiosk or any(getattr(args, f"before_{name}") for name in BEFORE)
     ):
-        raise CommandError("--version stands alone", "version-alone")
+        raise CommandError("--version cannot be combined with other options or commands", "version-alone")
     for name in ("demo", "kiosk"):
         if command and getattr(args, name):
-            raise CommandError(f"--{name} opens the screen; leave it out before {command}", "screen-option")
+            raise CommandError(
+                Message(
+                    ("--{name} opens the screen; remove this option to run {command}"),
+                    name=name,
+                    command=command,
+                ),
+                "screen-option",
+            )
     for name in BEFORE:
         before = getattr(args, f"before_{name}")
         if not command:
@@ -151,7 +184,12 @@ def settled(args: argparse.Namespace) -> argparse.Namespace:
                 )
             if getattr(args, name) is not None:
                 raise CommandError(
-                    f"--{name} is given twice, before and behind {command}; keep one", "option-twice"
+                    Message(
+                        "--{name} is specified twice, before and after {command}; remove one",
+                        name=name,
+                        command=command,
+                    ),
+                    "option-twice",
                 )
             setattr(args, name, before)
     return args
@@ -161,4 +199,9 @@ def _not_there(command: str, action: str, name: str) -> str:
     words = f"{command} {action}".strip()
     instead = _INSTEAD.get(name) if name == "program" or command == "machine" else None
     hint = f"; {instead}" if instead else ""
-    return f"--{name} stands before {words}, which has no such option{hint}"
+    return Message(
+        "--{name} cannot be used before {words}, which does not have this option{hint}",
+        name=name,
+        words=words,
+        hint=hint,
+    )

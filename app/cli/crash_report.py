@@ -38,7 +38,7 @@ def keep_crash(kind: type[BaseException], error: BaseException, trace: Traceback
         path = _written(folder, head + text) if folder is not None else None
         if path is not None:
             return str(path)
-    return "what you were doing"
+    return "a description of what you were doing"
 
 
 def _logs() -> Path | None:

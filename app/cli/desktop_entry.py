@@ -10,6 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from app.desk.command_errors import CommandError
+from core.message import Message
 
 NAME = "turndesk"
 _RESERVED = re.compile(r"""[\s"'\\><~|&;$*?#()`]""")
@@ -17,7 +18,7 @@ _ENTRY = """[Desktop Entry]
 Type=Application
 Name=TurnDesk
 GenericName=CNC lathe control
-Comment=The operator desk for OmniTurn-style lathes
+Comment=Operator screen for OmniTurn-style lathes
 Comment[es]=El puesto de mando para tornos tipo OmniTurn
 Exec={command}
 Icon=turndesk
@@ -32,7 +33,13 @@ def _under(variable: str, otherwise: str) -> Path:
     try:
         return Path(named) if named else Path.home() / otherwise
     except RuntimeError as error:
-        raise CommandError(f"this user has no home folder; name a folder in {variable}", "no-home") from error
+        raise CommandError(
+            Message(
+                "this user has no home folder; set the environment variable {variable} to a folder",
+                variable=variable,
+            ),
+            "no-home",
+        ) from error
 
 
 def _places() -> tuple[Path, Path, Path]:
@@ -50,7 +57,7 @@ def _command() -> str:
     beside = Path(sys.executable).with_name(NAME)
     if beside.exists():
         return _quoted(str(beside))
-    return f"{_quoted(sys.executable)} -m app.cli.main"
+    return Message("{executable} -m app.cli.main", executable=_quoted(sys.executable))
 
 
 def _quoted(word: str) -> str:
@@ -72,7 +79,10 @@ def install(*, autostart: bool) -> list[Path]:
         if autostart:
             start.write_text(_ENTRY.format(command=f"{_command()} --kiosk"), encoding="utf-8")
     except OSError as error:
-        raise CommandError(f"{error.filename} cannot be written: {error.strerror}", "cannot-write") from error
+        raise CommandError(
+            Message("{file} cannot be written: {cause}", file=error.filename, cause=error.strerror),
+            "cannot-write",
+        ) from error
     return [entry, icon, *([start] if autostart else [])]
 
 
@@ -83,5 +93,8 @@ def remove() -> list[Path]:
         try:
             path.unlink()
         except OSError as error:
-            raise CommandError(f"{path} cannot be removed: {error.strerror}", "cannot-remove") from error
+            raise CommandError(
+                Message("{path} cannot be removed: {cause}", path=path, cause=error.strerror),
+                "cannot-remove",
+            ) from error
     return there

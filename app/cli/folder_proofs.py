@@ -26,6 +26,7 @@ from app.cli.report_file import ReportFile, report_file
 from app.compose.kept_stock import kept_with_all
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from core.language.source import Source
+from core.message import Message
 
 if TYPE_CHECKING:
     from core.proving.part_setting import PartSetting
@@ -90,7 +91,11 @@ class _Run:
                     self._add(unit.index, self._kept(unit, made))
         except CancelledError as error:
             raise CommandError(
-                f"--scheduler {self._args.scheduler} has gone; what it has proved is kept, start again",
+                Message(
+                    "the connection to --scheduler {scheduler} was lost; completed proofs are saved; run "
+                    "the command again",
+                    scheduler=self._args.scheduler,
+                ),
                 "scheduler-gone",
             ) from error
         finally:
@@ -105,7 +110,7 @@ class _Run:
         if not self._args.json:
             sys.stdout.write(table(rows, others))
         elif others:
-            sys.stderr.write(f"turndesk: {others} other file{'s' * (others > 1)} left out\n")
+            sys.stderr.write(f"turndesk: {others} other file{'s' * (others > 1)} skipped\n")
         return max(_status(proof) for _, proof in rows)
 
     def _submit(self, executor: Executor, unit: _Unit) -> Future[Proof]:
@@ -134,7 +139,7 @@ class _Run:
         """What is kept of proofs on this machine; a machine that was not named is told once."""
         if machine not in self._caches:
             if machine:
-                sys.stderr.write(on_machine("what is Klartext", machine))
+                sys.stderr.write(on_machine("each Klartext program", machine))
             self._caches[machine] = ProofCache(self._folder, job)
         return None if self._args.no_cache else self._caches[machine]
 
@@ -157,14 +162,24 @@ class _Run:
         if isinstance(error, self._workers.killed):
             return KILLED
         if isinstance(error, OtherVersionError):
-            return "the worker has another version of TurnDesk; install the same there"
+            return (
+                "the dask worker process runs a different version of TurnDesk than this "
+                "computer; install this computer's version on the worker"
+            )
         if isinstance(error, ModuleNotFoundError) and self._version:
-            return f"the worker has no TurnDesk ({error}); install it there"
+            return Message(
+                ("TurnDesk is not installed on the dask worker ({error}); install TurnDesk there"),
+                error=error,
+            )
         from app.cli.crash_report import keep_crash
 
         where = keep_crash(type(error), error, error.__traceback__)
         what = str(error).splitlines()[0] if str(error) else type(error).__name__
-        return f"a fault in TurnDesk itself ({what}); please report it with {where}"
+        return Message(
+            "internal error in TurnDesk ({what}); please report it and include {place}",
+            what=what,
+            place=where,
+        )
 
     def _add(self, index: int, proof: Proof) -> None:
         if proof.report:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from app.desk.toml_file import read_toml, refuse, unknown_key
 from core.coded_error import CodedError
+from core.message import Message
 
 
 def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
@@ -25,7 +26,7 @@ def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
         refuse(path, [*mistakes, CodedError("the table [inputs] is missing", "no-table")])
         return {}
     mistakes += [
-        CodedError(f"inputs.{name} must be true (closed) or false (open)", "wrong-type")
+        CodedError(Message("inputs.{name} must be true (closed) or false (open)", name=name), "wrong-type")
         for name, state in table.items()
         if not isinstance(state, bool)
     ]

@@ -11,6 +11,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
 from app.desk.command_errors import EXIT_OK, CommandError
 from core.access.access_table import Act
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -20,23 +21,34 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser("jobs", help="the queue of programs that are made next, with their counts")
+    parser = subparsers.add_parser(
+        "jobs", help="manage the queue of programs to run next, with their part counts"
+    )
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    listing = actions.add_parser("list", help="the queue in its order, with what is made")
-    listing.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
-    more = actions.add_parser("add", help="one more job at the end of the queue")
-    more.add_argument("name", metavar="PROGRAM", help="of the program folder, as F2 finds it")
-    more.add_argument("parts", type=int, metavar="PARTS", help="how many are to be made")
-    more.add_argument("--note", default="", metavar="TEXT", help="order, customer, material: 80 letters")
-    move = actions.add_parser("move", help="a job to another place of the queue")
-    move.add_argument("place", type=int, metavar="PLACE", help="as 'turndesk jobs list' counts them, from 1")
+    listing = actions.add_parser("list", help="list the queue in order, with the number of parts made")
+    listing.add_argument("--json", action="store_true", help="print only JSON on stdout")
+    more = actions.add_parser("add", help="add a job to the end of the queue")
+    more.add_argument(
+        "name", metavar="PROGRAM", help="name of a program in the program folder, as F2 lists it"
+    )
+    more.add_argument("parts", type=int, metavar="PARTS", help="number of parts to make")
+    more.add_argument(
+        "--note",
+        default="",
+        metavar="TEXT",
+        help="note such as order, customer or material, up to 80 characters",
+    )
+    move = actions.add_parser("move", help="move a job to another position in the queue")
+    move.add_argument(
+        "place", type=int, metavar="PLACE", help="job number as shown by 'turndesk jobs list', starting at 1"
+    )
     move.add_argument("to", type=int, metavar="TO")
-    gone = actions.add_parser("remove", help="take a job out; the part count of its program stays")
+    gone = actions.add_parser("remove", help="remove a job; the part count of its program is retained")
     gone.add_argument("place", type=int, metavar="PLACE")
-    clear = actions.add_parser("clear", help="take out what is done")
+    clear = actions.add_parser("clear", help="remove finished jobs")
     for each in (more, move, gone, clear):
         add_as_option(each)
-    clear.add_argument("--all", action="store_true", help="everything, done or not")
+    clear.add_argument("--all", action="store_true", help="remove all jobs, finished or not")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -93,7 +105,12 @@ def _add(store: Store, args: argparse.Namespace) -> str:
     path = ProgramFolders((folder, samples())).find(args.name)
     if path is None or path.parent not in {folder, samples()}:
         raise CommandError(
-            f"{args.name} is not among the programs of {folder}; put it there first", "not-a-program"
+            Message(
+                "program {name} is not in {folder}; copy it there first",
+                name=args.name,
+                folder=folder,
+            ),
+            "not-a-program",
         )
     store.write(lambda c: job_queue.add(c, path.name, args.parts, args.note)).result()
     return f"{path.name}, {args.parts} parts, is job {len(store.jobs())}\n"
@@ -126,9 +143,16 @@ def _clear(store: Store, args: argparse.Namespace) -> str:
 def _at(store: Store, place: int) -> JobRow:
     jobs = store.jobs()
     if not 1 <= place <= len(jobs):
-        known = f"there are {len(jobs)}" if jobs else "the queue is empty"
+        known = (
+            Message("jobs in the queue: {jobs_count}", jobs_count=len(jobs)) if jobs else "the queue is empty"
+        )
         raise CommandError(
-            f"there is no job {place}: {known}; 'turndesk jobs list' numbers them", "unknown-job"
+            Message(
+                "job {place} does not exist ({known}); 'turndesk jobs list' shows the job numbers",
+                place=place,
+                known=known,
+            ),
+            "unknown-job",
         )
     return jobs[place - 1]
 

@@ -21,7 +21,7 @@ _AXES = ("a", "b", "c")
 
 
 def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
-    """One elementary block with the keys of interfaces.md; axes the machine lacks are null."""
+    """One elementary block with the keys of docs/json.md; axes the machine lacks are null."""
     feed, mode = _feed(block)
     swivel = block.swivel
     shown = {

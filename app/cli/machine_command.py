@@ -17,6 +17,7 @@ from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from core.access.access_table import Act
 from core.coded_error import error_code
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -28,18 +29,22 @@ def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
     parser = subparsers.add_parser("machine", help="check a machine file")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    check = actions.add_parser("check", help="validate a machine file, connect, report each drive and input")
+    check = actions.add_parser(
+        "check", help="validate a machine file, connect, and report each drive and input"
+    )
     check.add_argument("file", metavar="FILE", nargs="?", help="default: the shipped simulated lathe")
-    check.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    check.add_argument("--json", action="store_true", help="print only JSON on stdout")
     peer = actions.add_parser(
         "peer",
-        help="play what a CANopen or grblHAL machine file connects to, for trying it without hardware",
-        description="Plays simulated drives and terminals on the bus of a CANopen machine file, or a grblHAL"
-        " controller on its TCP port or on a pseudo terminal, whose name is printed. It goes on until Ctrl-C;"
-        " start the control beside it: turndesk --machine FILE",
+        help="simulate the devices that a CANopen or grblHAL machine file connects to, for tests "
+        "without hardware",
+        description="Simulates drives and terminals on the bus of a CANopen machine file, or a grblHAL "
+        "controller on its TCP port or on a pseudo terminal, whose name is printed. The "
+        "simulation runs until you press Ctrl-C. Start the control in parallel: turndesk "
+        "--machine FILE",
     )
-    peer.add_argument("file", metavar="FILE", help="such as gt75-bench.toml")
-    accept = actions.add_parser("accept", help="show what has changed in a machine file, and accept it")
+    peer.add_argument("file", metavar="FILE", help="machine file, such as gt75-bench.toml")
+    accept = actions.add_parser("accept", help="show the changes in a machine file and accept the file")
     accept.add_argument("file", metavar="FILE")
     add_as_option(accept)
     add_hal_parser(actions)
@@ -97,7 +102,7 @@ def check(file: str | None, *, json_wanted: bool) -> int:
         },
     )
     if not json_wanted:
-        sys.stdout.write(f"{machine.source} is good: {machine.name}, backend {machine.backend}\n")
+        sys.stdout.write(f"{machine.source} is valid: {machine.name}, backend {machine.backend}\n")
         judged = [(f"{row.verdict:<4}  {row.name}", *row[1:]) for row in answers.rows]
         sys.stdout.write("".join(f"{line}\n" for line in table(judged)))
         sys.stdout.write("".join(f"  changed since it was accepted: {change}\n" for change in told))
@@ -159,11 +164,26 @@ def demand_accepted(machine: Machine) -> None:
         return
     lines = [str(change) for change in told[:MOST]]
     if len(told) > MOST:
-        lines.append(f"… and {len(told) - MOST} more: turndesk machine check {machine.source}")
+        lines.append(
+            Message(
+                "… and {told_count} more; to see all changes, run: turndesk machine check {source}",
+                told_count=len(told) - MOST,
+                source=machine.source,
+            )
+        )
     if real_time(machine):
-        why = f"{machine.source} has changed since it was accepted ({'; '.join(lines)})"
+        why = Message(
+            "{source} has changed since it was accepted ({lines})",
+            source=machine.source,
+            lines="; ".join(lines),
+        )
         raise CommandError(
-            f"{why}; turndesk machine accept {machine.source}, or F10 on the screen", "not-accepted"
+            Message(
+                "{why}; to accept the file, run turndesk machine accept {source}, or press F10 on the screen",
+                why=why,
+                source=machine.source,
+            ),
+            "not-accepted",
         )
     sys.stderr.write("".join(f"{machine.source} has changed: {line}\n" for line in lines))
 
@@ -180,16 +200,25 @@ def accept(file: str, args: argparse.Namespace) -> int:
         store.set_setting(key_of(machine), record_of(machine)).result()
         said = "; ".join(str(change) for change in told or ())
         by = "" if who == COMMAND_LINE else f" by {who}"
-        store.log_event("machine", f"machine file {machine.source} accepted{by}{': ' if said else ''}{said}")
+        store.log_event(
+            "machine",
+            Message(
+                "machine file {source} accepted{name}{ending}{text}",
+                source=machine.source,
+                name=by,
+                ending=": " if said else "",
+                text=said,
+            ),
+        )
     sys.stdout.write("".join(f"  {change}\n" for change in told or ()))
-    how = "it was not known here" if told is None else _counted(len(told))
+    how = "this file was never accepted before" if told is None else _counted(len(told))
     sys.stdout.write(f"{machine.source} is accepted: {how}\n")
     return EXIT_OK
 
 
 def _counted(changes: int) -> str:
     if not changes:
-        return "it had not changed"
+        return "no changes"
     return "1 change" if changes == 1 else f"{changes} changes"
 
 
@@ -208,7 +237,7 @@ def write_model(file: str) -> int:
     except DriverError as error:
         raise CommandError(str(error), error_code(error)) from error
     if not told_to_agents(machine):
-        sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false: no agent will find the adapter\n")
+        sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false, so no agent can find the adapter\n")
     return EXIT_OK
 
 
@@ -225,7 +254,12 @@ def play(file: str) -> int:
     play_it = backend_of(machine).play
     if play_it is None:
         there = " and ".join(playable())
-        why = f"machine.backend is {machine.backend}: nothing to be a peer of; {there} have one"
+        why = Message(
+            "machine.backend is {backend}, which does not have a simulator; simulators are "
+            "available for {present}",
+            backend=machine.backend,
+            present=there,
+        )
         raise CommandError(f"{file}: {why}", "no-peer")
     ended = False
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.program_options import out_file
 from app.desk.command_errors import EXIT_OK, EXIT_USAGE, CommandError
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -21,15 +22,19 @@ def add_hal_parser(actions: SubParsers) -> None:
     """``hal`` among the actions of ``machine``."""
     parser = actions.add_parser(
         "hal",
-        help="write the HAL file of LinuxCNC, and say what to wire",
-        description="Writes the HAL file for the board that [board] of the machine file names: simulation,"
-        " parallel port, Mesa 7I76E or 7I97, EtherCAT. Its head says what is wired where, what to measure.",
+        help="write the HAL file for LinuxCNC and list the required wiring",
+        description="Writes the HAL file for the board that [board] in the machine file names: "
+        "simulation, parallel port, Mesa 7I76E or 7I97, EtherCAT. The comments at the top of "
+        "the file list the wiring and the values to measure.",
     )
-    parser.add_argument("file", metavar="FILE", help="a machine file with [hal] and [board]")
+    parser.add_argument("file", metavar="FILE", help="machine file with the [hal] and [board] tables")
     parser.add_argument(
-        "--out", type=out_file, metavar="FILE.hal", help="file for it, which must not exist; default: stdout"
+        "--out",
+        type=out_file,
+        metavar="FILE.hal",
+        help="output file, which must not exist yet (default: stdout)",
     )
-    parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
 
 def write_hal(args: argparse.Namespace) -> int:
@@ -54,11 +59,13 @@ def write_hal(args: argparse.Namespace) -> int:
     else:
         sys.stdout.write(hal.text)
         sys.stderr.write(
-            "".join(f"turndesk: {name} belongs beside it: --out writes both\n" for name in hal.beside)
+            "".join(
+                f"turndesk: {name} must be in the same folder; --out writes both\n" for name in hal.beside
+            )
         )
     if args.out and Path(args.out).name != hal.name:
         sys.stderr.write(
-            f"turndesk: {machine.source}: [hal] file is {hal.name}; the control loads that one\n"
+            f"turndesk: {machine.source}: [hal] file is {hal.name}, so TurnDesk loads that file\n"
         )
     return EXIT_OK
 
@@ -82,11 +89,17 @@ def _keep(out: Path, text: str, beside: Mapping[str, str]) -> None:
     for path in files:
         if path.exists():
             raise CommandError(
-                f"{path} is there already and is never replaced; take another name or folder", "file-exists"
+                Message(
+                    "{path} already exists and is not overwritten; use a different name or folder", path=path
+                ),
+                "file-exists",
             )
     for path, content in files.items():
         try:
             with path.open("x", encoding="utf-8") as opened:
                 opened.write(content)
         except OSError as error:
-            raise CommandError(f"{path} cannot be written: {error.strerror}", "cannot-write") from error
+            raise CommandError(
+                Message("{file} cannot be written: {cause}", file=path, cause=error.strerror),
+                "cannot-write",
+            ) from error

@@ -19,6 +19,7 @@ from app.desk import command_errors
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.data_folder import DataFolderError, check_data_folder
 from app.desk.standard_input import nothing_taken
+from core.message import Message
 
 # Modules with add_parser(subparsers) and run(args) -> exit status; importing one costs next to nothing.
 COMMANDS = (
@@ -50,14 +51,15 @@ turndesk: no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so no op
   turndesk run FILE --headless     runs it on the simulated lathe
 """
 _FULL = (errno.ENOSPC, errno.EDQUOT)
-WITHOUT = "prove, expand, trace and run --headless need none"
+WITHOUT = "prove, expand, trace and run --headless do not need a screen"
 
 
 def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
     """The parser with these subcommands."""
     parser = Parser(
         prog="turndesk",
-        description="The operator desk for OmniTurn-style lathes. Without a command: the operator screen.",
+        description="Operator screen for OmniTurn-style lathes. Run turndesk without a command to open "
+        "the screen.",
     )
     add_screen_options(parser)
     subparsers = parser.add_subparsers(
@@ -74,7 +76,7 @@ def _commands_for(argv: Sequence[str]) -> Sequence[str]:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; the exit status of interfaces.md: 0 done, 1 errors in the program, 2 usage."""
+    """Run the command line; the exit status of docs/json.md: 0 done, 1 errors in the program, 2 usage."""
     argv = sys.argv[1:] if argv is None else argv
     gc.set_threshold(200_000)  # importing alone would collect a hundred times and find nothing
     try:
@@ -158,7 +160,9 @@ def _screen(args: argparse.Namespace) -> int:
     from app.screen.display import trouble
 
     if why := trouble():
-        raise CommandError(f"the screen cannot be opened: {why}. {WITHOUT}", "no-screen")
+        raise CommandError(
+            Message("the screen cannot be opened: {why}. {without}", why=why, without=WITHOUT), "no-screen"
+        )
     program = args.program
     if args.demo:
         from app.compose.demo_store import demo_program, open_demo

@@ -21,6 +21,7 @@ from app.offsets.suspicious_changes import (
     suspicions_of,
     travel_of,
 )
+from core.message import Message
 from core.store.offset_fields import MM_PER_INCH, Sort
 from core.store.store_rows import FIELDS, Kind, Value
 from core.tool_edges import edge_name
@@ -34,12 +35,13 @@ Changes = Mapping[Kind, Mapping[int, Mapping[str, Value]]]
 def add_consent_options(parser: argparse.ArgumentParser) -> None:
     """Add ``--yes`` and ``--machine``."""
     parser.add_argument(
-        "--yes", action="store_true", help="make suspicious changes of offsets; without it you are asked"
+        "--yes", action="store_true", help="make suspicious offset changes without asking for confirmation"
     )
     parser.add_argument(
         "--machine",
         metavar="FILE",
-        help="machine file whose travel limits the offsets (default: that of the operator screen)",
+        help="machine file with the travel limits for the offsets (default: the machine file of "
+        "the operator screen)",
     )
 
 
@@ -54,16 +56,19 @@ def demand_meant(store: Store, args: argparse.Namespace, changes: Changes) -> No
     beyond = {kind: _only_travel(each) for kind, each in found.items() if _only_travel(each)}
     if beyond:
         raise CommandError(
-            f"{_described(beyond, ())}; the travel is {_travel_words(travel)}. "
-            "Correct the value, or touch the tool off on the Jog page",
+            Message(
+                "{beyond}; the travel is {travel}. Correct the value, or touch the tool off on the Jog page",
+                beyond=_described(beyond, ()),
+                travel=_travel_words(travel),
+            ),
             "beyond-travel",
         )
     if args.yes or not any(found.values()):
         return
     doubted = _described(found, tables.get(Kind.TOOL, {}))
     if not sys.stdin.isatty():
-        raise CommandError(f"{doubted}; give --yes if you mean it", "not-confirmed")
-    sys.stderr.write(f"{doubted}. Press Y and Return to change it: ")
+        raise CommandError(Message("{doubted}; add --yes to confirm", doubted=doubted), "not-confirmed")
+    sys.stderr.write(Message("{doubted}. To make this change, press Y and Enter: ", doubted=doubted))
     sys.stderr.flush()
     if sys.stdin.readline().strip().upper() != "Y":
         raise CommandError("you did not press Y; nothing was changed", "not-confirmed")
@@ -95,9 +100,9 @@ def _reason(tools: Iterable[int], each: Suspicion) -> str:
     if each.doubt is Doubt.MASTER:
         return f"followers: {', '.join(map(edge_name, followers(tools, each.number)))}"
     words = {
-        Doubt.TRAVEL: "beyond the travel",
-        Doubt.SIDE: "the other side of the part",
-        Doubt.LARGE: "a large change",
+        Doubt.TRAVEL: "the value is outside the axis travel",
+        Doubt.SIDE: "the tool would cut on the other side of the part",
+        Doubt.LARGE: "the change is unusually large",
     }
     return words[each.doubt]
 
@@ -120,5 +125,11 @@ def _shown(sort: Sort, value: Value) -> str:
 
 def _travel_words(travel: Travel) -> str:
     return ", ".join(
-        f"{name} {low / MM_PER_INCH:.4g}…{high / MM_PER_INCH:.4g} in" for name, (low, high) in travel.items()
+        Message(
+            "{name} {low}…{high} in",
+            name=name,
+            low=f"{low / MM_PER_INCH:.4g}",
+            high=f"{high / MM_PER_INCH:.4g}",
+        )
+        for name, (low, high) in travel.items()
     )

@@ -20,6 +20,7 @@ from app.offsets.offset_acts import act_of
 from app.offsets.offset_values import stated_fields
 from app.offsets.offsets_file import ALIASES, TOOL_KEYS, out_of_range, shown
 from core.access.access_table import Act
+from core.message import Message
 from core.store import offset_tables
 from core.store.offset_fields import MM_PER_INCH, Field, Sort
 from core.store.offset_tables import Reason
@@ -56,7 +57,9 @@ _LETTER = {
     Kind.MILL_TOOL: "TOOL",
     Kind.PRESET: "PRESET",
 }
-_NAMES = "T1…T32 (T1D2 its second edge), D1…D32 or G54…G59; of a mill TOOL1…TOOL999 or PRESET1…PRESET99"
+_NAMES = (
+    "T1…T32 (T1D2 is the second edge of T1), D1…D32 or G54…G59; on a mill, TOOL1…TOOL999 or PRESET1…PRESET99"
+)
 _CLEARED = {"T": "tool offsets", "D": "secondary offsets", "G": "zero offsets"}
 NO_SHAPE = "none"  # kind=none takes the shape of a tool away
 _SUCH = {Kind.ZERO: "z=-120", Kind.MILL_TOOL: "L=80.5", Kind.PRESET: "x=100"}
@@ -98,9 +101,15 @@ def _line(name: str, row: Row) -> str:
     if isinstance(row, ShapeRow):
         return f"{name:<3} {_shape(row)}"
     if isinstance(row, ZeroRow):
-        return f"{name} X {row.x:+.3f}  Z {row.z:+.3f} mm  C {row.c:+.3f}°"
+        return Message(
+            "{name} X {x}  Z {z} mm  C {c}°",
+            name=name,
+            x=f"{row.x:+.3f}",
+            z=f"{row.z:+.3f}",
+            c=f"{row.c:+.3f}",
+        )
     if isinstance(row, MillRow | PresetRow):
-        return f"{name:<4} {stated_fields(row)}  (mill, mm)"
+        return Message("{name} {row}  (mill, mm)", name=f"{name:<4}", row=stated_fields(row))
     r = row.nose_radius if isinstance(row, ToolRow) else row.r
     x, z, r = inches(row.x), inches(row.z), inches(r)
     line = f"{name:<3} X {x:+.5f}  Z {z:+.5f}  R {r:.5f}"
@@ -122,7 +131,13 @@ def _shape(row: ShapeRow) -> str:
 def _more(row: ToolRow) -> str:
     """What else is set of a tool."""
     wear = (
-        f"  wear X {inches(row.wear_x):+.5f} Z {inches(row.wear_z):+.5f}" if row.wear_x or row.wear_z else ""
+        Message(
+            "  wear X {wear_x} Z {wear_z}",
+            wear_x=f"{inches(row.wear_x):+.5f}",
+            wear_z=f"{inches(row.wear_z):+.5f}",
+        )
+        if row.wear_x or row.wear_z
+        else ""
     )
     tip = f"  tip {row.quadrant}" if row.quadrant else ""
     return wear + tip + ("  master" if row.master else "") + (f"  {row.remark}" if row.remark else "")
@@ -171,14 +186,23 @@ def _check_shape(store: Store, number: int, shape: dict[str, Value], offset: dic
     if not row.kind:
         kinds = FIELDS[Kind.SHAPE]["kind"].range
         raise CommandError(
-            f"{edge_name(number)} has no shape yet; give its kind too: kind= one of {kinds}", "no-shape"
+            Message(
+                "{number} does not have a tool shape yet; also set kind= to one of {kinds}",
+                number=edge_name(number),
+                kinds=kinds,
+            ),
+            "no-shape",
         )
     tools = store.tools()
     if offset and number not in tools and not {"x", "z"} <= offset.keys():
-        text = (
-            f"{edge_name(number)} was never set, and {' and '.join(offset)} would stand beside an offset of 0"
+        text = Message(
+            "{number} was never set; if you set only {offset}, the offset of the other axis remains 0",
+            number=edge_name(number),
+            offset=" and ".join(offset),
         )
-        raise CommandError(f"{text}; give x and z too, or touch it off first", "needs-both-axes")
+        raise CommandError(
+            Message("{text}; enter both x and z, or touch the tool off first", text=text), "needs-both-axes"
+        )
     tool = with_fields(tools.get(number, ToolRow()), offset)
     if mistakes := row_mistakes(row, tool):
         raise CommandError(
@@ -203,8 +227,12 @@ def _named(text: str) -> tuple[Kind, int]:
     if match and int(match[2]) in (ZERO_CODES if kind is Kind.ZERO else OFFSETS):
         return kind, int(match[2])
     if match and kind is Kind.ZERO:
-        raise CommandError(f"{text} is no settable offset; name G54…G59", "unknown-zero")
-    raise CommandError(f"{text} is no offset; name {_NAMES}", "unknown-offset")
+        raise CommandError(
+            Message("{text} is not a settable zero offset; use G54…G59", text=text), "unknown-zero"
+        )
+    raise CommandError(
+        Message("{text} is not an offset; use {names}", text=text, names=_NAMES), "unknown-offset"
+    )
 
 
 def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
@@ -215,14 +243,19 @@ def _values(kind: Kind, entries: list[str]) -> dict[str, Value]:
         key = key.strip().lower()
         if not equals:
             such = _SUCH.get(kind, "x=1.25")
-            raise CommandError(f"{entry} sets nothing; write KEY=VALUE, such as {such}", "no-value")
+            raise CommandError(
+                Message(
+                    "{entry} does not set a value; write KEY=VALUE, such as {such}", entry=entry, such=such
+                ),
+                "no-value",
+            )
         fields = TOOL_KEYS if kind is Kind.TOOL else FIELDS[kind]
         aliases = _ALIASES.get(kind, {})
         field = fields.get(aliases.get(key, key))
         if field is None:
             raise CommandError(unknown(key, fields), "unknown-key")
         if field.name in values:
-            raise CommandError(f"{key} is given twice; give it once", "key-twice")
+            raise CommandError(Message("{key} is specified twice; remove one", key=key), "key-twice")
         values[field.name] = _entered(field, text)
     return values
 
@@ -256,7 +289,9 @@ def _value(field: Field, text: str) -> Value:
     if field.sort is Sort.TEXT:
         return text.strip()
     if field.sort is Sort.FLAG and text.strip().lower() not in _FLAGS:
-        raise CommandError(f"{field.name} = {text} is neither 1 nor 0", "not-a-flag")
+        raise CommandError(
+            Message("{field} = {text} is not valid; use 1 or 0", field=field.name, text=text), "not-a-flag"
+        )
     if field.sort is Sort.FLAG:
         return _FLAGS[text.strip().lower()]
     try:
@@ -282,16 +317,16 @@ def _clear(args: argparse.Namespace) -> int:
             count = store.remove_offset(kind, number, args.why, who=who).result()
             letter = _name(kind, number)
     if not count:
-        sys.stdout.write(f"{letter} was not set: nothing to clear\n")
+        sys.stdout.write(f"{letter} was not set, so there was nothing to clear\n")
     else:
         told = _CLEARED.get(letter, letter)
-        sys.stdout.write(f"{told} cleared: {int(count)}; 'turndesk offsets undo' brings them back\n")
+        sys.stdout.write(f"{told} cleared: {int(count)}; 'turndesk offsets undo' restores them\n")
     return EXIT_OK
 
 
 def _history(args: argparse.Namespace) -> int:
     if args.limit < 1:
-        raise CommandError(f"--limit {args.limit} shows nothing; give 1 or more", "limit")
+        raise CommandError(Message("--limit {limit} is too small; use 1 or more", limit=args.limit), "limit")
     with opened_store(read_only=True) as store:
         changes = (
             store.history(Kind(args.table), limit=args.limit)
@@ -302,7 +337,7 @@ def _history(args: argparse.Namespace) -> int:
         sys.stdout.write(json.dumps([_change(change) for change in changes]) + "\n")
     else:
         sys.stdout.write(
-            "".join(f"{_told(change)}\n" for change in changes) or "no offset was ever changed\n"
+            "".join(f"{_told(change)}\n" for change in changes) or "no offset has been changed yet\n"
         )
     return EXIT_OK
 

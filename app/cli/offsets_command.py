@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.meant_changes import add_consent_options
 from app.cli.who_changes import add_as_option
+from core.message import Message
 from core.store.store_rows import Kind
 
 if TYPE_CHECKING:
@@ -16,40 +17,44 @@ if TYPE_CHECKING:
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
     parser = subparsers.add_parser(
-        "offsets", help="show and change offsets, tool shapes, tools and presets of a mill"
+        "offsets", help="show and change offsets, tool shapes, and the tools and presets of a mill"
     )
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    show = actions.add_parser("show", help="all offsets that are set")
-    show.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    show = actions.add_parser("show", help="show all offsets that are set")
+    show.add_argument("--json", action="store_true", help="print only JSON on stdout")
     change = actions.add_parser(
         "set",
-        help="set T3 x=1.25 wear_x=-.0005 quadrant=3, T3 kind=turning insert=CNMG432, "
-        "or D4 x=-.0005 (a radius, as stored)",
+        help="set offsets or tool shapes, such as T3 x=1.25 wear_x=-.0005 quadrant=3, T3 "
+        "kind=turning insert=CNMG432, or D4 x=-.0005 (a radius, as stored)",
     )
     change.add_argument("offset", metavar="T3|D4|G54|TOOL20|PRESET3")
     change.add_argument(
         "values",
         metavar="KEY=VALUE",
         nargs="+",
-        help="inches, sums such as x=.5-.002 are fine; "
-        "T: x z nose_radius wear_x wear_z quadrant remark master, and its shape: "
-        "kind hand insert holder width diameter point stick_out length pitch flutes entry rear profile "
-        "(kind=none: no shape); D: x z r; "
-        "G54 to G59 in mm and degrees: x z c; of a mill, mm, degrees and minutes, TOOL: "
-        "name L R R2 DL DR DR2 cut t-angle time2 stop, PRESET: x y z a b c rot doc",
+        help="lengths in inches; expressions such as x=.5-.002 are allowed; T: x z nose_radius "
+        "wear_x wear_z quadrant remark master, and the tool shape: kind hand insert holder "
+        "width diameter point stick_out length pitch flutes entry rear profile (kind=none "
+        "removes the shape); D: x z r; G54 to G59 in mm and degrees: x z c; on a mill, in "
+        "mm, degrees and minutes, TOOL: name L R R2 DL DR DR2 cut t-angle time2 stop, "
+        "PRESET: x y z a b c rot doc",
     )
     add_consent_options(change)
-    clear = actions.add_parser("clear", help="clear T3, D4 or G54: that one; T, D or G: all of them")
+    clear = actions.add_parser(
+        "clear", help="clear one offset (T3, D4 or G54) or all offsets of one type (T, D or G)"
+    )
     clear.add_argument("offset", metavar="T|T3|D|D4|G|G54")
-    history = actions.add_parser("history", help="every change, newest first")
+    history = actions.add_parser("history", help="show all changes, newest first")
     history.add_argument("--limit", type=int, default=100, metavar="N", help="default: 100")
     _add_table(history)
-    history.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
-    undo = actions.add_parser("undo", help="take the last change back; again: the one before")
+    history.add_argument("--json", action="store_true", help="print only JSON on stdout")
+    undo = actions.add_parser("undo", help="undo the last change; repeat to undo earlier changes")
     _add_table(undo)
     for action, why in ((change, "entered"), (clear, "cleared"), (undo, "undo")):
         add_as_option(action)
-        action.add_argument("--why", default=why, help=f"reason, kept in the history (default: {why})")
+        action.add_argument(
+            "--why", default=why, help=Message("reason, saved in the history (default: {why})", why=why)
+        )
 
 
 def _add_table(parser: argparse.ArgumentParser) -> None:
@@ -58,7 +63,7 @@ def _add_table(parser: argparse.ArgumentParser) -> None:
         "table",
         nargs="?",
         choices=[kind.value for kind in Kind],
-        help="only of these; without it all tables together",
+        help="show only this table (default: all tables)",
     )
 
 

@@ -26,7 +26,7 @@ HEAD = "    n  line  kind        X radius          Z         feed      rpm      
 
 
 def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
-    """One elementary block with the keys and units of interfaces.md; keys that do not apply are null."""
+    """One elementary block with the keys and units of docs/json.md; keys that do not apply are null."""
     arc = block.kind == "arc"
     circular = arc or block.kind == "plane-arc"
     turned = block.kind == "rotate"  # its speed is rpm

@@ -13,6 +13,7 @@ from app.cli.program_options import STDIN, circumstances, read_source
 from app.desk.command_errors import CommandError
 from app.desk.kept_part import lasting
 from core.coded_error import error_code
+from core.message import Message
 from core.part.stock_forms import FORMS
 
 if TYPE_CHECKING:
@@ -31,13 +32,24 @@ _LONGEST = 1016.0  # mm
 
 def add_part_options(parser: argparse.ArgumentParser) -> None:
     """What the part is made of, by which tools, and how it is held."""
-    parser.add_argument("--tools", metavar="FILE", help="shapes of the tools, instead of the stored ones")
     parser.add_argument(
-        "--stick-out", type=float, metavar="IN", help="from the front of chuck or collet to Z0, inches"
+        "--tools", metavar="FILE", help="file with tool shapes to use instead of the stored shapes"
     )
-    parser.add_argument("--stock", metavar="SPEC", help=f"what the part is made of: {FORMS}")
-    parser.add_argument("--keep-stock", action="store_true", help="the store remembers it with the program")
-    parser.add_argument("--as", dest="as_name", metavar="NAME", help="who keeps it, with --keep-stock")
+    parser.add_argument(
+        "--stick-out",
+        type=float,
+        metavar="IN",
+        help="distance from the front of the chuck or collet to Z0, in inches",
+    )
+    parser.add_argument("--stock", metavar="SPEC", help=Message("stock for the part: {forms}", forms=FORMS))
+    parser.add_argument(
+        "--keep-stock",
+        action="store_true",
+        help=("save the --stock setting in the data store, together with the program name"),
+    )
+    parser.add_argument(
+        "--as", dest="as_name", metavar="NAME", help="user who saves the stock (only with --keep-stock)"
+    )
 
 
 def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting:
@@ -48,7 +60,9 @@ def part_setting(args: argparse.Namespace, around: Circumstances) -> PartSetting
     setting = known_part(around.machine, around.setup.tools, _shapes(args), stick_out)
     if args.stock is None:
         if args.keep_stock:
-            raise CommandError("--keep-stock needs --stock, which says what is to be kept", "nothing-to-keep")
+            raise CommandError(
+                "--keep-stock needs --stock, which specifies the stock to save", "nothing-to-keep"
+            )
         return setting
     return replace(setting, stock=_said(args.stock, args, around, setting))
 
@@ -60,7 +74,7 @@ def with_kept_stock(setting: PartSetting, program: str, args: argparse.Namespace
     if args.keep_stock:
         if program == STDIN:
             raise CommandError(
-                "--keep-stock keeps it with a program that has a name; - (stdin) has none",
+                "--keep-stock saves the stock under the name of the program, but - (stdin) has no name",
                 "stdin-has-no-name",
             )
         from app.cli.store_command import opened_store
@@ -85,9 +99,15 @@ def with_kept(setting: PartSetting, program: str, kept: KeptPart, args: argparse
     try:
         return replace(setting, stock=_said(kept.stock, args, around, setting))
     except CommandError as error:
-        way = "say another with --stock and --keep-stock"
+        way = "specify the stock again with --stock and --keep-stock"
         raise CommandError(
-            f"the stock that is kept with {program} cannot be used: {error}; {way}", "kept-stock"
+            Message(
+                "the stock saved with {program} cannot be used: {error}; {details}",
+                program=program,
+                error=error,
+                details=way,
+            ),
+            "kept-stock",
         ) from error
 
 
@@ -125,8 +145,15 @@ def _stick_out(args: argparse.Namespace, machine: Machine) -> float | None:
     stick_out = float(args.stick_out) * MM_PER_INCH
     if not machine.clamping.diameter:
         raise CommandError(
-            f"--stick-out {args.stick_out:g} needs [clamping] diameter in the machine file", "no-clamping"
+            Message(
+                "--stick-out {stick_out} needs [clamping] diameter in the machine file",
+                stick_out=f"{args.stick_out:g}",
+            ),
+            "no-clamping",
         )
     if not 0.0 < stick_out <= _LONGEST:
-        raise CommandError(f"--stick-out {args.stick_out:g} is not between 0 and 40 in", "stick-out")
+        raise CommandError(
+            Message("--stick-out {stick_out} is not between 0 and 40 in", stick_out=f"{args.stick_out:g}"),
+            "stick-out",
+        )
     return stick_out

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import EXIT_OK, CommandError
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -19,11 +20,15 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser("parts", help="counts, cycle times, readings and corrections of the store")
-    parser.add_argument("name", nargs="?", metavar="PROGRAM", help="only this one; default: all")
+    parser = subparsers.add_parser(
+        "parts", help="show the stored part counts, cycle times, readings and corrections"
+    )
+    parser.add_argument("name", nargs="?", metavar="PROGRAM", help="program to show (default: all)")
     form = parser.add_mutually_exclusive_group()
-    form.add_argument("--csv", action="store_true", help="one line a reading on stdout, for a spreadsheet")
-    form.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    form.add_argument(
+        "--csv", action="store_true", help="print one line per reading on stdout, as CSV for a spreadsheet"
+    )
+    form.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -53,7 +58,11 @@ def _names(store: Store, wanted: str | None) -> list[str]:
         return sorted(known)
     if wanted not in known:
         raise CommandError(
-            f"nothing is kept of {wanted}; 'turndesk parts' lists what there is", "unknown-program"
+            Message(
+                "no data is stored for {expected}; 'turndesk parts' lists the programs that have data",
+                expected=wanted,
+            ),
+            "unknown-program",
         )
     return [wanted]
 
@@ -136,11 +145,31 @@ def _lines(store: Store, names: Sequence[str]) -> Iterator[str]:
     for name in names:
         data = _data(store, name)
         times = [row.seconds for row in data.whole_cycles]
-        mean = f", cycle {sum(times) / len(times):.1f} s in the mean of {len(times)}" if times else ""
+        mean = (
+            Message(
+                ", mean cycle time {times} s (cycles: {times_count})",
+                times=f"{sum(times) / len(times):.1f}",
+                times_count=len(times),
+            )
+            if times
+            else ""
+        )
         yield f"{name}: parts {store.parts(name)}{mean}\n"
         for row in data.features:
             taken = data.readings_of(row.id)
             found = _capability(data, row.id)
-            cpk = f", Cpk {found['cpk']:.2f}" if found is not None and found["cpk"] is not None else ""
-            last = f", last {taken[-1].value:.4f} mm of part {taken[-1].part}" if taken else ""
+            cpk = (
+                Message(", Cpk {value}", value=f"{found['cpk']:.2f}")
+                if found is not None and found["cpk"] is not None
+                else ""
+            )
+            last = (
+                Message(
+                    ", last reading {taken} mm (part {part})",
+                    taken=f"{taken[-1].value:.4f}",
+                    part=taken[-1].part,
+                )
+                if taken
+                else ""
+            )
             yield f"  {row.name} {row.nominal:.4f} mm: readings {len(taken)}{last}{cpk}\n"

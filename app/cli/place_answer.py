@@ -9,6 +9,7 @@ from collections.abc import Callable
 from concurrent.futures import Future, wait
 from typing import TypeVar
 
+from core.message import Message
 from core.sharing.shared_folder import SharedFolder
 from core.sharing.shared_place import SharedPlace
 from core.sharing.sharing_errors import Cause
@@ -55,16 +56,23 @@ def _wait_for_folder(place: SharedFolder, told_after: float) -> None:
     try:
         opening.wait(told_after)
     except subprocess.TimeoutExpired:
-        until = f"; it is given up behind {_DEAD_AFTER:g} s"
+        until = Message("; TurnDesk stops waiting after {dead_after} s", dead_after=f"{_DEAD_AFTER:g}")
         _tell(place, told_after, until)
         try:
             opening.wait(_DEAD_AFTER - told_after)
         except subprocess.TimeoutExpired:
-            raise Cause.AWAY.error(place.name, f"not one byte in {_DEAD_AFTER:g} s") from None
+            raise Cause.AWAY.error(
+                place.name, Message("no data received in {dead_after} s", dead_after=f"{_DEAD_AFTER:g}")
+            ) from None
 
 
 def _tell(place: SharedPlace, seconds: float, until: str = "") -> None:
-    said = f"{place.name} has not answered for {seconds:g} s{until}; Ctrl+C ends the wait"
+    said = Message(
+        "{place} has not responded for {seconds} s{until}; press Ctrl+C to stop waiting",
+        place=place.name,
+        seconds=f"{seconds:g}",
+        until=until,
+    )
     sys.stderr.write(f"turndesk: {said}\n")
 
 

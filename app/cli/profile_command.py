@@ -16,6 +16,7 @@ from core.access.access_table import Act
 from core.coded_error import error_code
 from core.drawings.unit_check import UNITS
 from core.language.source import Dialect, dialect_of
+from core.message import Message
 from core.shapes.cutting_data import MATERIALS
 
 if TYPE_CHECKING:
@@ -35,9 +36,11 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser("profile", help="make a turning program of a drawing (DXF, SVG)")
+    parser = subparsers.add_parser("profile", help="make a turning program from a drawing (DXF, SVG)")
     parser.add_argument("file", metavar="DRAWING")
-    parser.add_argument("--list", action="store_true", help="what the drawing has: layers, axes, contours")
+    parser.add_argument(
+        "--list", action="store_true", help="list the layers, axes and contours of the drawing"
+    )
     _add_drawing_options(parser)
     _add_part_options(parser)
     _add_tool_options(parser)
@@ -45,42 +48,92 @@ def add_parser(subparsers: SubParsers) -> None:
         "--out",
         type=out_file,
         metavar="FILE",
-        help="the program: .nc is OmniTurn, .mpf SINUMERIK (default: stdout)",
+        help="program file to write: .nc is OmniTurn, .mpf is SINUMERIK (default: stdout)",
     )
     add_as_option(parser)
-    parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
 
 def _add_drawing_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--unit", choices=tuple(map(str.lower, UNITS)), help="unit of the drawing, instead of the file's"
+        "--unit",
+        choices=tuple(map(str.lower, UNITS)),
+        help="unit of the drawing, used instead of the unit in the file",
     )
-    parser.add_argument("--layer", default="", metavar="NAME", help="the layer of the contour (default: all)")
-    parser.add_argument("--axis", default="", metavar="NAME", help="the axis, as --list names it")
-    parser.add_argument("--contour", type=int, default=1, metavar="N", help="which contour of --list")
-    parser.add_argument("--front", choices=("right", "left"), default="right", help="where the face is")
-    parser.add_argument("--zero", choices=("face", "back", "origin"), default="face", help="where Z0 is")
-    parser.add_argument("--shift", type=float, default=0.0, metavar="Z", help="Z of that place, if not 0")
-    parser.add_argument("--side", choices=("outside", "bore"), default="outside", help="which side is cut")
-    parser.add_argument("--gap", type=float, metavar="MM", help="ends nearer than this are joined, mm")
+    parser.add_argument(
+        "--layer", default="", metavar="NAME", help="layer of the contour (default: all layers)"
+    )
+    parser.add_argument(
+        "--axis", default="", metavar="NAME", help=("name of the axis in the drawing, as shown by --list")
+    )
+    parser.add_argument(
+        "--contour",
+        type=int,
+        default=1,
+        metavar="N",
+        help=("number of the contour in the drawing, as shown by --list"),
+    )
+    parser.add_argument(
+        "--front",
+        choices=("right", "left"),
+        default="right",
+        help=("end of the drawing where the front face of the part is"),
+    )
+    parser.add_argument(
+        "--zero", choices=("face", "back", "origin"), default="face", help="location of Z0 in the drawing"
+    )
+    parser.add_argument(
+        "--shift",
+        type=float,
+        default=0.0,
+        metavar="Z",
+        help=("Z coordinate of the location that --zero specifies, if not 0"),
+    )
+    parser.add_argument(
+        "--side", choices=("outside", "bore"), default="outside", help="side of the part to cut"
+    )
+    parser.add_argument(
+        "--gap",
+        type=float,
+        metavar="MM",
+        help=("join contour ends that are closer together than this distance, in mm"),
+    )
 
 
 def _add_part_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--metric", action="store_true", help="the program and these lengths in mm, not inch")
-    parser.add_argument("--material", choices=tuple(MATERIALS), default="STEEL", help="default: STEEL")
-    parser.add_argument("--bar", type=float, metavar="D", help="diameter of the bar")
-    parser.add_argument("--face", type=float, metavar="L", help="stock before the face; 0: no facing")
     parser.add_argument(
-        "--hole", type=float, metavar="D", help="diameter of the hole that a bore begins with"
+        "--metric",
+        action="store_true",
+        help="use mm instead of inches, both in the program and in the length options",
     )
-    parser.add_argument("--rough", type=float, metavar="L", help="depth of a rough pass; 0: finish alone")
+    parser.add_argument("--material", choices=tuple(MATERIALS), default="STEEL", help="default: STEEL")
+    parser.add_argument("--bar", type=float, metavar="D", help="bar diameter")
+    parser.add_argument("--face", type=float, metavar="L", help="stock to remove from the face; 0: no facing")
+    parser.add_argument("--hole", type=float, metavar="D", help="diameter of the starting hole before boring")
+    parser.add_argument(
+        "--rough", type=float, metavar="L", help="depth of a roughing pass; 0: finishing only"
+    )
 
 
 def _add_tool_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--tool", type=int, metavar="T", help="turning tool (default: the first that fits)")
-    parser.add_argument("--groove-tool", type=int, metavar="T", help="groove tool (default: the first)")
-    parser.add_argument("--comp", type=int, metavar="D", help="offset or edge of the nose; 0: no G41")
-    parser.add_argument("--tools", metavar="FILE", help="shapes of the tools, instead of the stored ones")
+    parser.add_argument(
+        "--tool", type=int, metavar="T", help="number of the turning tool (default: the first tool that fits)"
+    )
+    parser.add_argument(
+        "--groove-tool",
+        type=int,
+        metavar="T",
+        help="number of the grooving tool (default: the first grooving tool)",
+    )
+    parser.add_argument(
+        "--comp",
+        type=int,
+        metavar="D",
+        help=("number of the tool offset or cutting edge for nose radius compensation; 0: no G41"),
+    )
+    parser.add_argument(
+        "--tools", metavar="FILE", help="file with tool shapes to use instead of the stored shapes"
+    )
     parser.add_argument("--machine", metavar="FILE", help="machine file (default: the simulated lathe)")
 
 
@@ -105,20 +158,29 @@ def _run(args: argparse.Namespace) -> int:
     if args.out is not None and not args.list:
         if Path(args.out).exists():
             raise CommandError(
-                f"{args.out} is there already and is never replaced; take another name", "file-exists"
+                Message("{file} already exists and is not overwritten; use a different name", file=args.out),
+                "file-exists",
             )
         if not Path(args.out).parent.is_dir():
-            raise CommandError(f"{args.out}: cannot be written: its folder is not there", "no-folder")
+            raise CommandError(
+                Message("{file} cannot be written: its folder does not exist", file=args.out), "no-folder"
+            )
         args.who = who_may(opened_store, args, Act.PROGRAMS)
     if args.side == "bore" and args.hole is None and not args.list:
-        raise CommandError("a bore begins with a hole: say its diameter with --hole", "no-hole")
+        raise CommandError("boring needs a starting hole; specify its diameter with --hole", "no-hole")
     args.metric = args.metric or not machine.inch
     args.dialect = _language(args, machine)
-    with Progress(f"reading {args.file}, seconds") as progress:
+    with Progress(Message("time to read {file}, in seconds", file=args.file)) as progress:
         drawing = read_in_process(Path(args.file), progress.reach)
     if args.layer and args.layer not in drawing.layers:
         raise CommandError(
-            f"{drawing.name} has no layer {args.layer}: say {', '.join(drawing.layers)}", "no-layer"
+            Message(
+                "{drawing} has no layer {layer}; use one of {layers}",
+                drawing=drawing.name,
+                layer=args.layer,
+                layers=", ".join(drawing.layers),
+            ),
+            "no-layer",
         )
     view = _view(drawing, args)
     found = _contours(drawing, view, args)
@@ -127,7 +189,13 @@ def _run(args: argparse.Namespace) -> int:
         return EXIT_OK
     if not 1 <= args.contour <= len(found):
         raise CommandError(
-            f"{drawing.name} has {len(found)} contours: say --contour 1 to {len(found)}", "which-contour"
+            Message(
+                "{drawing} has {found_count} contours; use --contour 1 to {found_count2}",
+                drawing=drawing.name,
+                found_count=len(found),
+                found_count2=len(found),
+            ),
+            "which-contour",
         )
     net = found[args.contour - 1]
     if args.unit is None:
@@ -142,7 +210,16 @@ def _check_unit(drawing: Drawing, view: View, net: Net, machine: Machine) -> Non
 
     if (wrong := wrong_unit(net, view.unit, shop_of(machine, {}).travel)) is not None:
         size, name = wrong[0], wrong[1].lower()
-        words = f"{drawing.name} is {size}: in {name} it would fit; use --unit {name}"
+        words = Message(
+            (
+                "{drawing} is {size}, which is too large for this machine; with {name} as the "
+                "unit, the drawing would fit, so use --unit {name2}"
+            ),
+            drawing=drawing.name,
+            size=size,
+            name=name,
+            name2=name,
+        )
         raise CommandError(words, "wrong-unit")
 
 
@@ -153,7 +230,12 @@ def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
     said = dialect_of(Path(args.out).name)
     if said is Dialect.KLARTEXT:
         raise CommandError(
-            f"{args.out}: a turned profile is OmniTurn or SINUMERIK; name it .nc or .mpf", "wrong-language"
+            Message(
+                "{file}: a turning profile can be written only for OmniTurn or SINUMERIK; use a name "
+                "that ends in .nc or .mpf",
+                file=args.out,
+            ),
+            "wrong-language",
         )
     return said
 
@@ -164,10 +246,21 @@ def _view(drawing: Drawing, args: argparse.Namespace) -> View:
 
     unit = UNITS[args.unit.upper()] if args.unit else drawing.unit
     if not unit:
-        raise CommandError(f"{drawing.name} does not say its unit: say --unit mm or --unit inch", "no-unit")
+        raise CommandError(
+            Message(
+                "{drawing} does not specify its unit; use --unit mm or --unit inch", drawing=drawing.name
+            ),
+            "no-unit",
+        )
     gap = GAP if args.gap is None else args.gap
     if not 0.0 < gap <= 1.0:
-        raise CommandError(f"--gap {gap:g}: ends are joined up to 1 mm; say .001 to 1", "gap")
+        raise CommandError(
+            Message(
+                "--gap {gap} is out of range, because only gaps up to 1 mm are closed; use .001 to 1",
+                gap=f"{gap:g}",
+            ),
+            "gap",
+        )
     shift = args.shift * (1.0 if args.metric else 25.4)
     front, zero = Front(args.front.upper()), Zero(args.zero.upper())
     return View(axis_named(drawing, args.axis, args.layer), unit, front, zero, shift, gap)
@@ -178,9 +271,18 @@ def _contours(drawing: Drawing, view: View, args: argparse.Namespace) -> list[Ne
 
     found = contours(drawing, view, args.layer)
     if not found:
-        where = f"on layer {args.layer}" if args.layer else "beside its axis"
+        where = (
+            Message("on layer {layer}", layer=args.layer)
+            if args.layer
+            else ("on either side of the selected axis")
+        )
         raise CommandError(
-            f"{drawing.name} has no contour {where}: say another --layer or --axis", "no-contour"
+            Message(
+                "{drawing} has no contour {place}; use a different --layer or --axis",
+                drawing=drawing.name,
+                place=where,
+            ),
+            "no-contour",
         )
     return found
 
@@ -204,18 +306,32 @@ def _list(drawing: Drawing, view: View, found: list[Net], *, as_json: bool) -> N
     if as_json:
         sys.stdout.write(json.dumps(told) + "\n")
         return
-    unit = f"{drawing.unit:g} mm" if drawing.unit else "not specified"
+    unit = Message("{unit} mm", unit=f"{drawing.unit:g}") if drawing.unit else "not specified"
     lines = [
-        f"{drawing.name}: unit {unit}",
+        Message("{drawing}: unit {unit}", drawing=drawing.name, unit=unit),
         f"  layers: {', '.join(each or '(none)' for each in drawing.layers)}",
     ]
     lines.append(f"  axes: {', '.join(axis.name for axis in axes(drawing))}")
     for number, net in enumerate(found, 1):
         low, high, r = net.reach
-        words = f"{len(net.elements)} lines, {high - low:.4g} mm long, diameter {2 * r:.4g} mm"
-        lines.append(f"  contour {number} about {view.axis.name}: {words}")
+        words = Message(
+            "{elements_count} lines, {high} mm long, diameter {radius} mm",
+            elements_count=len(net.elements),
+            high=f"{high - low:.4g}",
+            radius=f"{2 * r:.4g}",
+        )
+        lines.append(
+            Message(
+                "  contour {number}, axis {axis}: {words}", number=number, axis=view.axis.name, words=words
+            )
+        )
     if drawing.left_out:
-        lines.append("  left out: " + ", ".join(f"{n} {kind}" for kind, n in drawing.left_out.items()))
+        lines.append(
+            Message(
+                "  ignored: {number}",
+                number=", ".join((f"{n} {kind}" for kind, n in drawing.left_out.items())),
+            )
+        )
     sys.stdout.write("\n".join(lines) + "\n")
 
 
@@ -290,7 +406,11 @@ def _write(text: str, args: argparse.Namespace) -> None:
         write_new(Path(args.out), text.encode("ascii"))
     except FileError as error:
         raise CommandError(str(error), error_code(error)) from error
-    note_change(opened_store, args.who, f"program {Path(args.out).name} made of {Path(args.file).name}")
+    note_change(
+        opened_store,
+        args.who,
+        Message("program {out} made from {file}", out=Path(args.out).name, file=Path(args.file).name),
+    )
 
 
 def _tell(made: ProfileProgram, trial: Trial, chosen: Profile, text: str, args: argparse.Namespace) -> None:

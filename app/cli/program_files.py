@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.desk.command_errors import CommandError
+from core.message import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +34,12 @@ def program_files(names: Iterable[str]) -> ProgramFiles:
         programs = {each for each in there if _is_program(each)}
         if not programs:
             raise CommandError(
-                f"{path} holds no programs{_among(len(there))}; name another folder", "no-programs"
+                Message(
+                    "{path} does not contain any programs{there_count}; use a different folder",
+                    path=path,
+                    there_count=_among(len(there)),
+                ),
+                "no-programs",
             )
         found |= programs
         others += len(there) - len(programs)
@@ -44,14 +50,12 @@ def _named(names: Iterable[str]) -> Iterator[str]:
     """They, unless one is empty, as a script's variable may be: that would be the folder one stands in."""
     for name in names:
         if not name:
-            raise CommandError(
-                "an empty name is no file; say . for the programs of this folder", "empty-name"
-            )
+            raise CommandError("the file name is empty; use . for the programs in this folder", "empty-name")
         yield name
 
 
 def _among(count: int) -> str:
-    return f", only {count} other file{'s' * (count > 1)}" if count else ""
+    return Message(", only {count} other file{value}", count=count, value="s" * (count > 1)) if count else ""
 
 
 def _by_name(path: Path) -> tuple[list[str], str]:
@@ -67,7 +71,12 @@ def _files(folder: Path) -> Iterator[Path]:
 
 def _unreadable(error: OSError) -> None:
     raise CommandError(
-        f"{error.filename} cannot be read ({error.strerror}); check its rights", "unreadable"
+        Message(
+            "{file} cannot be read ({cause}); check its permissions",
+            file=error.filename,
+            cause=error.strerror,
+        ),
+        "unreadable",
     ) from error
 
 

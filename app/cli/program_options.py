@@ -12,6 +12,7 @@ from app.desk.command_errors import CommandError
 from app.desk.standard_input import DASH, standard_input
 from core.coded_error import error_code
 from core.language.source import Dialect, dialect_of
+from core.message import Message
 
 if TYPE_CHECKING:
     from core.interpreter.job_setup import Setup
@@ -24,24 +25,30 @@ STDIN = "stdin"  # how a program that comes from there is called
 
 
 def add_program_options(parser: argparse.ArgumentParser) -> None:
-    """Machine, dialect, offsets, inputs and switches, as interfaces.md names them."""
+    """Machine, dialect, offsets, inputs and switches."""
     parser.add_argument(
         "--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)"
     )
     parser.add_argument(
-        "--dialect", choices=[str(each) for each in Dialect], help="default: by file ending, else omniturn"
+        "--dialect",
+        choices=[str(each) for each in Dialect],
+        help="program language (default: from the file extension, otherwise omniturn)",
     )
-    parser.add_argument("--offsets", metavar="FILE", help="offsets file, instead of the store's offsets")
-    parser.add_argument("--inputs", metavar="FILE", help="input states for M91 to M97")
+    parser.add_argument("--offsets", metavar="FILE", help="offsets file to use instead of the stored offsets")
+    parser.add_argument("--inputs", metavar="FILE", help="file with input states for M91 to M97")
     parser.add_argument("--optional-stop", action="store_true", help="M01 stops")
-    parser.add_argument("--block-delete", action="store_true", help="lines that begin with / are skipped")
-    parser.add_argument("--strict", action="store_true", help="what the control only tolerates is an error")
-    parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    parser.add_argument("--block-delete", action="store_true", help="skip lines that begin with /")
+    parser.add_argument(
+        "--strict", action="store_true", help="report an error for code that the control only tolerates"
+    )
+    parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
 
 def add_ideal_option(parser: argparse.ArgumentParser) -> None:
     """Times by feeds and limits of speed alone."""
-    parser.add_argument("--ideal", action="store_true", help="times without accelerations and waits")
+    parser.add_argument(
+        "--ideal", action="store_true", help="calculate times without acceleration and waiting times"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,10 +90,20 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
     from core.language.source import SourceError, load_source, source_of
 
     dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
-    for option, what in (("strict", "they have no tolerated lines"), ("inputs", "they ask no inputs")):
+    for option, what in (
+        ("strict", "programs do not contain lines that the control only tolerates"),
+        ("inputs", ("programs do not read input states")),
+    ):
         if getattr(args, option) and dialect is not Dialect.OMNITURN:
             raise CommandError(
-                f"{path}: --{option} is for OmniTurn programs alone; in {dialect} {what}", "omniturn-only"
+                Message(
+                    "{path}: --{option} is only for OmniTurn programs; {dialect} {what}",
+                    path=path,
+                    option=option,
+                    dialect=dialect,
+                    what=what,
+                ),
+                "omniturn-only",
             )
     try:
         source = (

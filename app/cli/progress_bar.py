@@ -6,6 +6,8 @@ import sys
 import time
 from types import TracebackType
 
+from core.message import Message
+
 SHOW_AFTER = 2.0  # seconds: what takes less needs no bar
 REDRAW_EVERY = 0.2
 WIDTH = 30
@@ -50,4 +52,10 @@ class Progress:
         share = done / self.total
         filled = round(share * WIDTH)
         bar = f"{'█' * filled}{'·' * (WIDTH - filled)}"
-        return f"{self.what} [{bar}] {share:4.0%} of {self.total:,.0f}"
+        return Message(
+            "{what} [{bar}] {share} of {total}",
+            what=self.what,
+            bar=bar,
+            share=f"{share:4.0%}",
+            total=f"{self.total:,.0f}",
+        )

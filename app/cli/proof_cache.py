@@ -68,7 +68,7 @@ class ProofCache:
         except OSError as error:
             self._full = True
             aside.unlink(missing_ok=True)
-            sys.stderr.write(f"turndesk: proofs are not kept in {self._folder} ({error.strerror})\n")
+            sys.stderr.write(f"turndesk: proofs cannot be stored in {self._folder} ({error.strerror})\n")
 
     def trim(self) -> None:
         """Throw the oldest away when there are too many, and what killed processes have left."""

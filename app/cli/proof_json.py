@@ -1,4 +1,4 @@
-"""A proof as JSON, with the keys and units of interfaces.md."""
+"""A proof as JSON, with the keys and units of docs/json.md."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from app.cli.figures import Json, degrees, length_of, per_minute, seconds
 from app.cli.stock_figures import stock_json
 from core.language.source import Dialect
+from core.message import named_values
 from core.tool_edges import NamedTool
 
 if TYPE_CHECKING:
@@ -19,13 +20,14 @@ _CHECKS = {"spindle-stopped": "spindle-off", "collet-open": "collet-open", "thre
 
 
 def diagnostic_json(diagnostic: Diagnostic) -> Json:
-    """One diagnostic with the keys of interfaces.md; one about a whole line stands at its first column."""
+    """One diagnostic with the keys of docs/json.md; one about a whole line stands at its first column."""
     return {
         "line": diagnostic.line,
         "column": max(diagnostic.column, 1) if diagnostic.line else 0,
         "severity": str(diagnostic.severity),
         "code": diagnostic.code,
         "message": diagnostic.message,
+        "args": named_values(diagnostic.message),
         "hint": diagnostic.hint,
         "check": diagnostic.check or _CHECKS.get(diagnostic.code),
         "n": diagnostic.n or None,
@@ -43,7 +45,7 @@ def stops_of(report: Report, *, optional_stop: bool) -> int:
 def report_json(
     file: str, report: Report, part: PartReport | None = None, *, optional_stop: bool = False
 ) -> Json:
-    """A proof with the keys and units of interfaces.md; ``stock`` is null on a mill.
+    """A proof with the keys and units of docs/json.md; ``stock`` is null on a mill.
 
     Lengths are inches for OmniTurn programs, mm for the others.
     """

@@ -18,7 +18,7 @@ from app.cli import dropped_interrupt
 Unit = TypeVar("Unit")
 Made = TypeVar("Made")
 
-KILLED = "its worker was killed twice while proving it (out of memory?)"
+KILLED = "the worker process was killed twice while proving this program (out of memory?)"
 # Imported once, in the process that all workers are forked from.
 _PRELOAD = (
     "app.cli.proof_json",

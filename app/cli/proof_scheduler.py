@@ -11,6 +11,7 @@ import sys
 from concurrent.futures import Executor
 
 from app.desk.command_errors import CommandError
+from core.message import Message
 
 _ADDRESS = re.compile(r"(?:tcp://|tls://)?(\[[0-9A-Fa-f:]+\]|[\w.-]+):(\d{1,5})")
 _ANSWER = 10.0  # s to wait for the scheduler
@@ -25,7 +26,11 @@ class Scheduler:
     def __init__(self, address: str) -> None:
         if not (found := _ADDRESS.fullmatch(address)) or int(found[2]) > 65535:
             raise CommandError(
-                f"--scheduler {address} is no HOST:PORT; write it as 192.168.1.20:8786", "scheduler-address"
+                Message(
+                    "--scheduler {address} is not valid; write HOST:PORT, such as 192.168.1.20:8786",
+                    address=address,
+                ),
+                "scheduler-address",
             )
         try:
             import distributed
@@ -40,7 +45,10 @@ class Scheduler:
             self._client = distributed.Client(address, timeout=_ANSWER)
         except OSError as error:
             raise CommandError(
-                f"--scheduler {address}: nothing answers there; start it, or correct the address",
+                Message(
+                    "--scheduler {address}: no response; start the scheduler or correct the address",
+                    address=address,
+                ),
                 "no-scheduler",
             ) from error
         if not self._client.ncores():

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from app.cli.proof_work import Proof
+from core.message import Message
 
 _SLOWEST = 3
 _HEAD = "verdict     errors  warnings      cycle s       removed  program\n"
@@ -69,9 +70,13 @@ def _number(value: object) -> float:
 def _sum(rows: Sequence[Row], others: int) -> str:
     words = Counter(verdict(proof) for _, proof in rows)
     parts = [f"{words['proved']} proved"]
-    parts += [f"{words['errors']} with errors"] if words["errors"] else []
-    parts += [f"{words['not proved']} not proved"] if words["not proved"] else []
-    parts += [f"{others} other file{'s' * (others > 1)} left out"] if others else []
+    parts += [Message("{words} with errors", words=words["errors"])] if words["errors"] else []
+    parts += [Message("{words} not proved", words=words["not proved"])] if words["not proved"] else []
+    parts += (
+        [Message("{others} other file{value} skipped", others=others, value="s" * (others > 1))]
+        if others
+        else []
+    )
     return f"{len(rows)} program{'s' * (len(rows) != 1)}: {', '.join(parts)}\n"
 
 

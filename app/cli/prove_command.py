@@ -20,6 +20,7 @@ from app.cli.program_options import (
 from app.cli.progress_bar import Progress
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from core.message import Message
 from core.tool_edges import edge_name
 
 MOST_JOBS = 256
@@ -38,38 +39,58 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser("prove", help="prove programs: errors, limits, cycle time; nothing moves")
+    parser = subparsers.add_parser(
+        "prove", help="prove programs (errors, limits, cycle time) without moving the machine"
+    )
     parser.add_argument(
-        "files", nargs="+", metavar="FILE", help="programs, and folders with programs in and below them"
+        "files", nargs="+", metavar="FILE", help="programs, or folders with programs (including subfolders)"
     )
     add_program_options(parser)
     add_ideal_option(parser)
     add_part_options(parser)
     parser.add_argument(
-        "--compare", metavar="OFFSETS", help="what another offsets file makes of part, times and findings"
+        "--compare",
+        metavar="OFFSETS",
+        help="show how another offsets file would change the part, the times and the findings",
     )
     parser.add_argument(
-        "--report", metavar="FILE", help="HTML or PDF with drawings, findings, tools, times, stops, offsets"
+        "--report",
+        metavar="FILE",
+        help="write an HTML or PDF report with drawings, findings, tools, times, stops and offsets",
     )
     parser.add_argument(
-        "--paper", choices=("a4", "letter"), help="of a PDF report (default: as the computer's settings say)"
+        "--paper",
+        choices=("a4", "letter"),
+        help="paper size of a PDF report (default: the computer's setting)",
     )
     add_folder_options(parser)
 
 
 def add_folder_options(parser: argparse.ArgumentParser) -> None:
     """How many programs are proved."""
-    parser.add_argument("--jobs", metavar="N", type=_count, help="worker processes (default: one a core)")
     parser.add_argument(
-        "--scheduler", metavar="HOST:PORT", help="prove on the workers of a dask.distributed scheduler"
+        "--jobs", metavar="N", type=_count, help="number of worker processes (default: one per core)"
     )
-    parser.add_argument("--no-cache", action="store_true", help="prove anew what was proved before")
+    parser.add_argument(
+        "--scheduler",
+        metavar="HOST:PORT",
+        help=("prove with the worker processes of a dask.distributed scheduler"),
+    )
+    parser.add_argument(
+        "--no-cache", action="store_true", help="prove all programs again, including those proved before"
+    )
 
 
 def _count(word: str) -> int:
     """A number of workers; argparse tells the sentence of what is none."""
     if not word.isdecimal() or not 1 <= int(word) <= MOST_JOBS:
-        raise argparse.ArgumentTypeError(f"{word!r} is no number of workers; 1 to {MOST_JOBS} are possible")
+        raise argparse.ArgumentTypeError(
+            Message(
+                "{word} is not a valid number of worker processes; use 1 to {most_jobs}",
+                word=f"{word!r}",
+                most_jobs=MOST_JOBS,
+            )
+        )
     return int(word)
 
 
@@ -96,19 +117,27 @@ def _for_workers(args: argparse.Namespace) -> bool:
     many = given or any(Path(name).is_dir() for name in args.files)
     if "-" in args.files and (many or len(args.files) > 1):
         raise CommandError(
-            "- (stdin) is one program, proved here: name it alone, without folders and --jobs", "stdin-alone"
+            (
+                "- reads a single program from stdin, which is proved on this computer; use - "
+                "without other files, folders and --jobs"
+            ),
+            "stdin-alone",
         )
     if args.no_cache and not many:
         raise CommandError(
-            "--no-cache is for folders and --jobs; one program is always proved anew", "no-cache"
+            "--no-cache is only for folders and --jobs; a single program is always proved again", "no-cache"
         )
     if args.keep_stock and many:
         raise CommandError(
-            "--keep-stock is for files, not for folders and --jobs; name each program", "keep-stock-of-many"
+            "--keep-stock works only with program files, not with folders and --jobs; name each program",
+            "keep-stock-of-many",
         )
     if args.jobs is not None and args.scheduler is not None:
         raise CommandError(
-            "--jobs and --scheduler exclude each other: the scheduler has its own workers",
+            (
+                "--jobs and --scheduler cannot be used together, because the scheduler has its "
+                "own worker processes"
+            ),
             "jobs-and-scheduler",
         )
     return many
@@ -214,7 +243,7 @@ def _ways(report: Report) -> str:
     ways = report.ways
     if ways.proved + ways.unproved <= 1:
         return ""
-    left = f", {ways.unproved} not" if ways.unproved else ""
+    left = Message(", {unproved} not proved", unproved=ways.unproved) if ways.unproved else ""
     low, high = ways.cycle
     return f"  {ways.proved} ways proved{left}: cycle {low:.2f} … {high:.2f} s by inputs and block delete\n"
 
@@ -233,7 +262,11 @@ def _sheet(path: Path, report: Report, part: PartReport | None) -> str:
     slow, fast = (per_minute(speed) * scale for speed in reach.feed)
     tools = " ".join(edge_name(n) for n in report.tools) or "no tool"
     count = len(report.errors)
-    verdict = f"{count} error{'s' * (count > 1)}: will not run" if count else "proved"
+    verdict = (
+        Message("{count} error{value}: the program will not run", count=count, value="s" * (count > 1))
+        if count
+        else "proved"
+    )
     return findings + (
         f"{path}: {verdict}; {report.blocks} blocks, {report.elementary} elementary, {tools}\n"
         f"  cycle {times.cycle:.2f} s = cutting {times.cutting:.2f} + rapid {times.rapid:.2f}"

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from app.desk.command_errors import CommandError
 from core.file_placing import put_in_place
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.proof_work import Proof
@@ -108,7 +109,7 @@ def report_file(args: argparse.Namespace) -> Iterator[ReportFile | None]:
     """The report of --report, None without one. What is refused is refused before anything is proved."""
     if args.report is None:
         if args.paper is not None:
-            raise CommandError("--paper is for --report FILE.pdf", "paper-is-for-pdf")
+            raise CommandError("--paper is only for --report FILE.pdf", "paper-is-for-pdf")
         yield None
         return
     path = _named(args)
@@ -132,14 +133,25 @@ def _named(args: argparse.Namespace) -> Path:
     path = Path(args.report)
     ending = path.suffix.lower()
     if ending not in _HTML | _PDF:
-        way = f"name it {path.stem}.html or {path.stem}.pdf"
-        raise CommandError(f"--report {path}: reports are HTML or PDF files; {way}", "report-ending")
+        way = Message("name the report {stem}.html or {stem2}.pdf", stem=path.stem, stem2=path.stem)
+        raise CommandError(
+            Message(
+                "--report {path}: a report must be an HTML or PDF file; {details}", path=path, details=way
+            ),
+            "report-ending",
+        )
     if args.paper is not None and ending not in _PDF:
         raise CommandError(
-            f"--paper is for PDF: a browser that prints {path.name} asks for its paper", "paper-is-for-pdf"
+            Message(
+                "--paper is only for PDF; for {path}, select the paper size when you print from the browser",
+                path=path.name,
+            ),
+            "paper-is-for-pdf",
         )
     if path.is_dir():
-        raise CommandError(f"--report {path} is a folder; name a file", "report-is-folder")
+        raise CommandError(
+            Message("--report {path} is a folder; specify a file name", path=path), "report-is-folder"
+        )
     return path
 
 
@@ -153,5 +165,10 @@ def _now() -> str:
 
 def _unwritable(path: Path, error: OSError) -> CommandError:
     return CommandError(
-        f"--report {path} cannot be written ({error.strerror}); check folder, rights and disk", "cannot-write"
+        Message(
+            "--report {path} cannot be written ({cause}); check the folder, its permissions and the disk",
+            path=path,
+            cause=error.strerror,
+        ),
+        "cannot-write",
     )

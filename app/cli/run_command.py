@@ -18,6 +18,7 @@ from app.cli.program_options import (
 )
 from app.cli.progress_bar import Progress
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from core.message import Message
 from core.tool_edges import edge_name
 
 if TYPE_CHECKING:
@@ -34,14 +35,18 @@ _OF_ALARMS = ("number", "code", "text", "cause", "remedy", "line")
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser("run", help="run a program through executor and drivers")
+    parser = subparsers.add_parser("run", help="run a program with the executor and the drivers")
     parser.add_argument("file", metavar="FILE")
-    parser.add_argument("--headless", action="store_true", help="without a screen (the screen: turndesk)")
     parser.add_argument(
-        "--realtime", action="store_true", help="at the machine's pace, not as fast as it goes"
+        "--headless", action="store_true", help="run without a screen (to open the screen, use: turndesk)"
     )
     parser.add_argument(
-        "--anew", action="store_true", help="begin at the first line although a job was interrupted"
+        "--realtime",
+        action="store_true",
+        help="run at the speed of the machine instead of as fast as possible",
+    )
+    parser.add_argument(
+        "--anew", action="store_true", help="start at the first line even if a job was interrupted"
     )
     add_program_options(parser)
     add_part_options(parser)
@@ -54,21 +59,42 @@ def run(args: argparse.Namespace) -> int:
     path = Path(args.file)
     if not args.headless:
         raise CommandError(
-            f"add --headless, or open the screen with: turndesk --program {path}", "needs-headless"
+            Message("add --headless, or open the screen with: turndesk --program {path}", path=path),
+            "needs-headless",
         )
     around = circumstances(args)
     job = make_job(read_source(path, args), around.setup)
     report = _proved(args, around, job)
     sys.stderr.write("".join(f"{d.in_one_line(str(path))}\n" for d in report.diagnostics))
     if report.errors:
-        return _refused(args, f"{path} has {len(report.errors)} errors and will not run", report)
+        return _refused(
+            args,
+            Message(
+                "{path} has {errors_count} errors and will not run",
+                path=path,
+                errors_count=len(report.errors),
+            ),
+            report,
+        )
     if report.missing_tools:
         names = ", ".join(edge_name(key) for key in report.missing_tools)
-        why = f"{path}: no offset was ever set for {names}; set it with: turndesk offsets set, or --offsets"
+        why = Message(
+            (
+                "{path}: no offset has been set for {names}; set the offset with turndesk "
+                "offsets set, or use --offsets"
+            ),
+            path=path,
+            names=names,
+        )
         return _refused(args, why, report)
     unanswered = [need for need in report.needs if need.builders_m]
     if unanswered:
-        why = f"{path} line {unanswered[0].line}: nothing on this machine answers {unanswered[0].words}"
+        why = Message(
+            "{path} line {line}: this machine does not define {unanswered}",
+            path=path,
+            line=unanswered[0].line,
+            unanswered=unanswered[0].words,
+        )
         return _refused(args, why, report)
     return _run(args, around, job, report)
 
@@ -108,7 +134,7 @@ def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Repo
     ):
         outcome = play.run(job, proof_of(job, report), optional_stop=args.optional_stop)
     if log.trouble:
-        _say(path, f"{log.trouble}; the run is not in it whole")
+        _say(path, Message("{problem}; the log of this run is incomplete", problem=log.trouble))
     if outcome.why:
         sys.stderr.write(f"turndesk: {path}: {outcome.state}: {outcome.why}\n")
     _write(args, path, outcome, report, str(log.path))
@@ -149,7 +175,7 @@ def _write_line(line: dict[str, object]) -> None:
 def _shown_place(final: dict[str, float], *, mill: bool) -> str:
     if mill:
         return "  ".join(f"{name[-1].upper()} {at:.3f}" for name, at in final.items() if name[0] in "mabc")
-    return f"X radius {final['x']:.5f}  Z {final['z']:.5f}"
+    return Message("X radius {final}  Z {final2}", final=f"{final['x']:.5f}", final2=f"{final['z']:.5f}")
 
 
 def _place(report: Report, outcome: Outcome | None) -> dict[str, float]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from app.desk.command_errors import EXIT_OK, CommandError
 from core.coded_error import error_code
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -23,14 +24,20 @@ _STDOUT = "-"
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser("scope", help="what the scope has recorded: a record, or the last minutes")
-    parser.add_argument(
-        "file", metavar="FILE", help="a record (.scope), or now.ring, before.ring or run.ring of records"
+    parser = subparsers.add_parser(
+        "scope", help=("show scope data from a saved record or from the last few minutes")
     )
     parser.add_argument(
-        "--csv", metavar="OUT", nargs="?", const=_STDOUT, help="the samples as CSV (default: to stdout)"
+        "file",
+        metavar="FILE",
+        help=(
+            "scope record file (.scope), or the file now.ring, before.ring or run.ring in the records folder"
+        ),
     )
-    parser.add_argument("--json", action="store_true", help="one object on stdout")
+    parser.add_argument(
+        "--csv", metavar="OUT", nargs="?", const=_STDOUT, help="write the samples as CSV (default: to stdout)"
+    )
+    parser.add_argument("--json", action="store_true", help="print one JSON object on stdout")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -40,7 +47,8 @@ def run(args: argparse.Namespace) -> int:
 
     if args.json and args.csv == _STDOUT:
         raise CommandError(
-            "--json needs --csv OUT: without it the samples themselves go to stdout", "json-needs-file"
+            "--json needs --csv OUT, because the samples and the JSON cannot both go to stdout",
+            "json-needs-file",
         )
     path = Path(args.file)
     try:
@@ -88,9 +96,16 @@ def _bounds(record: Record, channel: Channel) -> tuple[float, float] | tuple[Non
 
 def _text(path: Path, record: Record, out: str | None) -> str:
     began = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(record.started))
-    lines = [
-        f"{path}: {len(record.times)} samples in {_seconds(record):.3f} s from {began} on,"
-        f" {record.rate:g} a second while something moves"
+    lines: list[str] = [
+        Message(
+            "{path}: {times_count} samples in {record} s, starting at {began}; {rate} samples "
+            "per second during motion",
+            path=path,
+            times_count=len(record.times),
+            record=f"{_seconds(record):.3f}",
+            began=began,
+            rate=f"{record.rate:g}",
+        )
     ]
     lines += [f"  {name}: {words}" for name, words in record.about.items() if name != "states" and words]
     for channel in record.channels:

@@ -13,6 +13,7 @@ from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
 from core.coded_error import error_code
 from core.input_file import open_input
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -44,19 +45,23 @@ def add_parser(subparsers: SubParsers) -> None:
         "serial", help="send and receive programs over RS-232", description=_ABOUT, formatter_class=raw
     )
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    actions.add_parser("ports", help="the serial ports of this computer")
+    actions.add_parser("ports", help="list the serial ports of this computer")
     send = actions.add_parser("send", help="send a program", description=_ABOUT, formatter_class=raw)
-    send.add_argument("file", metavar="FILE", help="program; a %% around it is added where it has none")
+    send.add_argument(
+        "file",
+        metavar="FILE",
+        help="program file; %% is added before and after the program if missing",
+    )
     receive = actions.add_parser(
         "receive",
-        help="receive a program; it is stored as a new one, never started",
+        help="receive a program and save it as a new file; it is never started",
         description=_ABOUT,
         formatter_class=raw,
     )
     receive.add_argument(
         "--out",
         metavar="NAME",
-        help="file for it, which must not exist; default: its own name, with the programs",
+        help="output file, which must not exist yet (default: the program's own name, in the program folder)",
     )
     for each in (send, receive):
         _add_line(each)
@@ -66,34 +71,53 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def _add_line(parser: argparse.ArgumentParser) -> None:
     """What both directions have; not said, it is that of the machine file's [dnc]."""
-    parser.add_argument("--machine", metavar="FILE", help="machine file whose [dnc] gives the settings")
-    parser.add_argument("--port", metavar="DEVICE", help="/dev/ttyUSB0, COM3; see: turndesk serial ports")
-    parser.add_argument("--baud", type=int, metavar="RATE", help="bits per second, usually 110 to 115200")
-    parser.add_argument("--bits", type=int, choices=(7, 8), help="data bits; older controls: 7, --parity E")
-    parser.add_argument("--parity", choices=("N", "E", "O"), help="none, even or odd")
-    parser.add_argument("--stop", type=int, choices=(1, 2), help="stop bits")
+    parser.add_argument("--machine", metavar="FILE", help="machine file with the settings in [dnc]")
     parser.add_argument(
-        "--flow", choices=("xonxoff", "rtscts", "none"), help="how a side that is not ready holds the other"
+        "--port",
+        metavar="DEVICE",
+        help="serial port, such as /dev/ttyUSB0 or COM3; to list the ports: turndesk serial ports",
     )
     parser.add_argument(
-        "--wrap", choices=("%", ""), metavar="SIGN", help="line around a program: %% or '' for none"
+        "--baud", type=int, metavar="RATE", help=("baud rate in bits per second, usually 110 to 115200")
+    )
+    parser.add_argument(
+        "--bits", type=int, choices=(7, 8), help="data bits; older controls use 7 with --parity E"
+    )
+    parser.add_argument("--parity", choices=("N", "E", "O"), help="parity: none, even or odd")
+    parser.add_argument("--stop", type=int, choices=(1, 2), help="stop bits")
+    parser.add_argument(
+        "--flow",
+        choices=("xonxoff", "rtscts", "none"),
+        help="flow control, which makes the sender wait while the receiver is not ready",
+    )
+    parser.add_argument(
+        "--wrap",
+        choices=("%", ""),
+        metavar="SIGN",
+        help="line that marks the start and the end of a program: %%, or '' for no such line",
     )
     parser.add_argument(
         "--dc-codes",
         action="store_true",
         default=None,
-        help="tape codes: DC2 and DC4 around what is sent, DC1 and DC3 around what is received",
+        help="use tape codes: DC2 and DC4 around sent data, DC1 and DC3 around received data",
     )
 
 
 def _add_sending(parser: argparse.ArgumentParser) -> None:
     """What concerns only what is sent."""
-    parser.add_argument("--eol", choices=tuple(_EOL), help="line end of what is sent")
+    parser.add_argument("--eol", choices=tuple(_EOL), help="line ending to use for sent data")
     parser.add_argument(
-        "--wait", action="store_true", default=None, help="send when the other side asks for it (DC1)"
+        "--wait",
+        action="store_true",
+        default=None,
+        help="wait until the other side requests data (DC1) before sending",
     )
     parser.add_argument(
-        "--leader", type=int, metavar="COUNT", help="so many NULs before and behind what is sent"
+        "--leader",
+        type=int,
+        metavar="COUNT",
+        help="number of NUL characters to send before and after the program",
     )
 
 
@@ -135,11 +159,17 @@ def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
         said["eol"] = _EOL[args.eol]
     model = replace(model, **said)
     if not model.port:
-        raise CommandError("no port: say --port, or give the machine file a [dnc] table", "no-port")
+        raise CommandError(
+            "no serial port specified; use --port, or add a [dnc] table to the machine file", "no-port"
+        )
     if not 110 <= model.baud <= 1_000_000:
-        raise CommandError(f"--baud {model.baud}: expected 110 to 1000000", "baud")
+        raise CommandError(
+            Message(("--baud {baud} is out of range; use 110 to 1000000"), baud=model.baud), "baud"
+        )
     if not 0 <= model.leader <= 2000:
-        raise CommandError(f"--leader {model.leader}: expected 0 to 2000", "leader")
+        raise CommandError(
+            Message(("--leader {leader} is out of range; use 0 to 2000"), leader=model.leader), "leader"
+        )
     return model
 
 
@@ -162,7 +192,9 @@ def _check_readable(path: Path) -> None:
         with open_input(path) as file:
             file.read(1)
     except OSError as error:
-        raise CommandError(f"{path} cannot be read: {error.strerror}", "unreadable") from error
+        raise CommandError(
+            Message("{path} cannot be read: {cause}", path=path, cause=error.strerror), "unreadable"
+        ) from error
 
 
 def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> int:
@@ -172,12 +204,14 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: DncModel) -> 
     from core.language.source import Dialect, usual_ending
 
     if args.out and Path(args.out).exists():  # before anything is waited for: it could not be stored
-        sys.stderr.write(f"turndesk: {args.out} is there already and is never replaced; take another name\n")
+        sys.stderr.write(
+            f"turndesk: {args.out} already exists and is not overwritten; use a different name\n"
+        )
         return EXIT_ERRORS
     who = who_may(opened_store, args, Act.PROGRAMS)  # before anything is waited for
     ending = usual_ending(Dialect(machine.language))
     lines = SerialLines(proving(workshop(machine, chosen_offsets(None), pictures=False)), ending)
-    received = carry(lines.receive(settings), f"receiving from {settings.port}")
+    received = carry(lines.receive(settings), Message("receiving from {port}", port=settings.port))
     if received is None:
         return EXIT_ERRORS
     return _store(args, received, who)
@@ -195,10 +229,10 @@ def _store(args: argparse.Namespace, received: Received, who: str) -> int:
     except FileError as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return EXIT_ERRORS
-    note_change(opened_store, who, f"program {path.name} received")
-    seven = ", seven bits with even parity" if received.seven else ""
+    note_change(opened_store, who, Message("program {path} received", path=path.name))
+    seven = ", received with 7 data bits and even parity" if received.seven else ""
     lines = "1 line" if received.lines == 1 else f"{received.lines} lines"
-    sys.stdout.write(f"{path}: {lines}, whole{seven}\n  SHA-256 {received.digest}\n  {_found(received)}\n")
+    sys.stdout.write(f"{path}: {lines}, complete{seven}\n  SHA-256 {received.digest}\n  {_found(received)}\n")
     sys.stderr.write("".join(f"{text}\n" for text in received.findings))
     return EXIT_ERRORS if received.findings else EXIT_OK
 
@@ -206,8 +240,14 @@ def _store(args: argparse.Namespace, received: Received, who: str) -> int:
 def _found(received: Received) -> str:
     if received.findings:
         count = len(received.findings)
-        return f"{count} error{'s' * (count != 1)}; it is stored to be mended"
-    return f"proved without an error, cycle {received.cycle:.1f} s; nothing was started"
+        return Message(
+            "{count} error{value}; the program is saved so that you can correct it",
+            count=count,
+            value="s" * (count != 1),
+        )
+    return Message(
+        "proved without errors, cycle time {cycle} s; nothing was started", cycle=f"{received.cycle:.1f}"
+    )
 
 
 # --- a transfer on the command line: progress on stderr, Ctrl-C gives it up -----------------------------
@@ -219,8 +259,14 @@ _LOOK = 0.1  # s
 def _heard(reach: TransferProgress) -> str:
     """Why what comes is not taken for a program."""
     if reach.what == "noise":
-        return f"what comes is no text ({reach.heard}): look at --baud, --bits and --parity, and at the cable"
-    return f"text comes, but no %: {reach.heard!r}; --wrap '' takes programs without it"
+        return Message(
+            "the received data is not text ({received}); check --baud, --bits, --parity and the cable",
+            received=reach.heard,
+        )
+    return Message(
+        "text was received without %: {received}; to receive programs without %, use --wrap ''",
+        received=f"{reach.heard!r}",
+    )
 
 
 def _tell(told: str, reach: TransferProgress) -> str:

@@ -12,6 +12,7 @@ from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_OK, CommandError
 from core.access.access_table import Act
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -21,21 +22,29 @@ SHELLS = ("bash", "zsh", "fish")
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser("setup", help="copy a machine's setup; desktop entry, shell completion")
+    parser = subparsers.add_parser(
+        "setup", help="copy a machine's setup, add a desktop entry, or print a shell completion script"
+    )
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    save = actions.add_parser("save", help="store, settings, programs and machine file into one FILE")
+    save = actions.add_parser(
+        "save", help=("save the stored data, settings, programs and machine file in one FILE")
+    )
     save.add_argument("file", metavar="FILE")
-    save.add_argument("--machine", metavar="FILE", help="machine file that goes with it")
-    load = actions.add_parser("load", help="take the setup of a FILE; what is here is kept beside it")
+    save.add_argument("--machine", metavar="FILE", help="machine file to include in the saved setup")
+    load = actions.add_parser(
+        "load", help="load the setup from FILE; the replaced data is saved next to the new data"
+    )
     load.add_argument("file", metavar="FILE")
     add_as_option(load)
-    load.add_argument("--check", action="store_true", help="only look at the file, change nothing")
-    desktop = actions.add_parser("desktop", help="an entry for the desktop's menu, with icon")
+    load.add_argument("--check", action="store_true", help="check the file without changing anything")
+    desktop = actions.add_parser("desktop", help="add an entry with an icon to the desktop menu")
     desktop.add_argument(
-        "--autostart", action="store_true", help="the screen starts with the session, as a kiosk"
+        "--autostart", action="store_true", help="start the screen as a kiosk when the desktop session starts"
     )
-    desktop.add_argument("--remove", action="store_true", help="take both away again")
-    completion = actions.add_parser("completion", help="what a shell needs to complete commands by Tab")
+    desktop.add_argument("--remove", action="store_true", help="remove the menu entry and the autostart")
+    completion = actions.add_parser(
+        "completion", help="print the shell script that completes commands with the Tab key"
+    )
     completion.add_argument("shell", metavar="SHELL", choices=SHELLS, help=", ".join(SHELLS))
 
 
@@ -48,9 +57,9 @@ def _save(args: argparse.Namespace) -> int:
     from app.compose.setup_file import save_setup
 
     told = save_setup(Path(args.file), args.machine)
-    sys.stdout.write(f"{args.file} holds the store, programs: {told.programs}, {told.machine}\n")
+    sys.stdout.write(f"setup saved to {args.file}: data store, programs: {told.programs}, {told.machine}\n")
     if told.left_out:
-        sys.stdout.write(f"left out, because they are no programs: {', '.join(told.left_out)}\n")
+        sys.stdout.write(f"skipped, because they are not programs: {', '.join(told.left_out)}\n")
     return EXIT_OK
 
 
@@ -59,14 +68,20 @@ def _load(args: argparse.Namespace) -> int:
 
     if args.check:
         told = check_setup(Path(args.file))
-        sys.stdout.write(f"{args.file} is whole: the store, programs: {told.programs}, {told.machine}\n")
+        sys.stdout.write(f"{args.file} is undamaged: data store, programs: {told.programs}, {told.machine}\n")
         return EXIT_OK
     who = who_may(opened_store, args, Act.RESTORE)
     told, kept = load_setup(Path(args.file))
-    note_change(opened_store, who, f"setup taken from {args.file}; the store before is kept as {kept}")
-    beside = f"; the store that was here is kept as {kept}" if kept else ""
+    note_change(
+        opened_store,
+        who,
+        Message(
+            "setup loaded from {file}; the previous data was saved as {saved}", file=args.file, saved=kept
+        ),
+    )
+    beside = Message("; the previous data was saved as {saved}", saved=kept) if kept else ""
     sys.stdout.write(
-        f"taken from {args.file}: the store, programs: {told.programs}, {told.machine}{beside}\n"
+        f"setup loaded from {args.file}: data store, programs: {told.programs}, {told.machine}{beside}\n"
     )
     if told.placed is not None:
         sys.stdout.write(f"start with: turndesk --machine {told.placed}\n")
@@ -78,7 +93,7 @@ def _desktop(args: argparse.Namespace) -> int:
 
     if args.remove and args.autostart:
         raise CommandError(
-            "--remove takes the menu entry and the autostart away; leave --autostart out",
+            "--remove removes the menu entry and the autostart; use it without --autostart",
             "remove-and-autostart",
         )
     paths = remove() if args.remove else install(autostart=args.autostart)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from app.shapes.shape_form import COLUMNS, ShapeForm
 from core.language.source import Dialect
+from core.message import Message
 from core.nearest import nearest
 from core.shapes.number_words import plain
 from core.shapes.pieces import begun, setting_at, with_shape
@@ -60,11 +61,22 @@ def written(steps: Sequence[Step], new: Setting) -> Written:
         assert isinstance(shape, Shape)
         if shape.name != HEAD.name and not begun(lines, new.dialect):
             raise StepError(
-                [f"step {number}: a program begins with its head; put a step of the kind head first"]
+                [
+                    Message(
+                        (
+                            "step {number}: a program must begin with a head; put a step with kind = "
+                            '"head" first'
+                        ),
+                        number=number,
+                    )
+                ]
             )
         form = _form(number, step, shape, setting_at(lines, at, new.shop, new))
         lines, at = with_shape(lines, at, form.one, form.setting)
-        said += [f"step {number}, {shape.name.lower()}: {word}" for word in form.words]
+        said += [
+            Message("step {number}, {shape}: {word}", number=number, shape=shape.name.lower(), word=word)
+            for word in form.words
+        ]
     return Written(
         tuple(lines), tuple(each.name.lower() for each in shapes if isinstance(each, Shape)), tuple(said)
     )
@@ -75,13 +87,16 @@ def _shape(number: int, step: Step, dialect: Dialect) -> Shape | str:
     kinds = kinds_of(dialect)
     kind = step.get(KIND)
     if not isinstance(kind, str):
-        return f"step {number} has no kind: say one of {', '.join(kinds)}"
+        return Message("step {number} has no kind; use one of {kinds}", number=number, kinds=", ".join(kinds))
     name = " ".join(kind.lower().replace("-", " ").replace("_", " ").split())
     if name in kinds:
         return kinds[name]
     near = nearest(name, kinds)
-    return f"step {number}: kind {kind} is none; " + (
-        f"did you mean {near}?" if near else f"say one of {', '.join(kinds)}"
+    return Message(
+        "step {number}: kind {kind} does not exist; {nearest}",
+        number=number,
+        kind=kind,
+        nearest=f"did you mean {near}?" if near else f"use one of {', '.join(kinds)}",
     )
 
 
@@ -91,24 +106,28 @@ def _strange(number: int, step: Step, shapes: Sequence[Shape | str]) -> list[str
     if isinstance(shape, str):
         return []
     keys = {KIND, *keys_of(shape), *((POINTS,) if shape.contour else ())}
-    found = []
+    found: list[str] = []
     for key, value in step.items():
-        where = f"step {number}, {shape.name.lower()}"
+        where = Message("step {number}, {shape}", number=number, shape=shape.name.lower())
         if key not in keys:
             near = nearest(key, keys)
             found.append(
-                f"{where}: {key} is unknown; "
-                + (f"did you mean {near}?" if near else f"known: {', '.join(sorted(keys))}")
+                Message(
+                    "{place}: {key} is unknown; {nearest}",
+                    place=where,
+                    key=key,
+                    nearest=f"did you mean {near}?" if near else f"known: {', '.join(sorted(keys))}",
+                )
             )
         elif key != POINTS and (isinstance(value, bool) or not isinstance(value, int | float | str)):
-            found.append(f"{where}: {key} is neither a figure nor a word")
+            found.append(Message("{place}: {key} must be a number or a word", place=where, key=key))
     return found
 
 
 def _form(number: int, step: Step, shape: Shape, setting: Setting) -> ShapeForm:
     """The form with what the step says typed into it. Raises StepError with what the form refuses."""
     form = ShapeForm(shape, setting)
-    where = f"step {number}, {shape.name.lower()}"
+    where = Message("step {number}, {shape}", number=number, shape=shape.name.lower())
     for key, word in keys_of(shape).items():
         if key in step:
             known = shape.field(word)
@@ -116,7 +135,17 @@ def _form(number: int, step: Step, shape: Shape, setting: Setting) -> ShapeForm:
             said = _text(step[key])
             form.typed[word] = said.upper() if known.kind in WORDS else said
             if known.kind is Kind.CHOICE and known.choices and form.typed[word] not in known.choices:
-                raise StepError([f"{where}: {key} {said} is none of {', '.join(known.choices).lower()}"])
+                raise StepError(
+                    [
+                        Message(
+                            "{place}: {key} cannot be {text}; use one of {choices}",
+                            place=where,
+                            key=key,
+                            text=said,
+                            choices=", ".join(known.choices).lower(),
+                        )
+                    ]
+                )
     if POINTS in step:
         form.rows = _rows(where, step[POINTS])
     form.work()
@@ -128,12 +157,27 @@ def _form(number: int, step: Step, shape: Shape, setting: Setting) -> ShapeForm:
 def _rows(where: str, points: object) -> list[dict[str, str]]:
     """Points as the form has them: x, z, and chamfer c, radius r or arc a."""
     if not isinstance(points, list) or not all(isinstance(each, dict) for each in points):
-        raise StepError([f"{where}: points are a list such as [{{x = .5, z = 0}}, {{z = -1, r = .1}}]"])
+        raise StepError(
+            [
+                Message(
+                    "{place}: points must be a list, such as [{{x = .5, z = 0}}, {{z = -1, r = .1}}]",
+                    place=where,
+                )
+            ]
+        )
     for count, point in enumerate(points, 1):
         for key in point:
             if key.upper() not in COLUMNS:
                 raise StepError(
-                    [f"{where}: point {count}: {key} is unknown; known: {', '.join(COLUMNS).lower()}"]
+                    [
+                        Message(
+                            "{place}: point {count}: key {key} is unknown; use one of {columns}",
+                            place=where,
+                            count=count,
+                            key=key,
+                            columns=", ".join(COLUMNS).lower(),
+                        )
+                    ]
                 )
     return [{key.upper(): _text(value) for key, value in point.items()} for point in points]
 

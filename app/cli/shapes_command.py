@@ -15,6 +15,7 @@ from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
 from core.coded_error import error_code
 from core.language.source import Dialect, Source, dialect_of
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -45,22 +46,29 @@ def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
     parser = subparsers.add_parser(
         "shapes",
-        help="make a program of the forms that a file fills in",
+        help="make a program from the shapes that a file defines",
         description=_ABOUT,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", metavar="FORM.toml", nargs="?", help="- is stdin")
-    parser.add_argument("--list", action="store_true", help="the kinds of steps and their keys")
+    parser.add_argument(
+        "file",
+        metavar="FORM.toml",
+        nargs="?",
+        help=("file with the steps of the program; - reads the steps from stdin"),
+    )
+    parser.add_argument("--list", action="store_true", help="list the kinds of steps and their keys")
     parser.add_argument(
         "--out",
         type=out_file,
         metavar="FILE",
-        help="the program: .nc is OmniTurn, .mpf SINUMERIK (default: stdout)",
+        help="program file to write: .nc is OmniTurn, .mpf is SINUMERIK (default: stdout)",
     )
-    parser.add_argument("--tools", metavar="FILE", help="shapes of the tools, instead of the stored ones")
+    parser.add_argument(
+        "--tools", metavar="FILE", help="file with tool shapes to use instead of the stored shapes"
+    )
     parser.add_argument("--machine", metavar="FILE", help="machine file (default: the simulated lathe)")
     add_as_option(parser)
-    parser.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -72,7 +80,9 @@ def run(args: argparse.Namespace) -> int:
     if args.list:
         return _list(dialect, as_json=args.json)
     if args.file is None:
-        raise CommandError("name the file with the steps; --list says what may stand in it", "no-file")
+        raise CommandError(
+            "specify the file with the steps; --list shows what the file can contain", "no-file"
+        )
     who = _may_write(args)
     made = _written(args, machine, dialect)
     text = "\n".join(made.lines) + "\n"
@@ -88,7 +98,11 @@ def _language(out: str | None, machine: Machine) -> Dialect:
     said = Dialect(machine.language) if out is None else dialect_of(Path(out).name)
     if said is Dialect.KLARTEXT:
         raise CommandError(
-            f"{out or machine.source}: shapes are OmniTurn or SINUMERIK; name it .nc or .mpf",
+            Message(
+                "{file}: shapes can be written only for OmniTurn or SINUMERIK; use a name that ends "
+                "in .nc or .mpf",
+                file=out or machine.source,
+            ),
             "wrong-language",
         )
     return said
@@ -99,10 +113,13 @@ def _may_write(args: argparse.Namespace) -> str:
         return ""
     if Path(args.out).exists():
         raise CommandError(
-            f"{args.out} is there already and is never replaced; take another name", "file-exists"
+            Message("{file} already exists and is not overwritten; use a different name", file=args.out),
+            "file-exists",
         )
     if not Path(args.out).parent.is_dir():
-        raise CommandError(f"{args.out}: cannot be written: its folder is not there", "no-folder")
+        raise CommandError(
+            Message("{file} cannot be written: its folder does not exist", file=args.out), "no-folder"
+        )
     return who_may(opened_store, args, Act.PROGRAMS)
 
 
@@ -136,7 +153,11 @@ def _steps(path: Path) -> list[Step]:
     steps = data.get("step")
     if not isinstance(steps, list) or not steps or not all(isinstance(each, dict) for each in steps):
         raise CommandError(
-            f'{path} has no steps; each is a table [[step]] with a kind, such as kind = "head"', "no-steps"
+            Message(
+                '{path} has no steps; write each step as a table [[step]] with a kind, such as kind = "head"',
+                path=path,
+            ),
+            "no-steps",
         )
     return steps
 
@@ -156,7 +177,11 @@ def _write(args: argparse.Namespace, text: str, who: str) -> None:
         write_new(Path(args.out), text.encode("ascii"))
     except FileError as error:
         raise CommandError(str(error), error_code(error)) from error
-    note_change(opened_store, who, f"program {Path(args.out).name} made of {Path(args.file).name}")
+    note_change(
+        opened_store,
+        who,
+        Message("program {out} made from {file}", out=Path(args.out).name, file=Path(args.file).name),
+    )
 
 
 def _tell(args: argparse.Namespace, made: Written, text: str, errors: tuple[str, ...], cycle: float) -> None:

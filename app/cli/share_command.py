@@ -14,6 +14,7 @@ from app.cli.who_changes import add_as_option, note_change, who_may
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.access.access_table import Act
 from core.coded_error import error_code
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -23,22 +24,38 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser("share", help="programs shared with other desks: publish, take, compare")
+    parser = subparsers.add_parser("share", help="share programs with other controls: publish, take, compare")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    begin = actions.add_parser("begin", help="lay out the place that [sharing] names, once for all desks")
-    status = actions.add_parser("status", help="what is newer elsewhere, who has what; changes nothing here")
-    publish = actions.add_parser("publish", help="publish what is new here now, and learn what is new there")
-    publish.add_argument("--claim", action="store_true", help="go on as the desk of this name that is gone")
-    compare = actions.add_parser("compare", help="what taking a version would change, line by line")
-    take = actions.add_parser("take", help="put a version of another desk into the program folder")
-    keep = actions.add_parser("keep", help="what is here stands against what was changed elsewhere")
+    begin = actions.add_parser(
+        "begin", help="set up the shared location specified in [sharing], once for all controls"
+    )
+    status = actions.add_parser(
+        "status",
+        help=(
+            "show which programs are newer on other controls and which control has which "
+            "version, without changing anything"
+        ),
+    )
+    publish = actions.add_parser(
+        "publish", help="publish new local versions now and check for new versions on other controls"
+    )
+    publish.add_argument(
+        "--claim",
+        action="store_true",
+        help="take over the name of this control from a computer that no longer exists",
+    )
+    compare = actions.add_parser("compare", help="show line by line what a version would change")
+    take = actions.add_parser("take", help="copy a version from another control into the program folder")
+    keep = actions.add_parser("keep", help="use the local version instead of the changes made elsewhere")
     for action in (compare, take, keep):
         action.add_argument("name", metavar="PROGRAM")
     for action in (compare, take):
-        action.add_argument("--id", metavar="ID", help="its first letters, as 'status' shows them")
+        action.add_argument(
+            "--id", metavar="ID", help="first characters of the version ID, as shown by 'status'"
+        )
     for action in (begin, status, publish, compare, take, keep):
-        action.add_argument("--machine", metavar="FILE", help="machine file with [sharing]")
-        action.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+        action.add_argument("--machine", metavar="FILE", help="machine file with a [sharing] table")
+        action.add_argument("--json", action="store_true", help="print only JSON on stdout")
     for action in (begin, publish, take, keep):
         add_as_option(action)
 
@@ -55,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
         sharing = sharing_of(machine, lambda: store)
         if sharing is None:
             raise CommandError(
-                "the machine file has no [sharing]; name a folder, a git remote or a database there",
+                "the machine file has no [sharing] table; add it with a folder, a git remote or a database",
                 "no-sharing",
             )
         status = answered(sharing.place, lambda: _ACTIONS[args.action](sharing, args))
@@ -89,7 +106,11 @@ def _refusals() -> Iterator[None]:
 
 def _begin(sharing: Sharing, args: argparse.Namespace) -> int:
     sharing.place.begin()
-    _say(args, f"{sharing.place.name} is laid out for shared programs", {"place": sharing.place.name})
+    _say(
+        args,
+        Message("{place} is set up for shared programs", place=sharing.place.name),
+        {"place": sharing.place.name},
+    )
     return EXIT_OK
 
 
@@ -108,8 +129,17 @@ def _publish(sharing: Sharing, args: argparse.Namespace) -> int:
     if shared.trouble:
         raise CommandError(shared.trouble, "not-shared")
     count = sum(bool(family.here) for family in shared.families.values())
-    programs = "the one program" if count == 1 else f"all {count} programs"
-    _say(args, f"{sharing.place.name} has {programs} of {sharing.desk}", told(sharing, shared))
+    programs = "the only program" if count == 1 else Message("all {count} programs", count=count)
+    _say(
+        args,
+        Message(
+            "{place} contains {programs} from {machine}",
+            place=sharing.place.name,
+            programs=programs,
+            machine=sharing.desk,
+        ),
+        told(sharing, shared),
+    )
     return EXIT_OK
 
 
@@ -144,8 +174,10 @@ def _take(sharing: Sharing, args: argparse.Namespace) -> int:
     before = sharing.now.families[version.key].here
     name = sharing.take(version)
     _looked(sharing)
-    kept = "; what was here is kept among its versions" if before else ""
-    said = f"{name} is that of {version.desk} now{kept}"
+    kept = "; the previous program text was saved as a version" if before else ""
+    said = Message(
+        "{name} is now the version from control {machine}{saved}", name=name, machine=version.desk, saved=kept
+    )
     _say(args, said, {"taken": _of(version), "file": name})
     return EXIT_OK
 
@@ -156,8 +188,16 @@ def _keep(sharing: Sharing, args: argparse.Namespace) -> int:
     _looked(sharing)
     sharing.keep(key_of(args.name))
     shared = _looked(sharing)
-    wait = f"; it waits: {shared.trouble}" if shared.trouble else ""
-    _say(args, f"{args.name} stands as it is here{wait}", {"kept": args.name, "trouble": shared.trouble})
+    wait = (
+        Message(("; the local version is not published yet: {problem}"), problem=shared.trouble)
+        if shared.trouble
+        else ""
+    )
+    _say(
+        args,
+        Message("the local version of {name} is used{wait}", name=args.name, wait=wait),
+        {"kept": args.name, "trouble": shared.trouble},
+    )
     return EXIT_OK
 
 
@@ -186,7 +226,11 @@ def _chosen(shared: Shared, args: argparse.Namespace) -> SharedVersion:
     family = shared.families.get(key_of(args.name))
     if family is None:
         raise CommandError(
-            f"no desk shares a program {args.name}; {shared.trouble or 'see turndesk share status'}",
+            Message(
+                "no control shares a program named {name}; {problem}",
+                name=args.name,
+                problem=shared.trouble or "for details, run: turndesk share status",
+            ),
             "not-shared-program",
         )
     if args.id:
@@ -194,18 +238,40 @@ def _chosen(shared: Shared, args: argparse.Namespace) -> SharedVersion:
         if len(found) != 1:
             which = "no version" if not found else f"{len(found)} versions"
             raise CommandError(
-                f"{which} of {args.name} begin with {args.id}; see turndesk share status --json",
+                Message(
+                    "found {which} of {name} with an ID that begins with {name2}; see turndesk share "
+                    "status --json",
+                    which=which,
+                    name=args.name,
+                    name2=args.id,
+                ),
                 "no-one-version",
             )
         return found[0]
     if not family.elsewhere:
         raise CommandError(
-            f"{args.name} is nowhere newer than here; {shared.trouble or 'nothing to take'}", "nothing-newer"
+            Message(
+                "no other control has a newer version of {name}; {problem}",
+                name=args.name,
+                problem=shared.trouble or "there is nothing to copy",
+            ),
+            "nothing-newer",
         )
     if len(family.elsewhere) > 1:
-        which = ", ".join(f"{each.id[:8]} of {each.desk}" for each in family.elsewhere)
+        which = ", ".join(
+            Message("{item} from {machine}", item=each.id[:8], machine=each.desk) for each in family.elsewhere
+        )
         raise CommandError(
-            f"{args.name} has {len(family.elsewhere)} newest versions: {which}; say --id ID", "many-versions"
+            Message(
+                (
+                    "other controls have {elsewhere_count} newer versions of {name}: {which}; "
+                    "choose one with --id ID"
+                ),
+                name=args.name,
+                elsewhere_count=len(family.elsewhere),
+                which=which,
+            ),
+            "many-versions",
         )
     return family.elsewhere[0]
 

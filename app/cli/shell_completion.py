@@ -6,6 +6,8 @@ import argparse
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from core.message import Message
+
 # Names of files may hold blanks, so a line is a word. zsh reads this too.
 _BASH = """_turndesk() {{
     local IFS=$'\\n' at="" sub="" words="" files=yes i=1 word
@@ -112,10 +114,10 @@ def _fish(level: _Level) -> Iterator[str]:
     """Where it stands, then its commands, actions or choices, and each option with what it takes."""
     seen = f"__fish_seen_subcommand_from {level.command}" if level.command else "__fish_use_subcommand"
     if level.action:
-        seen += f"; and __fish_seen_subcommand_from {level.action}"
+        seen += Message("; and __fish_seen_subcommand_from {action}", action=level.action)
     elif level.command and (below := _below(level.parser)):
-        seen += f"; and not __fish_seen_subcommand_from {' '.join(below)}"
-    start = f"complete -c turndesk -n '{seen}'"
+        seen += Message("; and not __fish_seen_subcommand_from {below}", below=" ".join(below))
+    start = Message("complete -c turndesk -n '{seen}'", seen=seen)
     named = [word for word in level.words if not word.startswith("--")]
     if named:
         yield f"{start} -a '{' '.join(named)}'\n"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from app.cli.store_command import opened_store
 from app.desk.command_errors import EXIT_OK, CommandError
 from core.coded_error import error_code
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -23,23 +24,25 @@ if TYPE_CHECKING:
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
     parser = subparsers.add_parser(
-        "shift", help="report of a shift: parts, times, stops, alarms, offsets, readings"
+        "shift", help="print a shift report: parts, times, stops, alarms, offsets, readings"
     )
     parser.add_argument(
         "--back",
         type=int,
         default=0,
         metavar="N",
-        help="so many shifts ago (default: the one that is on, or ended last)",
+        help="number of shifts to go back (default: the current shift, or the last one that ended)",
     )
     parser.add_argument(
-        "--from", dest="since", metavar="TIME", help='such as "2026-11-23 06:00", by the clock on the wall'
+        "--from", dest="since", metavar="TIME", help='start time in local time, such as "2026-11-23 06:00"'
     )
     parser.add_argument("--to", dest="until", metavar="TIME")
     form = parser.add_mutually_exclusive_group()
-    form.add_argument("--report", metavar="FILE", help="write one HTML page")
-    form.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
-    parser.add_argument("--metric", action="store_true", help="lengths of the page in mm (default: inch)")
+    form.add_argument("--report", metavar="FILE", help="write the report as one HTML page")
+    form.add_argument("--json", action="store_true", help="print only JSON on stdout")
+    parser.add_argument(
+        "--metric", action="store_true", help="show lengths on the HTML page in mm (default: inches)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -47,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
     from app.quality.shift_figures import shift_figures
 
     if args.metric and not args.report:
-        raise CommandError("--metric is for the page; give --report FILE with it", "metric-needs-report")
+        raise CommandError("--metric is only for the HTML page; add --report FILE", "metric-needs-report")
     with opened_store(read_only=True) as store:
         found = shift_figures(store, _shift(store, args), datetime.now().timestamp())
     if args.report:
@@ -63,18 +66,21 @@ def _shift(store: Store, args: argparse.Namespace) -> Shift:
     from app.quality.shift_times import SETTING, between, hours_of, shift_of
 
     if (args.since is None) != (args.until is None):
-        raise CommandError("--from and --to belong together; give both", "from-and-to")
+        raise CommandError("--from and --to must be used together; specify both", "from-and-to")
     if args.since is not None:
         if args.back:
             raise CommandError(
-                "--back counts shifts, --from and --to name times; take one of them", "back-and-times"
+                "--back counts shifts, but --from and --to specify times; use one or the other",
+                "back-and-times",
             )
         try:
             return between(args.since, args.until)
         except ValueError as error:
             raise CommandError(str(error), error_code(error)) from error
     if not 0 <= args.back <= 10_000:
-        raise CommandError(f"--back {args.back}: so many shifts ago, 0 to 10000", "back")
+        raise CommandError(
+            Message("--back {back} is out of range; use 0 to 10000 shifts", back=args.back), "back"
+        )
     return shift_of(hours_of(store.setting(SETTING)), datetime.now().astimezone(), args.back)
 
 
@@ -87,7 +93,7 @@ def _write(found: ShiftFigures, path: Path, *, metric: bool) -> None:
         write_out(path, shift_html(found, "", made, metric=metric).encode("utf-8", "backslashreplace"))
     except (FileError, OSError) as error:
         raise CommandError(str(error), error_code(error)) from error
-    sys.stdout.write(f"{path} has the report: {found.parts} parts\n")
+    sys.stdout.write(f"report saved to {path}: {found.parts} parts\n")
 
 
 def _text(found: ShiftFigures) -> str:
@@ -96,9 +102,23 @@ def _text(found: ShiftFigures) -> str:
 
     lines = [title_of(found, ""), *found.notes, *(f"{name}: {words}" for name, words in facts(found))]
     for each in found.programs:
-        mean = f", {sum(each.times) / len(each.times):.1f} s in the mean" if each.times else ""
-        lines.append(f"{each.program}: {each.parts} parts{mean}")
-    lines += [f"{each.reason}: {each.times} times, {duration(each.seconds)}" for each in found.stood]
+        mean = (
+            Message(", mean cycle time {times} s", times=f"{sum(each.times) / len(each.times):.1f}")
+            if each.times
+            else ""
+        )
+        lines.append(
+            Message("{program}: {parts} parts{mean}", program=each.program, parts=each.parts, mean=mean)
+        )
+    lines += [
+        Message(
+            "{reason}: {times} times, {seconds}",
+            reason=each.reason,
+            times=each.times,
+            seconds=duration(each.seconds),
+        )
+        for each in found.stood
+    ]
     return "\n".join(lines) + "\n"
 
 

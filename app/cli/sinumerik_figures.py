@@ -20,7 +20,7 @@ _M_PER_MIN = 60.0 / 1000.0  # of mm/s
 
 
 def block_json(block: Block, source_line: str, t0: float, t1: float) -> Json:
-    """One elementary block with the keys of interfaces.md; keys that do not apply are null."""
+    """One elementary block with the keys of docs/json.md; keys that do not apply are null."""
     arc, doubled = block.kind == "arc", 2.0 if block.modal.diameter else 1.0
     feed, mode = _feed(block)
     return {

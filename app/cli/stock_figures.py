@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from app.cli.figures import MM_PER_INCH, Json, length_of
 from core.language.source import Dialect
+from core.message import Message
 
 if TYPE_CHECKING:
     from core.part.stock import Stock
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def stock_json(part: PartReport, dialect: Dialect) -> Json | None:
-    """The keys of interfaces.md; null where nobody has said a stock and nothing is cut that would tell it."""
+    """The keys of docs/json.md; null where nobody has said a stock and nothing is cut that would tell it."""
     stock, last = part.stock, part.last
     if stock is None:
         return None
@@ -43,7 +44,9 @@ def stock_lines(part: PartReport, dialect: Dialect) -> str:
         return "".join(f"  {words}\n" for words in part.assumed)
     inch = dialect is Dialect.OMNITURN
     volume, unit = _volume_of(dialect), "in³" if inch else "mm³"
-    pieces = f", {len(part.pieces)} parted off" if part.pieces else ""
+    pieces = (
+        Message((", pieces parted off: {pieces_count}"), pieces_count=len(part.pieces)) if part.pieces else ""
+    )
     return (
         f"  stock {_named(part.stock, dialect)}: {volume(part.removed):.4g} {unit}"
         f" of {volume(part.volume):.4g} cut away{pieces}\n"
@@ -56,8 +59,15 @@ def _named(stock: Stock, dialect: Dialect) -> str:
     if stock.given:
         return stock.given
     length, unit = length_of(dialect), "in" if dialect is Dialect.OMNITURN else "mm"
-    bore = f", bore {2.0 * length(stock.bore[0][1]):.3f}" if stock.bore else ""
-    return f"taken as a bar of {2.0 * length(stock.radius):.3f}{bore} {unit}, as nobody has said it"
+    bore = (
+        Message(", bore diameter {bore}", bore=f"{2.0 * length(stock.bore[0][1]):.3f}") if stock.bore else ""
+    )
+    return Message(
+        "a bar of diameter {radius}{bore} {unit}, assumed because no stock was specified",
+        radius=f"{2.0 * length(stock.radius):.3f}",
+        bore=bore,
+        unit=unit,
+    )
 
 
 def _points(profile: Profile, dialect: Dialect) -> list[list[float]]:

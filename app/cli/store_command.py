@@ -16,6 +16,7 @@ from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from app.desk.data_folder import data_folder
 from core.access.access_table import Act
 from core.coded_error import error_code
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -25,13 +26,17 @@ if TYPE_CHECKING:
 
 def add_parser(subparsers: SubParsers) -> None:
     """The subcommand with its actions."""
-    parser = subparsers.add_parser("store", help="back up, restore, export, import, verify the store")
+    parser = subparsers.add_parser("store", help="back up, restore, export, import or verify the stored data")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     for name, what, text in (
-        ("backup", "FILE", "copy the whole store to FILE, also while it is in use"),
-        ("restore", "FILE", "put a backup in the store's place; the replaced store is kept beside it"),
+        ("backup", "FILE", "copy all stored data to FILE, even while the data is in use"),
+        (
+            "restore",
+            "FILE",
+            ("replace the stored data with a backup; the replaced data is saved next to the new data"),
+        ),
         ("export", "DIR", "write programs, offsets.toml, and events, runs and measured parts as CSV"),
-        ("import", "DIR", "take programs, offsets, tools and presets of an exported folder"),
+        ("import", "DIR", "import programs, offsets, tools and presets from an exported folder"),
     ):
         action = actions.add_parser(name, help=text)
         action.add_argument("path", metavar=what)
@@ -39,9 +44,14 @@ def add_parser(subparsers: SubParsers) -> None:
             add_as_option(action)
         if name == "import":
             add_consent_options(action)
-    actions.add_parser("upgrade", help="bring the store of an older TurnDesk up to date, as the screen does")
-    verify = actions.add_parser("verify", help="look at every page, reference and program text")
-    verify.add_argument("--json", action="store_true", help="machine-readable output alone on stdout")
+    actions.add_parser(
+        "upgrade",
+        help=("upgrade the stored data of an older TurnDesk version, as the operator screen also does"),
+    )
+    verify = actions.add_parser(
+        "verify", help=("check every database page, reference and program text of the stored data")
+    )
+    verify.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -80,7 +90,7 @@ def _backup(args: argparse.Namespace) -> int:
 
     with store_refusals():
         backup.backup(data_folder(), Path(args.path))
-    sys.stdout.write(f"{args.path} holds the store of {data_folder()}\n")
+    sys.stdout.write(f"{data_folder()} was backed up to {args.path}\n")
     return EXIT_OK
 
 
@@ -90,9 +100,12 @@ def _restore(args: argparse.Namespace) -> int:
     who = who_may(opened_store, args, Act.RESTORE)
     with store_refusals():
         kept = backup.restore(data_folder(), Path(args.path))
-    note_change(opened_store, who, f"restored from {args.path}; the store before is kept as {kept}")
-    beside = f"; the replaced store is kept as {kept}" if kept else ""
-    sys.stdout.write(f"{data_folder()} is as {args.path} has it{beside}\n")
+    saved = Message("; the previous data was saved as {saved}", saved=kept) if kept else ""
+    note_change(opened_store, who, Message("restored from {path}{saved}", path=args.path, saved=saved))
+    done = Message(
+        "{folder} was restored from {path}{saved}", folder=data_folder(), path=args.path, saved=saved
+    )
+    sys.stdout.write(f"{done}\n")
     return EXIT_OK
 
 
@@ -101,7 +114,7 @@ def _export(args: argparse.Namespace) -> int:
 
     with opened_store(read_only=True) as store:
         count = store_export.export(store, Path(args.path))
-    sys.stdout.write(f"{args.path} holds programs: {count}, the offsets, the events and the runs\n")
+    sys.stdout.write(f"exported to {args.path}: programs: {count}, the offsets, the events and the runs\n")
     return EXIT_OK
 
 
@@ -116,15 +129,24 @@ def _import(args: argparse.Namespace) -> int:
     shapes = read_shape_rows(offsets_file) if offsets_file.exists() else {}
     with opened_store() as store:
         programs = store_export.program_files(folder)
-        mill, why = store_export.mill_rows(folder), f"import of {folder.name}"
+        mill, why = store_export.mill_rows(folder), Message("import from {folder}", folder=folder.name)
         named = who_changes(store, args, Act.RESTORE)
         demand_meant(store, args, {**_values_of(tools, secondary), **mill})
         who = "import" if named == COMMAND_LINE else named
         store.import_all(programs, tools, secondary, why, zero, shapes, mill, who=who).result()
-    counts = f"{len(programs)}, tool offsets: {len(tools)}, secondary offsets: {len(secondary)}"
+    counts: str = Message(
+        "{programs_count}, tool offsets: {tools_count}, secondary offsets: {secondary_count}",
+        programs_count=len(programs),
+        tools_count=len(tools),
+        secondary_count=len(secondary),
+    )
     if any(mill.values()):
-        counts += f", tools of a mill: {len(mill[Kind.MILL_TOOL])}, presets: {len(mill[Kind.PRESET])}"
-    sys.stdout.write(f"taken from {folder}: programs: {counts}\n")
+        counts += Message(
+            ", mill tools: {mill_count}, presets: {mill_count2}",
+            mill_count=len(mill[Kind.MILL_TOOL]),
+            mill_count2=len(mill[Kind.PRESET]),
+        )
+    sys.stdout.write(f"imported from {folder}: programs: {counts}\n")
     return EXIT_OK
 
 
@@ -147,9 +169,9 @@ def _upgrade(_args: argparse.Namespace) -> int:
         with opened_store():
             pass
     told = (
-        f"the store in {data_folder()} is up to date"
+        Message("the data store in {data_folder} is up to date", data_folder=data_folder())
         if there
-        else f"there is no store in {data_folder()} yet"
+        else Message("{data_folder} does not contain any stored data yet", data_folder=data_folder())
     )
     sys.stdout.write(f"{told}\n")
     return EXIT_OK
@@ -166,9 +188,10 @@ def _verify(args: argparse.Namespace) -> int:
         sys.stdout.write(json.dumps({"store": str(path), "problems": problems}) + "\n")
     elif not problems:
         sys.stdout.write(
-            f"{path} is whole\n"
+            f"{path} is undamaged\n"
             if has_store(data_folder())
-            else f"there is no store in {data_folder()} yet\n"
+            else Message(("{data_folder} does not contain any stored data yet"), data_folder=data_folder())
+            + "\n"
         )
     sys.stderr.write("".join(f"turndesk: {path}: {problem}\n" for problem in problems))
     return EXIT_ERRORS if problems else EXIT_OK

@@ -16,6 +16,7 @@ from app.cli.progress_bar import Progress
 from app.desk.command_errors import CommandError
 from core.file_placing import put_in_place
 from core.language.source import Dialect, Source
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
@@ -29,18 +30,26 @@ def _interval(text: str) -> float:
     try:
         dt = float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number of seconds") from None
+        raise argparse.ArgumentTypeError(
+            Message("{text} is not a number of seconds", text=f"{text!r}")
+        ) from None
     if not 1e-4 <= dt <= 1.0:
-        raise argparse.ArgumentTypeError(f"{text} s: an interval from .0001 to 1 second")
+        raise argparse.ArgumentTypeError(
+            Message("{text} s is out of range; use an interval from 0.0001 to 1 s", text=text)
+        )
     return dt
 
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
-    parser = subparsers.add_parser("trace", help="write the time-stamped setpoints that the drives would get")
+    parser = subparsers.add_parser(
+        "trace", help="write the time-stamped setpoints that the drives would receive"
+    )
     parser.add_argument("file", metavar="FILE")
-    parser.add_argument("--dt", type=_interval, default=0.001, metavar="S", help="interval, s (default .001)")
-    parser.add_argument("--out", type=out_file, metavar="FILE.csv", help="where to (default: stdout)")
+    parser.add_argument(
+        "--dt", type=_interval, default=0.001, metavar="S", help="sampling interval in s (default: 0.001)"
+    )
+    parser.add_argument("--out", type=out_file, metavar="FILE.csv", help="output file (default: stdout)")
     add_program_options(parser)
 
 
@@ -54,7 +63,8 @@ def run(args: argparse.Namespace) -> int:
     path = Path(args.file)
     if args.json and args.out is None:
         raise CommandError(
-            "--json needs --out FILE: without it the setpoints themselves go to stdout", "json-needs-file"
+            "--json needs --out FILE, because the setpoints and the JSON cannot both go to stdout",
+            "json-needs-file",
         )
     around = circumstances(args)
     source = read_source(path, args)
@@ -112,7 +122,9 @@ def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, sou
         if not timeline.errors:
             put_in_place(partial, out)
     except OSError as error:
-        raise CommandError(f"{out}: cannot be written: {error.strerror}", "cannot-write") from error
+        raise CommandError(
+            Message("{file} cannot be written: {cause}", file=out, cause=error.strerror), "cannot-write"
+        ) from error
     finally:  # also by Ctrl+C
         with contextlib.suppress(OSError):
             partial.unlink(missing_ok=True)

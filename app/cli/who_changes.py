@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 from app.desk.command_errors import CommandError
 from core.access.access_table import Act, Level, level_for
 from core.coded_error import error_code
+from core.message import Message
 
 if TYPE_CHECKING:
     from core.store.people import People, PersonRow
@@ -34,8 +35,8 @@ def add_as_option(parser: argparse.ArgumentParser) -> None:
         "--as",
         dest="as_name",
         metavar="NAME",
-        help="who changes it, for the history; where there are levels his PIN is asked, "
-        "and without this option that of the system's user",
+        help="user who makes the change, for the history (default: the system user); if access "
+        "levels are on, TurnDesk asks for the PIN of this user",
     )
 
 
@@ -51,13 +52,25 @@ def who_changes(store: Store, args: argparse.Namespace, *acts: Act) -> str:
     row = people.named(name)
     if row is None and (args.as_name or needed > Level.OPERATOR):
         raise CommandError(
-            f"{_needs(act)}; {name} is not among the people: {_remedy(people, needed)}", "unknown-person"
+            Message(
+                "{act}, but user {name} does not exist; {people}",
+                act=_needs(act),
+                name=name,
+                people=_remedy(people, needed),
+            ),
+            "unknown-person",
         )
     if row is None:
         return name
     if row.level < needed:
         raise CommandError(
-            f"{_needs(act)}; {row.name} is of {Level(row.level).name}: {_remedy(people, needed)}",
+            Message(
+                "{act}, but user {row} has access level {level}; {people}",
+                act=_needs(act),
+                row=row.name,
+                level=Level(row.level).name,
+                people=_remedy(people, needed),
+            ),
             "level-too-low",
         )
     _demand_pin(store, row)
@@ -65,14 +78,19 @@ def who_changes(store: Store, args: argparse.Namespace, *acts: Act) -> str:
 
 
 def _needs(act: Act) -> str:
-    return f"{act.value} may be changed from {level_for(act).name} level on"
+    return Message(
+        "{act}: access level {act2} or higher is required", act=act.value, act2=level_for(act).name
+    )
 
 
 def _remedy(people: People, needed: Level) -> str:
     able = [row.name for row in people.rows if row.level >= needed and row.has_pin]
     if not able:
-        return "nobody with a PIN has it, 'turndesk access reset' at the machine switches levels off"
-    return f"give --as one of {', '.join(able)}"
+        return (
+            "no user with a PIN has this access level; 'turndesk access reset' at the machine "
+            "turns access levels off"
+        )
+    return Message("use --as with one of these users: {able}", able=", ".join(able))
 
 
 def _demand_pin(store: Store, row: PersonRow) -> None:
@@ -82,13 +100,15 @@ def _demand_pin(store: Store, row: PersonRow) -> None:
 
     if not row.has_pin:
         remedy = _remedy(store.people(), Level.SERVICE)
-        raise CommandError(f"no PIN is stored for {row.name}; {remedy}", "no-pin")
+        raise CommandError(
+            Message("no PIN is stored for user {row}; {remedy}", row=row.name, remedy=remedy), "no-pin"
+        )
     kept = store.setting(_WRONG)
     wrong = kept if isinstance(kept, int) else 0
     if pause := wait_after(wrong):
-        sys.stderr.write(f"turndesk: {wrong} wrong PINs in a row: the next can be typed in {pause:.0f} s\n")
+        sys.stderr.write(f"turndesk: {wrong} wrong PINs in a row; try again in {pause:.0f} s\n")
         time.sleep(pause)
-    pin = asked_pin(f"PIN of {row.name}: ")
+    pin = asked_pin(Message("PIN for {row}: ", row=row.name))
     store.set_setting(_WRONG, wrong + 1).result()  # before it is looked at: who ends us then is counted too
     stored = Hashed(row.salt, row.hash)
     if is_pin(pin, stored):
@@ -97,10 +117,15 @@ def _demand_pin(store: Store, row: PersonRow) -> None:
             store.write(lambda c: keep_person(c, renewed)).result()
         store.set_setting(_WRONG, None).result()
         return
-    told = f"wrong PIN for {row.name}, {wrong + 1} in a row, on the command line"
+    told = Message(
+        ("wrong PIN for {row} entered on the command line; wrong PINs in a row: {wrong}"),
+        row=row.name,
+        wrong=wrong + 1,
+    )
     store.log_event("access", told, who=getpass.getuser()).result()
     raise CommandError(
-        f"that is not the PIN of {row.name}; nothing was changed, and it is in the log", "wrong-pin"
+        Message("wrong PIN for user {row}; nothing was changed, and the attempt was logged", row=row.name),
+        "wrong-pin",
     )
 
 
@@ -145,20 +170,26 @@ RESET = "RESET"
 def _by_service_reset(error: StoreError, acts: Collection[Act]) -> str:
     """Return the name for the log. Raise CommandError unless a restore is confirmed at the machine."""
     if Act.RESTORE not in acts:
-        raise CommandError(f"who may change this cannot be read: {error}", error_code(error)) from error
+        raise CommandError(
+            Message("the access levels that apply to this change cannot be read: {error}", error=error),
+            error_code(error),
+        ) from error
     sys.stderr.write(f"turndesk: {error}\n")
     demand_own_keyboard(
-        "The people and their PINs cannot be read. A restore takes all of them away, which is logged. "
-        f"Type {RESET} to do it: "
+        Message(
+            "The users and their PINs cannot be read. A restore deletes all of them, and this "
+            "will be logged. Type {reset} to continue: ",
+            reset=RESET,
+        )
     )
-    return f"{getpass.getuser()} (service reset at the keyboard)"
+    return Message("{user} (service reset at the keyboard)", user=getpass.getuser())
 
 
 def demand_own_keyboard(question: str) -> None:
     """Raise CommandError unless the user confirms the question at a terminal of this machine."""
     if not sys.stdin.isatty() or os.environ.get("SSH_CONNECTION"):
         raise CommandError(
-            "the service reset is typed at the machine's own keyboard, in a terminal there", "not-a-terminal"
+            "the service reset must be typed on the machine's own keyboard, in a terminal", "not-a-terminal"
         )
     sys.stdout.write(question)
     sys.stdout.flush()

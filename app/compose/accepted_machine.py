@@ -12,6 +12,7 @@ from app.desk.persistence import Persistence
 from core.executor.commands import Command, EnableDrives
 from core.machine.machine_changes import ABSENT, Change, changes
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.ports import DriverError
 
 _TEXT, _DRIVES = "text", "drives"
@@ -26,7 +27,8 @@ class Settings(Protocol):
 def key_of(machine: Machine) -> str:
     """Under which its file is kept: by its place, whatever way it was named."""
     path = Path(machine.source)
-    return f"machine file {path.resolve() if path.exists() else machine.source}"
+    place = path.resolve() if path.exists() else machine.source
+    return " ".join(("machine file", str(place)))
 
 
 def record_of(machine: Machine) -> dict[str, object]:
@@ -44,7 +46,11 @@ def differences(machine: Machine, kept: Settings) -> tuple[Change, ...] | None:
         return told
     new = _hashes(machine)  # the file is the same: what the control makes of it need not be
     return tuple(
-        Change(f"canopen.nodes.{name}, all that is written to it", str(old.get(name, ABSENT)), now)
+        Change(
+            Message("canopen.nodes.{name}, all values written to the node", name=name),
+            str(old.get(name, ABSENT)),
+            now,
+        )
         for name, now in new.items()
         if old.get(name) != now
     )
@@ -56,9 +62,13 @@ def file_changes(machine: Machine, kept: Persistence, tell: Callable[[str], None
 
     def keep() -> None:
         kept.save_setting(key_of(machine), record_of(machine))
-        said = "; ".join(str(change) for change in told or ())
-        by = f" by {kept.who()}" if kept.who() else ""
-        tell(f"machine file {machine.source} accepted{by}{': ' if said else ''}{said}")
+        what, name = "; ".join(str(change) for change in told or ()), kept.who()
+        done = Message(
+            "machine file {path} accepted by {name}" if name else "machine file {path} accepted",
+            path=machine.source,
+            name=name,
+        )
+        tell(Message("{done}: {changes}", done=done, changes=what) if what else done)
 
     if told is None:
         keep()

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from core.machine.machine_model import Axis, Machine
+from core.message import Message
 from core.ports import Clock, DriverError, MachinePorts
 from drivers.setpoint_queue import AxisFigures
 
@@ -62,7 +63,13 @@ class Backend:
 def backend_of(machine: Machine) -> Backend:
     """The backend of a machine; its libraries are loaded when it connects. Raises DriverError for no such."""
     if machine.backend not in BACKENDS:
-        raise DriverError(f"{machine.source}: there is no driver for backend {machine.backend} yet")
+        raise DriverError(
+            Message(
+                "{source}: backend {backend} does not have a driver yet",
+                source=machine.source,
+                backend=machine.backend,
+            )
+        )
     return _backend(machine.backend)
 
 

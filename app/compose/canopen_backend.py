@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from app.compose.backend_entry import Backend, axis_figures, has_station
 from core.machine.hardware_model import HomeModel
 from core.machine.machine_model import Axis, Machine
+from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_config import (
     AxisConfig,
@@ -67,14 +68,16 @@ def lacking(error: ImportError) -> str:
     """One sentence for a library that is not there."""
     name = (error.name or "").partition(".")[0]
     library = {"can": "python-can"}.get(name, name) if name in _LIBRARIES else str(error)
-    return f"backend canopen needs {library}: pip install 'turndesk[canopen]'"
+    return Message(
+        "backend canopen needs {library}; install it with: pip install 'turndesk[canopen]'", library=library
+    )
 
 
 def canopen_config(machine: Machine) -> CanopenConfig:
     """The bus's figures from the machine file's. Raises DriverError for a machine without a bus."""
     can = machine.hardware.table(CanopenTable)
     if can is None:
-        raise DriverError(f"{machine.source}: there is no [canopen] table")
+        raise DriverError(Message("{source}: the [canopen] table is missing", source=machine.source))
     folder = Path(machine.source).parent  # of EDS files, unless their path says otherwise
     found = [replace(node, eds=str(folder / node.eds) if node.eds else "") for node in can.nodes]
     nodes = {node.name: node for node in found}
@@ -138,7 +141,7 @@ def _encoder(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | Non
 def _terminal(text: str, first: str) -> CanTerminal:
     found = can_terminal(text)
     if found is None:
-        raise DriverError(f"terminal {text!r} is no address on the bus")
+        raise DriverError(Message("terminal {text} is not a valid bus address", text=f"{text!r}"))
     return replace(found, node=first) if found.node == PLAIN_MODULE else found
 
 
@@ -201,7 +204,7 @@ def _play(
 
 def _survey(machine: Machine, clock: Clock) -> Iterator[tuple[str, str, str, str]]:
     for answer in canopen_survey(machine, clock):
-        yield f"node {answer.name}", str(answer.node), answer.trouble, answer.detail
+        yield Message("node {answer}", answer=answer.name), str(answer.node), answer.trouble, answer.detail
 
 
 BACKEND = Backend("bus", driven=can_driven, played=_played, play=_play, survey=_survey)

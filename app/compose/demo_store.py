@@ -15,6 +15,7 @@ from app.desk.desk import LAST_PROGRAM
 from app.desk.screen_settings import KEY as SCREEN
 from app.offsets.offsets_file import read_rows
 from core.language.source import Dialect, dialect_of
+from core.message import Message
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import has_store
@@ -33,7 +34,11 @@ def open_demo(machine_file: str | None) -> Path:
     machine = read_machine(machine_file)
     if not played(machine) or has_inverter(machine):
         raise CommandError(
-            f"--demo is for simulated machines, and {machine.source} drives a real one", "real-machine"
+            Message(
+                "--demo is only for simulated machines, but {source} is for a real machine",
+                source=machine.source,
+            ),
+            "real-machine",
         )
     folder = data_folder() / FOLDER
     if not has_store(folder):
@@ -77,4 +82,6 @@ def _seed(folder: Path) -> None:
                     store.set_offset(Kind.MILL_TOOL, number, _WHY, values).result()
             store.set_setting(SCREEN, {"first_job": True}).result()
     except StoreError as error:
-        raise CommandError(f"the demo has no store: {error}", "no-demo-store") from error
+        raise CommandError(
+            Message("the data folder of the demo cannot be used: {error}", error=error), "no-demo-store"
+        ) from error

@@ -1,6 +1,6 @@
 """The proof of the part on the desk: what is known of it, and what each finding weighs there.
 
-Beside the proof of the program, and after it: decision 0045 says what waits for it.
+Beside the proof of the program, and after it: decision 0011 says what waits for it.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from app.desk.kept_part import NOTHING_KEPT, KeptPart
 from app.desk.latest import AbandonedError, Watch, sentence
 from app.desk.program_loading import PartProved
-from app.desk.translation import tr
 from core.language.diagnostics import Diagnostic, Severity
+from core.message import Message
 from core.proving.part_checks import is_serious
 from core.store.store_errors import StoreError
 
@@ -100,8 +100,8 @@ class PartDesk:
                 0,
                 Severity.WARNING,
                 NOT_MADE,
-                f"The part could not be proved: {sentence(error)}.",
-                "Specify another stock or other tool shapes.",
+                Message("The part could not be proved: {error}.", error=sentence(error)),
+                "Change the specified stock or the tool shapes.",
             )
             return _weighed([failed], None)
         return _weighed([*([trouble] if trouble else []), *report.findings], report)
@@ -113,8 +113,8 @@ def _unusable(why: str) -> Diagnostic:
         0,
         Severity.WARNING,
         NO_STOCK,
-        f"The specified stock cannot be used, so an assumed stock is used: {why}.",
-        "Enter it again on the PART page.",
+        Message("The specified stock cannot be used, so an assumed stock is used: {why}.", why=why),
+        "Enter the stock again on the PART page.",
     )
 
 
@@ -135,5 +135,5 @@ def _is_announced(found: Diagnostic) -> bool:
 def _in_short(found: Diagnostic) -> str:
     """What is announced; the sentence with its remedy stands in the list of findings."""
     if not found.line:
-        return tr("PART NOT PROVED AS SPECIFIED")
-    return tr("LINE {line}: {check}").format(line=found.line, check=found.check.upper())
+        return "PART NOT PROVED WITH THE SPECIFIED STOCK AND TOOLS"
+    return Message("LINE {line}: {check}", line=found.line, check=found.check.upper())

@@ -1,6 +1,6 @@
 """The generated part of ``docs/dialects.md``: languages, their code books and the shipped machines.
 
-``python -m app.compose.dialects_page docs/dialects.md`` writes it anew between its two marks.
+``python -m app.compose.dialects_page docs/dialects.md`` writes it between its two marks.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from app.compose.machine_files import shipped_machine
 from core.interpreter.dialects import NAMES, code_book
 from core.language.source import Dialect, dialect_of
 from core.machine.machine_model import Machine
+from core.message import Message
 
 BEGIN = "<!-- generated: python -m app.compose.dialects_page docs/dialects.md -->"
 END = "<!-- end of what is generated -->"
@@ -38,7 +39,7 @@ def generated() -> str:
 
 
 def with_generated(text: str) -> str:
-    """The page with its generated part made anew. Raises ValueError where it has no marks."""
+    """Return the page with its generated part written again. Raises ValueError where it has no marks."""
     before, mark, rest = text.partition(BEGIN)
     _, last, after = rest.partition(END)
     if not (mark and last):
@@ -47,19 +48,24 @@ def with_generated(text: str) -> str:
 
 
 def _languages(found: dict[str, Machine]) -> Iterator[str]:
-    yield "| language | files | codes in its book | MDI and SEARCHTO on |"
+    yield "| language | files | codes in the reference | MDI and SEARCHTO on |"
     yield "|---|---|---|---|"
     for dialect in Dialect:
         endings = " ".join(f"`{each}`" for each in _ENDINGS if dialect_of(f"a{each}") is dialect)
         book = code_book(dialect)
         count = sum(len(entries) for _, entries in book.chapters)
         speak = [name for name, machine in found.items() if machine.language == str(dialect)]
-        codes = f"[{count} in {len(book.chapters)} chapters]({_PAGES[dialect]}.md)"
+        codes = Message(
+            "[{count} in {chapters_count} chapters]({pages}.md)",
+            count=count,
+            chapters_count=len(book.chapters),
+            pages=_PAGES[dialect],
+        )
         yield f"| {NAMES[dialect]} | {endings} | {codes} | {', '.join(speak)} |"
 
 
 def _shipped(found: dict[str, Machine]) -> Iterator[str]:
-    yield "| `--machine` | kind | backend | axes |"
+    yield "| `--machine` | type | backend | axes |"
     yield "|---|---|---|---|"
     for name, machine in found.items():
         axes = " ".join(f"{axis.name}{'°' if axis.rotary else ''}" for axis in machine.axes)

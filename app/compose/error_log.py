@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 from app.desk.data_folder import data_folder
+from core.message import Message
 from core.private_files import NEW_FILE
 
 _SIZE = 1_000_000  # bytes, three files of it
@@ -64,7 +65,11 @@ class Log:
             folder.mkdir(parents=True, exist_ok=True)
             file = _File(folder / "turndesk.log", maxBytes=_SIZE, backupCount=2, encoding="utf-8")
         except OSError as error:
-            self._unmade = f"the log cannot be written: {folder}: {error.strerror or error}"
+            self._unmade = Message(
+                "the log cannot be written to {file}: {what}",
+                file=folder,
+                what=error.strerror or error,
+            )
             return None
         file.setFormatter(logging.Formatter(_FORM))
         return file
@@ -90,6 +95,13 @@ class _File(logging.handlers.RotatingFileHandler):
         """Keep why."""
         error = sys.exc_info()[1]
         what = error.strerror if isinstance(error, OSError) else error
-        self.failed, self.trouble = True, f"the log cannot be written: {self.baseFilename}: {what}"
+        self.failed, self.trouble = (
+            True,
+            Message(
+                "the log cannot be written to {file}: {what}",
+                file=self.baseFilename,
+                what=what,
+            ),
+        )
 
     failed = False

@@ -29,7 +29,7 @@ def driven(machine: Machine, clock: Clock) -> Driven:
     """What the machine file's backend and its spindle are driven by. Raises DriverError."""
     make = backend_of(machine).driven
     if make is None:
-        raise DriverError(f"{machine.source}: the feeder has no backend {machine.backend}")
+        raise DriverError(f"{machine.source}: the driver host does not support backend {machine.backend}")
     inner = make(machine, clock)
     if not has_inverter(machine):
         return inner
@@ -63,7 +63,7 @@ class FeederProcess:
         def begun() -> Link:
             self._end()
             if self._closed:
-                raise DriverError("the control ends", "feeder-gone")
+                raise DriverError("the control is shutting down", "feeder-gone")
             return cleared(self._begin())
 
         return Opening(begun)
@@ -95,7 +95,7 @@ class FeederProcess:
         ready = self._first(ours)
         if self._closed:  # while it started again
             self._end()
-            raise DriverError("the control ends", "feeder-gone")
+            raise DriverError("the control is shutting down", "feeder-gone")
         if why := fault_of(ready.head, "error", "feeder-gone"):
             self._end()
             raise DriverError(why)
@@ -124,12 +124,10 @@ class FeederProcess:
                 for message in inbox.feed(data):
                     return message
         except TimeoutError:
-            return Message({"error": "the feeder's process does not come up"}, NOTHING)
+            return Message({"error": "the driver host does not start"}, NOTHING)
         except OSError as error:  # closed while it starts
-            return Message({"error": f"the feeder's process is not heard ({error.strerror})"}, NOTHING)
-        return Message(
-            {"error": "the feeder's process has ended at its start; see its message above"}, NOTHING
-        )
+            return Message({"error": f"no response from the driver host ({error.strerror})"}, NOTHING)
+        return Message({"error": "the driver host ended during start-up; see its message above"}, NOTHING)
 
 
 def beat(machine: Machine) -> float:
@@ -140,11 +138,12 @@ def beat(machine: Machine) -> float:
 
 def without_priority(period: float, late: float) -> str:
     """What a feeder cannot promise whose trial has come so late, in words for the operator."""
-    kept = "was kept" if late <= EVENED_OUT * period else "was not kept"
+    kept = "was on time" if late <= EVENED_OUT * period else "was not on time"
     return (
-        f"{NO_PRIORITY} a SYNC each {1000 * period:g} ms cannot be relied on: in a trial of"
-        f" {TRIAL:g} s it {kept}, at most {1000 * late:.1f} ms late; the path waits for late setpoints, and"
-        ' 10 ms are an alarm. Give the feeder that priority (docs/hardware.md), or take mode = "pvt"'
+        f"{NO_PRIORITY}, a SYNC every {1000 * period:g} ms is not reliable: in a {TRIAL:g} s "
+        f"test, the SYNC {kept} (at most {1000 * late:.1f} ms late); the path waits for late "
+        "setpoints, and a delay of 10 ms causes an alarm. Give the driver host real-time "
+        'priority (docs/integrator/computer.md), or use mode = "pvt"'
     )
 
 

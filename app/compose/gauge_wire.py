@@ -11,6 +11,7 @@ from app.compose.serial_ports import open_wire
 from app.desk.translation import tr
 from app.quality.gauge_line import LineReader, Reading, reading_of
 from core.machine.gauge_table import GaugeModel
+from core.message import Message
 from core.ports import DriverError
 from drivers.serial_line import LineSettings, Wire
 
@@ -54,10 +55,13 @@ class GaugeWire:
             return tr("Not listening to the gauge. Press F5 to start.")
         silent = self._clock() - self._last
         if silent > SILENT:
-            return tr("No reading from the gauge for {minutes} min. Check its switch and cable.").format(
-                minutes=int(silent / 60.0)
+            return tr(
+                Message(
+                    "No reading from the gauge for {minutes} min. Check its switch and cable.",
+                    minutes=int(silent / 60.0),
+                )
             )
-        return tr("Listening to the gauge: {count} readings.").format(count=self._count)
+        return tr(Message("Listening to the gauge: {count} readings.", count=self._count))
 
     def turn(self) -> str:
         """Listen, or no more."""
@@ -101,7 +105,7 @@ class GaugeWire:
             wire.close()
 
     def _tell(self, error: DriverError) -> None:
-        self._heard.put(tr("GAUGE: {why}. F5: LISTEN AGAIN").format(why=error))
+        self._heard.put(tr(Message("GAUGE: {why}. F5: LISTEN AGAIN", why=error)))
 
     def _take(self, line: str) -> None:
         self._last = self._clock()
@@ -109,4 +113,4 @@ class GaugeWire:
             self._heard.put(reading_of(line))
             self._count += 1
         except ValueError as error:
-            self._heard.put(tr("GAUGE: {why}. MEASURE AGAIN").format(why=error))
+            self._heard.put(tr(Message("GAUGE: {why}. MEASURE AGAIN", why=error)))

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from app.compose.backend_entry import Backend, Connected, has_inverter
 from app.compose.inverter_backend import with_inverter
 from core.machine.machine_model import Axis, Machine
+from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig, GrblInput, GrblOutput
@@ -25,13 +26,26 @@ def grblhal_config(machine: Machine) -> GrblConfig:
     """The controller's figures from the machine file's. Raises DriverError for what it cannot be."""
     model = machine.hardware.table(GrblhalTable)
     if model is None:
-        raise DriverError(f"{machine.source}: there is no [grblhal] table")
+        raise DriverError(Message("{source}: the [grblhal] table is missing", source=machine.source))
     if model.x_mode != "G8":
-        raise DriverError(f"{machine.source}: grblhal.x_mode: expected G8; a reset would change what X means")
+        raise DriverError(
+            Message(
+                (
+                    "{source}: grblhal.x_mode must be G8, because otherwise a reset would change "
+                    "the meaning of X"
+                ),
+                source=machine.source,
+            )
+        )
     if machine.hardware.spindle_driver not in {"grblhal", "vfd"}:
         raise DriverError(
-            f"{machine.source}: spindle.driver: beside backend grblhal the controller turns the spindle"
-            " (grblhal) or an inverter does (vfd)"
+            Message(
+                (
+                    "{source}: with backend grblhal, set spindle.driver to grblhal (the controller "
+                    "drives the spindle) or vfd (an inverter drives the spindle)"
+                ),
+                source=machine.source,
+            )
         )
     return GrblConfig(
         port=model.port,
@@ -54,7 +68,13 @@ def _play(
     """A look-alike of the controller, on the TCP port of the machine file or on a new pseudo terminal."""
     address = tcp_address(grblhal_config(machine).port)
     end: TcpEnd | PtyEnd = PtyEnd() if address is None else TcpEnd(*address)
-    say(f"simulated grblHAL of {machine.name} on {end.name}; end: Ctrl-C")
+    say(
+        Message(
+            "simulated grblHAL for {machine} on {end}; press Ctrl-C to stop",
+            machine=machine.name,
+            end=end.name,
+        )
+    )
     serve(end, Firmware(RealClock()), going)
 
 

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 
 from app.desk.command_errors import CommandError
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.table_schema import MachineFileError
 from drivers.hal.boards import board_table
 from drivers.hal.boards.board_table import BoardTable
@@ -66,12 +67,22 @@ def hal_file(machine: Machine) -> HalFile:
     hal, board = machine.hardware.table(HalTable), machine.hardware.table(BoardTable)
     if hal is None or machine.backend != "hal":
         raise CommandError(
-            f'{machine.source}: machine.backend is {machine.backend}: only "hal" has a HAL file', "not-hal"
+            Message(
+                '{source}: machine.backend is {backend}, but a HAL file can be written only for "hal"',
+                source=machine.source,
+                backend=machine.backend,
+            ),
+            "not-hal",
         )
     if board is None:
         kinds = ", ".join(f'"{kind}"' for kind in board_table.KINDS)
         raise CommandError(
-            f"{machine.source}: [board] is missing: kind = {kinds} says what to write for", "no-board"
+            Message(
+                "{source}: the [board] table is missing; add it with kind = one of {kinds}",
+                source=machine.source,
+                kinds=kinds,
+            ),
+            "no-board",
         )
     if machine.hardware.spindle_driver != "hal":  # an inverter on a line of its own
         board = replace(board, spindle=replace(board.spindle, full_speed=0.0, pwm="", channel=-1))

@@ -10,6 +10,7 @@ from app.quality.tool_life_watch import ToolLifeWatch
 from core.executor.commands import BarNextPart, Command
 from core.executor.job import Proof
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.store.store_errors import StoreError
 from core.store.store_rows import Kind
 
@@ -31,7 +32,7 @@ class HeadlessLives:
         try:
             self._read(self._book)
         except StoreError as error:
-            say(f"no tool life is counted: {error}")
+            say(Message("tool life is not counted: {error}", error=error))
 
     def _read(self, book: PartsBook) -> None:
         if book.store is None:

@@ -23,6 +23,7 @@ from core.executor.interruption_watch import Note
 from core.executor.recorder import Recorder, recorded_of
 from core.executor.snapshot import Event
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.ports import DriverError
 from core.records.record_ring import LASTS
 from core.records.ring_file import RUN
@@ -116,33 +117,45 @@ def _remembered(
     Simulated slides cut nothing, and leave nothing interrupted.
     """
     if played(machine) and anew:
-        raise CommandError("--anew: a simulated run remembers no interrupted job", "nothing-interrupted")
+        raise CommandError(
+            "--anew cannot be used here, because a simulated run does not save interrupted jobs",
+            "nothing-interrupted",
+        )
     if played(machine) and not paced:
         yield None, lambda _what: None
         return
     journal = Journal.at_home()
     try:
         if journal.trouble:
-            say(f"nothing of this run would be kept: {journal.trouble}")
+            say(Message("the data of this run cannot be saved: {problem}", problem=journal.trouble))
         if played(machine):
             yield journal, lambda _what: None
             return
         if journal.left is not None:
             _demand_anew(journal.left, anew=anew)
-            journal.hear(Event(0.0, "cleared", f"{journal.left.words}; begun anew from the command line"))
+            journal.hear(
+                Event(
+                    0.0,
+                    "cleared",
+                    Message("{left}; started again from the command line", left=journal.left.words),
+                )
+            )
         yield journal, journal.note
     finally:
         lost = journal.close()
         if lost:
-            say(f"not kept, and lost by closing: {lost}")
+            say(Message("this data was not saved and was lost when TurnDesk closed: {lost}", lost=lost))
 
 
 def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:
     if not anew:
         raise CommandError(
-            f"a job was interrupted, {left.words}; {edge_name(left.tool)} may stand in the part."
-            " Go on there with the screen (SEARCHTO), or clear the tool and give --anew to begin at the first"
-            " line",
+            Message(
+                "a job was interrupted ({left}); {tool} may be in the part. Resume the job on the "
+                "screen (SEARCHTO), or move the tool clear and use --anew to start at the first line",
+                left=left.words,
+                tool=edge_name(left.tool),
+            ),
             "job-interrupted",
         )
 
@@ -157,10 +170,10 @@ def _shop_floor(
     from app.compose.shop_floor import open_shop_floor, told_to_agents
 
     def tell(why: str) -> None:
-        say(f"no shop-floor data: {why}")
+        say(Message("no data is reported to the shop floor: {why}", why=why))
 
     if told_to_agents(machine) and not paced:
-        tell("this run is faster than its time; give --realtime")
+        tell("this run is faster than real time; use --realtime")
         return lambda: None
     return open_shop_floor(machine, lambda: executor.snapshot, tell)
 
@@ -185,11 +198,11 @@ def _palms(machine: Machine, connected: Connected, say: Callable[[str], None]) -
 def _set_inputs(connected: Connected, inputs: Mapping[str, bool]) -> None:
     if inputs and connected.set_input is None:
         raise CommandError(
-            "--inputs: this machine is not simulated; its inputs are wires", "inputs-are-wires"
+            "--inputs is only for simulated machines; this machine has wired inputs", "inputs-are-wires"
         )
     try:
         for name, on in inputs.items():
             assert connected.set_input is not None
             connected.set_input(name, on)
     except DriverError as error:
-        raise CommandError(f"--inputs: {error}", "unknown-input") from error
+        raise CommandError(Message("--inputs: {error}", error=error), "unknown-input") from error

@@ -8,6 +8,7 @@ from functools import partial
 
 from app.compose.serial_ports import open_wire
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.ports import AxisSink, Clock, DriverError, FloatArray, MachinePorts, SampleSource, Unknown
 from drivers.clocks import StepClock
 from drivers.inverter.inverter_attendant import AttendantThread
@@ -15,8 +16,8 @@ from drivers.inverter.inverter_spindle import Encoder, InverterSpindle, attendan
 from drivers.inverter.inverter_table import InverterTable
 
 BY_FREQUENCY = (
-    "spindle speed is the inverter's output frequency: no encoder is connected; "
-    "slip is not seen, and no thread can be cut"
+    "no spindle encoder is connected, so the spindle speed is the inverter's output "
+    "frequency; slip is not detected, and threads cannot be cut"
 )
 
 
@@ -50,7 +51,7 @@ def _attended(
 ) -> tuple[AttendantThread, MachinePorts]:
     if isinstance(clock, StepClock):
         raise DriverError(
-            "an inverter on a line needs real time; it cannot follow a clock that is moved by hand"
+            "an inverter on a serial line works only in real time, not with a clock that is advanced manually"
         )
     table = machine.hardware.table(InverterTable)
     assert table is not None  # a rule of the machine file
@@ -61,7 +62,9 @@ def _attended(
         attended.connect()
     except DriverError as error:
         attended.close()
-        raise DriverError(f"inverter {config.family} on {line.port}: {error}") from error
+        raise DriverError(
+            Message("inverter {family} on {port}: {error}", family=config.family, port=line.port, error=error)
+        ) from error
     thread.start()
     own = ports.spindle if machine.backend != "sim" and ports.spindle.angle() is not None else None
     encoder = measures or own

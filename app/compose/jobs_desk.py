@@ -17,6 +17,7 @@ from app.jobs.jobs_watch import JobsWatch
 from app.jobs.next_job import JobProofs
 from app.quality.parts_watch import PartsWatch
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.proving.part_setting import PartSetting
 from core.store.store_rows import ToolRow
 
@@ -59,7 +60,9 @@ def _proved(
 
     path = desk.program_folders.find(program)
     if path is None:
-        raise ValueError(tr("{name} IS NOT IN THE PROGRAM LIST. F1, F6: CHECK THE LIST").format(name=program))
+        raise ValueError(
+            tr(Message("{name} IS NOT IN THE PROGRAM LIST. F1, F6: CHECK THE LIST", name=program))
+        )
     job = steps.make_job(steps.read(path), False)
     setting = of_part.setting(job, watch)[0] if machine.kind == "lathe" else PartSetting()
     return ProvedJob(setup_sheet(job.reading, job.setup, machine, setting, watch), *before(program))

@@ -18,6 +18,7 @@ from app.quality.parts_book import PartsBook
 from core.executor.interrupted_job import InterruptedJob, of_plain, plain
 from core.executor.snapshot import Event
 from core.language.source import Source
+from core.message import Message
 from core.store import backup, database, people
 from core.store.backup_verdict import Verdict, verdict
 from core.store.damaged_rows import OF_PROGRAMS
@@ -132,7 +133,9 @@ class Journal(Persistence):
     def book(self) -> OffsetBook:
         """The offsets of the store, for the screen to show and to change."""
         store = self._store
-        book = OffsetBook(store, "" if store else f"OFFSETS CANNOT BE SAVED: {self.trouble}")
+        book = OffsetBook(
+            store, "" if store else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=self.trouble)
+        )
         rows = self._rows_of_other() if store is None else None
         if rows is not None:
             book.show(rows)

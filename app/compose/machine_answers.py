@@ -16,6 +16,7 @@ from app.desk.data_folder import data_folder
 from core.machine.machine_model import Axis, Machine
 from core.machine.sharing_table import SharingTable
 from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, broker_of
+from core.message import Message
 from core.ports import Clock, DriverError, MachinePorts, StationState
 from core.sharing.sharing_errors import SharingError
 from core.table_schema import Unit, shown
@@ -96,7 +97,7 @@ def _ask_shop_floor(machine: Machine, answers: Answers) -> None:
         answers.rows.append(Row("mtconnect", at, "fault", str(error)))
         answers.trouble.append(str(error))
     else:
-        answers.rows.append(Row("mtconnect", at, "ok", f"device {model.device}"))
+        answers.rows.append(Row("mtconnect", at, "ok", Message("device {device}", device=model.device)))
 
 
 def _ask_office(machine: Machine, answers: Answers) -> None:
@@ -109,13 +110,17 @@ def _ask_office(machine: Machine, answers: Answers) -> None:
             answers.rows.append(Row("status_page", f"{page.bind}:{page.port}", "fault", str(error)))
             answers.trouble.append(str(error))
         else:
-            who = "with its token" if page.token else "this computer alone"
+            who = "access requires the token" if page.token else ("access is allowed only from this computer")
             answers.rows.append(Row("status_page", f"{page.bind}:{page.port}", "ok", who))
     if told is not None and told.mqtt:
         try:
             socket.create_connection(broker_of(told.mqtt), _BROKER_PATIENCE).close()
         except OSError as error:
-            why = f"[announce] {told.mqtt}: {error.strerror or error}; look at the broker's address and port"
+            why = Message(
+                "[announce] {mqtt}: {cause}; check the address and port of the broker",
+                mqtt=told.mqtt,
+                cause=error.strerror or error,
+            )
             answers.rows.append(Row("announce", told.mqtt, "no answer", why))
             answers.trouble.append(why)
         else:
@@ -134,7 +139,7 @@ def _ask_sharing(machine: Machine, answers: Answers) -> None:
         answers.rows.append(Row("sharing", place.name, "no answer", str(error)))
         answers.trouble.append(str(error))
     else:
-        desks = ", ".join(sorted(each.desk for each in found.desks)) or "no desk yet"
+        desks = ", ".join(sorted(each.desk for each in found.desks)) or ("no control shares programs yet")
         answers.rows.append(Row("sharing", place.name, "ok", desks))
 
 
@@ -162,7 +167,11 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
         connected.close()
     answers.rows += rows
     answers.trouble += [
-        f"{row.name}: {row.state} {row.detail}".rstrip() for row in rows if row.state in FAILED
+        Message("{row}: {state}; {detail}", row=row.name, state=row.state, detail=row.detail)
+        if row.detail
+        else Message("{row}: {state}", row=row.name, state=row.state)
+        for row in rows
+        if row.state in FAILED
     ]
 
 
@@ -185,7 +194,11 @@ def _blamed(machine: Machine) -> str:
 def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
     sample, terminals = ports.axes.sample(), _terminals(machine)
     for name, homed, at in zip(ports.axes.axes, sample.homed, sample.actual, strict=True):
-        detail = f"{'homed' if homed else 'not homed'}, at {_place(machine.axis(name), at, machine)}"
+        detail = Message(
+            "{choice}, at {name}",
+            choice="homed" if homed else "not homed",
+            name=_place(machine.axis(name), at, machine),
+        )
         yield Row(name, _node(machine, name), "fault" if sample.fault else "ok", sample.fault or detail)
     yield _spindle(machine, ports)
     station = ports.station.snapshot()
@@ -196,25 +209,39 @@ def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
         yield Row("pendant", model.device, "no answer" if away else "ok", away)
     for kind, states in (("input", ports.io.inputs()), ("output", ports.io.outputs())):
         for name, on in states.items():
-            yield Row(f"{kind} {name}", terminals.pop(f"{kind} {name}", ""), "on" if on else "off", "")
+            yield Row(
+                Message("{kind} {name}", kind=kind, name=name),
+                terminals.pop(Message("{kind} {name}", kind=kind, name=name), ""),
+                "on" if on else "off",
+                "",
+            )
     for name, terminal in terminals.items():
         if terminal == HARDWARE:
-            yield Row(name, terminal, "untold", "it cuts the power by itself: its state is not told")
+            yield Row(
+                name,
+                terminal,
+                "untold",
+                "the signal cuts power directly in hardware; its state is not reported",
+            )
             continue
-        yield Row(name, terminal, MISSING, "the machine has no such terminal")
+        yield Row(name, terminal, MISSING, "the machine does not have this terminal")
 
 
 def _spindle(machine: Machine, ports: MachinePorts) -> Row:
     fault, spindle = ports.spindle.fault(), ports.spindle
-    told = f"{spindle.speed():.0f} rpm"
+    told = Message("{speed} rpm", speed=f"{spindle.speed():.0f}")
     if isinstance(spindle, InverterSpindle):
-        told = f"{told}, {spindle.status()}"
+        told = Message("{details}, {status}", details=told, status=spindle.status())
     return Row("spindle", _node(machine, "spindle"), "fault" if fault else "ok", fault or told)
 
 
 def _hands(station: StationState) -> str:
-    spindle = f"spindle {'AUTO' if station.spindle_auto else 'OFF'} {station.spindle_pot:.0%}"
-    return f"feed pot {station.feed_pot:.0%}, {spindle}"
+    spindle = Message(
+        "spindle {choice} {spindle_pot}",
+        choice="AUTO" if station.spindle_auto else "OFF",
+        spindle_pot=f"{station.spindle_pot:.0%}",
+    )
+    return Message("feed override {feed_pot}, {spindle}", feed_pot=f"{station.feed_pot:.0%}", spindle=spindle)
 
 
 def _place(axis: Axis, at: float, machine: Machine) -> str:

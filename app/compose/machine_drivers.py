@@ -12,6 +12,7 @@ from core.machine import (
     shop_network_tables,
 )
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.table_schema import Driver, Finding, MachineFileError, written
 from drivers.canopen import canopen_table
 from drivers.grblhal import grblhal_table
@@ -58,6 +59,6 @@ def _known_checks(silenced: tuple[str, ...], source: str) -> None:
 
     wrong = [name for name in silenced if name not in CHECKS]
     if wrong:
-        expected = f"expected checks of the part: {', '.join(CHECKS)}"
+        expected = Message("the name must be one of the part checks: {checks}", checks=", ".join(CHECKS))
         found = [Finding("checks.silenced", written(name), expected) for name in wrong]
         raise MachineFileError(found, source)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from app.compose.machine_setup import read_machine
 from app.desk.command_errors import CommandError
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.compose.accepted_machine import Settings
@@ -31,5 +32,6 @@ def machine_in_use(settings: Settings) -> Machine:
         return read_machine(place if isinstance(place, str) else None)
     except CommandError as error:
         raise CommandError(
-            f"the travel of the machine in use is not known: {error}. Give --machine FILE", error.code
+            Message("the travel of the current machine is unknown: {error}. Use --machine FILE", error=error),
+            error.code,
         ) from error

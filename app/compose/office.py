@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.store.part_cycles import StopRow
 
-MISSING = "{what} wants {package}, which is not installed; install turndesk[shop]"
+MISSING = "{what} needs {package}, which is not installed; install turndesk[shop]"
 
 
 def open_office(

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from core.message import Message
 from core.ports import DriverError
 
 if TYPE_CHECKING:
@@ -104,9 +105,12 @@ def listening_at(bind: str, port: int) -> socket.socket:
 
 
 def _why(bind: str, port: int, error: OSError) -> str:
-    at = f"[status_page] {bind}:{port}"
+    at = Message("[status_page] {bind}:{port}", bind=bind, port=port)
     if error.errno == errno.EADDRINUSE:
-        return f"{at}: another program listens there; give this desk another port"
+        return Message(
+            "{position}: another program already uses this port; choose a different port for this control",
+            position=at,
+        )
     if error.errno == errno.EADDRNOTAVAIL or isinstance(error, socket.gaierror):
-        return f"{at}: this computer has no such address"
-    return f"{at}: {error.strerror or error}"
+        return Message("{position}: this computer does not have this address", position=at)
+    return Message("{position}: {cause}", position=at, cause=error.strerror or error)

@@ -32,7 +32,7 @@ def wired(machine: Machine) -> Machine:
 def open_devices(model: PendantModel, wanted: Mapping[str, Control]) -> Sequence[EventSource]:
     """The nodes of the one device that is meant. Raises DriverError with what to do."""
     if sys.platform != "linux":
-        raise DriverError("a pendant on USB is read on Linux alone; take [pendant] out of the machine file")
+        raise DriverError("a USB pendant works only on Linux; remove [pendant] from the machine file")
     devices: list[KernelDevice] = []
     with ExitStack() as opened:
         for node in chosen(model.device, model.serial, wanted, entries()):

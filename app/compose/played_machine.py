@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import StepClock
@@ -24,8 +25,8 @@ if TYPE_CHECKING:
 
 
 HELP = (
-    "start (both palms), hold, estop, release, auto on|off, feed 0…150, spindle 0…100, input NAME on|off,"
-    " jam AXIS on|off, cable on|off"
+    "start (palm buttons), hold, estop, release, auto on|off, feed 0…150, spindle 0…100, "
+    "input NAME on|off, jam AXIS on|off, cable on|off"
 )
 _CHUNK = 4096
 
@@ -61,10 +62,10 @@ def obey(line: str, peers: CanopenDevices) -> str:
         act = _ACTS[name]
         act(peers, *values)
     except (KeyError, TypeError, ValueError):
-        return f"{line}: not understood; known: {HELP}"
+        return Message("{line}: unknown command; use {help}", line=line, help=HELP)
     except DriverError as error:
-        return f"{line}: {error}"
-    return f"{line}: done"
+        return Message("{line}: {error}", line=line, error=error)
+    return Message("{line}: done", line=line)
 
 
 def _hold(peers: CanopenDevices) -> None:
@@ -86,7 +87,13 @@ def _hand(act: Callable[[PlantHands, str], None]) -> Callable[[CanopenDevices, s
 
 def _jam(peers: CanopenDevices, axis: str, word: str) -> None:
     if axis not in peers.plant.drives:
-        raise DriverError(f"no drive is called {axis}: {', '.join(peers.plant.drives)}")
+        raise DriverError(
+            Message(
+                "drive {axis} does not exist; use one of {drives}",
+                axis=axis,
+                drives=", ".join(peers.plant.drives),
+            )
+        )
     peers.machine.jam(axis, _on(word))
 
 
@@ -123,14 +130,22 @@ def play_peers(
     bus = can.bus
     if not bus.own_process:
         raise DriverError(
-            "interface virtual lives within one process, which plays its drives itself; take udp_multicast"
+            "interface virtual works only within one process, which simulates the drives itself; "
+            "use udp_multicast"
         )
     clock, zero, epoch = StepClock(), time.monotonic(), time.time()
     peers = make(machine, clock)
     keep_memory()
     real_time(PRIORITY - 10)  # drives are punctual; where this is refused the feeder has said so already
     peers.arrival = lambda stamp: stamp - epoch
-    say(f"simulated drives of {machine.name} on {bus.interface} {bus.channel}; end: Ctrl-C")
+    say(
+        Message(
+            "simulated drives for {machine} on {interface} {channel}; press Ctrl-C to stop",
+            machine=machine.name,
+            interface=bus.interface,
+            channel=bus.channel,
+        )
+    )
     try:
         while going():
             while (late := time.monotonic() - zero - clock.now()) > _STEP:

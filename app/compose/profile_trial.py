@@ -14,6 +14,7 @@ from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.part.stock_spec import StockSpec
 from core.part.tool_shape import ToolShape
 from core.proving.part_proof import prove_with_part
@@ -71,4 +72,4 @@ def tried(
 
 
 def _said(found: Diagnostic) -> str:
-    return f"LINE {found.line}: {found.text} {found.hint}".strip()
+    return Message("LINE {line}: {value} {hint}", line=found.line, value=found.text, hint=found.hint).strip()

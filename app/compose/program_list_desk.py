@@ -12,6 +12,7 @@ from app.programs.folder_chooser import FolderChooser
 from app.programs.import_export import ImportExport
 from app.programs.preview import DrawThumbnail, Preview
 from app.programs.program_list import ProgramList
+from core.message import Message
 
 
 def program_list(
@@ -23,7 +24,11 @@ def program_list(
         job = workshop.make_job(workshop.read(path), False)
         proved = workshop.prove(job, lambda _count: None)
         errors = proved.proof.errors
-        result = f"{len(errors)} ERRORS: {errors[0]}" if errors else "PROVED"
+        result = (
+            Message("{errors_count} ERRORS: {errors}", errors_count=len(errors), errors=errors[0])
+            if errors
+            else "PROVED"
+        )
         planned = None if errors else proved.proof.cycle_time
         persistence.program_proved(path.name, result, planned, job.source.text)
         return errors[0] if errors else ""

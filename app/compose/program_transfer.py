@@ -13,6 +13,7 @@ from app.transfer.line_transfer import Received
 from core.input_file import input_bytes
 from core.language.source import LARGEST_FILE, Source, SourceError, load_source
 from core.machine.serial_table import DncModel
+from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
 from drivers.serial_line import LineSettings
@@ -80,7 +81,9 @@ class SendingFile(_Carried):
         try:
             text = input_bytes(self._path, LARGEST_FILE)
         except OSError as error:
-            raise FileError(f"{self._path.name} CANNOT BE READ: {error.strerror}") from error
+            raise FileError(
+                Message("{path} CANNOT BE READ: {cause}", path=self._path.name, cause=error.strerror)
+            ) from error
         data = outgoing(text, self._settings)
         wire = open_wire(self._settings.sending)
         inner = Sending(wire, self._clock, self._settings, data)
@@ -142,4 +145,4 @@ def _read(text: bytes, name: str) -> Source:
         try:
             return load_source(path)
         except SourceError as error:
-            raise DriverError(f"what came is no program: {error}") from error
+            raise DriverError(Message("the received data is not a program: {error}", error=error)) from error

@@ -13,6 +13,7 @@ from typing import NamedTuple, TextIO
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from core.executor.snapshot import Event
+from core.message import Message
 from core.private_files import NEW_FILE
 
 MOST = 500  # files of runs and failures
@@ -49,7 +50,8 @@ class EventLog:
             file = path.open("w", encoding="utf-8")
         except OSError as error:
             raise CommandError(
-                f"{path}: the event log cannot be written: {error.strerror}", "cannot-write"
+                Message("{path}: the event log cannot be written: {cause}", path=path, cause=error.strerror),
+                "cannot-write",
             ) from error
         forget_oldest(folder, path)
         log = cls(path, file)
@@ -69,7 +71,9 @@ class EventLog:
         try:
             write()
         except OSError as error:
-            self.trouble = f"{self.path}: the event log cannot be written: {error.strerror}"
+            self.trouble = Message(
+                "{path}: the event log cannot be written: {cause}", path=self.path, cause=error.strerror
+            )
 
 
 def forget_oldest(folder: Path, newest: Path) -> None:

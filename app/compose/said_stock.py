@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from app.compose.known_part import with_kept_clamping
 from app.desk.kept_part import NOTHING_KEPT, KeptPart
 from core.input_file import MB, input_text
+from core.message import Message
 from core.part.stock_spec import StockError, profile_stock, stock_spec
 
 if TYPE_CHECKING:
@@ -52,10 +53,20 @@ def said_stock(text: str, around: ProgramBefore) -> Stock | StockSpec:
         points = input_text(path, _LARGEST)
     except OSError as error:
         raise StockError(
-            f"{path} cannot be read ({error.strerror}); check name and rights", "unreadable"
+            Message(
+                "{path} cannot be read ({cause}); check the name and the permissions",
+                path=path,
+                cause=error.strerror,
+            ),
+            "unreadable",
         ) from error
     except UnicodeDecodeError as error:
-        raise StockError(f"{path} is no text; a profile is a CSV file of z, r", "not-text") from error
+        raise StockError(
+            Message(
+                ("{path} is not a text file; a profile must be a CSV file with the columns z, r"), path=path
+            ),
+            "not-text",
+        ) from error
     profile_stock(spec.given, points, 1.0, spec.allowance)  # refuses what is wrong in it
     return replace(spec, points=points)
 
@@ -69,8 +80,16 @@ def _left_by(path: Path, around: ProgramBefore, spec: StockSpec) -> Stock:
     setting = _first_setting(source.name, spec, around)
     report, part = prove_with_part(source, around.setup, around.machine, setting, around.go_on)
     if report.errors or part is None or part.last is None:
-        first = f": {report.errors[0].text}" if report.errors else ""
-        raise StockError(f"{spec.given}: {path} leaves no part{first}", "no-part-left")
+        first = Message(": {errors}", errors=report.errors[0].text) if report.errors else ""
+        raise StockError(
+            Message(
+                "{given}: program {path} does not produce a part{first}",
+                given=spec.given,
+                path=path,
+                first=first,
+            ),
+            "no-part-left",
+        )
     outside = tuple((z + spec.allowance, r) for z, r in reversed(part.last.outside))
     bore = tuple((z + spec.allowance, r) for z, r in reversed(part.last.bore or ()))
     return Stock(spec.given, outside, bore)
@@ -83,5 +102,12 @@ def _first_setting(name: str, spec: StockSpec, around: ProgramBefore) -> PartSet
     if not kept.stock:
         return setting
     if name in around.behind:
-        raise StockError(f"{spec.given}: {name} would begin with what it leaves itself", "stock-circle")
+        raise StockError(
+            Message(
+                "{given}: program {name} would use its own finished part as stock",
+                given=spec.given,
+                name=name,
+            ),
+            "stock-circle",
+        )
     return replace(setting, stock=said_stock(kept.stock, around._replace(behind=(*around.behind, name))))

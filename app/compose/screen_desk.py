@@ -62,6 +62,7 @@ from core.interpreter.modal_state import Modal
 from core.language.source import Dialect, usual_ending
 from core.machine.backup_table import BackupTable
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.ports import Clock, DriverError
 from core.store.backup import problems as backup_problems
 from core.store.store_errors import StoreError
@@ -144,7 +145,7 @@ def _close_store(journal: Journal) -> None:
 
 def _thread_ended(desk: Desk, journal: Journal, name: str) -> None:
     """On the watchdog's thread: the machine goes on, but what that thread did is not done any more."""
-    text = tr("{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK").format(what=tr(SUPERVISED[name]))
+    text = tr(Message("{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK", what=tr(SUPERVISED[name])))
     desk.say(text)
     journal.hear(Event(desk.snapshot().t, "warning", text))
 
@@ -156,7 +157,7 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> list[Callab
     """
 
     def tell(why: str) -> None:
-        desk.say(tr("NO SHOP-FLOOR DATA: {why}").format(why=why))
+        desk.say(tr(Message("NO SHOP-FLOOR DATA: {why}", why=why)))
         journal.hear(Event(executor.snapshot.t, "warning", why))
 
     def snapshot() -> Snapshot:
@@ -180,7 +181,7 @@ def _daily_backup(desk: Desk, machine: Machine, journal: Journal) -> Callable[[]
     """Begin to look once in a while whether one is due; what is in the way is said and logged."""
 
     def tell(why: str) -> None:
-        text = tr("NO DAILY BACKUP: {why}").format(why=why)
+        text = tr(Message("NO DAILY BACKUP: {why}", why=why))
         desk.say(text)
         journal.hear(Event(desk.snapshot().t, "warning", text))
 
@@ -191,7 +192,7 @@ def _daily_backup(desk: Desk, machine: Machine, journal: Journal) -> Callable[[]
         text = tr(
             "DAILY BACKUPS: {folder} IS ON THE SAME DISK AS THE DATA. CHECK THAT THE BACKUP DISK IS MOUNTED"
         )
-        journal.hear(Event(desk.snapshot().t, "warning", text.format(folder=folder)))
+        journal.hear(Event(desk.snapshot().t, "warning", tr(Message(text, folder=folder))))
 
     table = machine.hardware.table(BackupTable) or BackupTable()
     folder = Path(table.folder) if table.folder else data_folder() / BACKUPS
@@ -235,14 +236,17 @@ def desk_and_executor(
         desk.log.recall(_stops(journal))
         journal.when_late(partial(_came_late, desk, journal))
     desk.shut = connected.close
-    for warning in (*connected.ports.warnings, *(f"machine file: {each}" for each in desk.changes.changes)):
+    for warning in (
+        *connected.ports.warnings,
+        *(Message("machine file: {item}", item=each) for each in desk.changes.changes),
+    ):
         events.say("warning", warning)
     if journal is not None:
         _tell_damage(desk, journal, partial(events.say, "warning"))
     if recorder.trouble:
         events.say("warning", recorder.trouble)
     if any(each.startswith(NO_PRIORITY) for each in connected.ports.warnings):
-        desk.say(tr("NO REAL-TIME PRIORITY: A SYNC 10 MS LATE STOPS THE AXES"))
+        desk.say(tr("NO REAL-TIME PRIORITY: AXES STOP IF THE COMPUTER IS 10 MS LATE"))
     if desk.changes.barred:
         desk.say(desk.changes.barred)
     return desk, executor
@@ -259,7 +263,7 @@ def _tell_damage(desk: Desk, journal: Journal, log: Callable[[str], None]) -> No
     """What was not as it was saved goes to the log and to the prompt line."""
     for damage in journal.damage:
         log(damage)
-        desk.say(tr("CHECK: {what}").format(what=damage))
+        desk.say(tr(Message("CHECK: {what}", what=damage)))
 
 
 class _Events:
@@ -312,7 +316,7 @@ def _desk(
         lathe=machine,
         set_input=connected.set_input,
         one_hand=played(machine) and not has_inverter(machine),
-        machine=f"{machine.name} · {_drives(machine)}",
+        machine=Message("{machine} · {machine2}", machine=machine.name, machine2=_drives(machine)),
         changes=changed,
         book=book_of(offsets, journal),
     )

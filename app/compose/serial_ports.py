@@ -5,7 +5,7 @@ from __future__ import annotations
 from core.ports import DriverError
 from drivers.serial_line import FlowWire, LineSettings
 
-MISSING = "serial lines need pyserial: pip install pyserial"
+MISSING = "serial ports need pyserial; install it with: pip install pyserial"
 
 
 def open_wire(settings: LineSettings, *, watch: bool = False) -> FlowWire:

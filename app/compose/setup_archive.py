@@ -20,6 +20,7 @@ from core.coded_error import CodedError, error_code
 from core.drawings.drawing_file import is_drawing
 from core.input_file import TooLargeError, failures_as, input_bytes, open_input
 from core.language.source import SourceError, source_of
+from core.message import Message
 from core.store import backup
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
@@ -52,18 +53,41 @@ def unpack(source: Path, folder: Path) -> list[str]:
     _check_store(source, folder / STORE)
     for name in names:
         if (why := problem(name, folder / name)) is not None:
-            raise CommandError(f"{source} holds {name}: {why}", error_code(why))
+            raise CommandError(
+                Message("{source} contains {name}: {error}", source=source, name=name, error=why),
+                error_code(why),
+            )
     return names
 
 
 def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
     if isinstance(error, TooLargeError):
-        return CommandError(f"{source} is no setup file: {error.strerror}; look at its name", "too-large")
+        return CommandError(
+            Message(
+                "{source} is not a setup file: {cause}; check the name",
+                source=source,
+                cause=error.strerror,
+            ),
+            "too-large",
+        )
     if isinstance(error, OSError) and error.errno in NO_ROOM:
-        return CommandError(f"{folder.parent} has no room to unpack {source}; make room there", "disk-full")
+        return CommandError(
+            Message(
+                "not enough disk space in {parent} to unpack {source}; free some space",
+                parent=folder.parent,
+                source=source,
+            ),
+            "disk-full",
+        )
     if isinstance(error, OSError):
-        return CommandError(f"{source} cannot be read: {error.strerror or error}", "unreadable")
-    return CommandError(f"{source} is no setup file that can be read: {error}", "damaged-setup")
+        return CommandError(
+            Message("{path} cannot be read: {cause}", path=source, cause=error.strerror or error),
+            "unreadable",
+        )
+    return CommandError(
+        Message("{source} is not a readable setup file: {error}", source=source, error=error),
+        "damaged-setup",
+    )
 
 
 def problem(name: str, path: Path) -> CodedError | None:
@@ -102,7 +126,12 @@ class _Unpacking:
         for name, expected in hashes.items():
             if self._take(name) != expected:
                 raise CommandError(
-                    f"{self._source}: {name} is not what was saved; copy the file again", "damaged-member"
+                    Message(
+                        "{source}: {name} differs from the file that was saved; copy the setup file again",
+                        source=self._source,
+                        name=name,
+                    ),
+                    "damaged-member",
                 )
         return list(hashes)
 
@@ -114,16 +143,21 @@ class _Unpacking:
                     raise _no_place()
                 _check_place(name)
             except CodedError as error:
-                raise CommandError(f"{self._source} holds {name}: {error}", error_code(error)) from error
+                raise CommandError(
+                    Message("{source} contains {name}: {error}", source=self._source, name=name, error=error),
+                    error_code(error),
+                ) from error
         machines = [Path(name) for name in names if name.startswith(f"{MACHINE}/")]
         if len({each.stem for each in machines}) > 1 or sum(map(is_machine_file, machines)) not in {0, 1}:
-            raise CommandError(f"{self._source} holds more than one machine", "foreign-member")
+            raise CommandError(
+                Message("{source} contains more than one machine", source=self._source), "foreign-member"
+            )
 
     def _take(self, name: str) -> str:
         """Unpack one member; return the SHA-256 of its bytes."""
         info = self._file.getinfo(name)
         if info.compress_type not in {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
-            raise NotImplementedError(f"{name} is packed by another method")
+            raise NotImplementedError(Message("{name} is compressed with an unsupported method", name=name))
         target, digest, size = self._folder / name, hashlib.sha256(), 0
         target.parent.mkdir(parents=True, exist_ok=True)
         with self._file.open(info) as packed, target.open("wb") as plain:
@@ -132,7 +166,11 @@ class _Unpacking:
                 self._bytes += len(data)
                 if size > MOST_BYTES[name.partition("/")[0]] or self._bytes > MOST_BYTES_OF_ALL:
                     raise CommandError(
-                        f"{self._source} holds {name}, which is larger than a setup can be",
+                        Message(
+                            "{source} contains {name}, which is too large for a setup",
+                            source=self._source,
+                            name=name,
+                        ),
                         "member-too-large",
                     )
                 digest.update(data)
@@ -147,10 +185,15 @@ def _check_directory(source: Path, raw: BinaryIO) -> None:
     tail = raw.read()
     end, end_64 = tail[-_END:], tail[:-_END]
     if not end.startswith(b"PK\5\6"):
-        raise zipfile.BadZipFile("its end is missing")
+        raise zipfile.BadZipFile("the end of the file is missing")
     (members, directory) = struct.unpack("<10xHL6x", end)
     if members > MOST_MEMBERS or directory > _MOST_BYTES_OF_DIRECTORY or end_64.startswith(b"PK\6\7"):
-        raise CommandError(f"{source} holds more than {MOST_MEMBERS} files", "too-many-members")
+        raise CommandError(
+            Message(
+                "{source} contains more than {most_members} files", source=source, most_members=MOST_MEMBERS
+            ),
+            "too-many-members",
+        )
 
 
 def _hashes(source: Path, told: object) -> dict[str, str]:
@@ -158,18 +201,32 @@ def _hashes(source: Path, told: object) -> dict[str, str]:
     form = told.get("format") if isinstance(told, dict) else None
     if isinstance(form, str) and form.startswith(_KIND) and form != FORMAT:
         raise CommandError(
-            f"{source} was saved by another TurnDesk ({form}, here {FORMAT}); use that one", "other-version"
+            Message(
+                (
+                    "{source} was saved by another version of TurnDesk (format {form}; this "
+                    "version uses {format}); use that version"
+                ),
+                source=source,
+                form=form,
+                format=FORMAT,
+            ),
+            "other-version",
         )
     hashes = told.get("sha256") if isinstance(told, dict) else None
     if form != FORMAT or not isinstance(hashes, dict) or STORE not in hashes:
         raise CommandError(
-            f"{source} is no setup of this kind ({FORMAT}); make it anew with 'setup save'", "not-a-setup"
+            Message(
+                "{source} is not a setup of this format ({format}); save the setup again with 'setup save'",
+                source=source,
+                format=FORMAT,
+            ),
+            "not-a-setup",
         )
     return {str(name): str(value) for name, value in hashes.items()}
 
 
 def _no_place() -> CommandError:
-    return CommandError("it has no place in a setup", "foreign-member")
+    return CommandError("this file does not belong in a setup", "foreign-member")
 
 
 def _check_place(name: str) -> None:
@@ -180,7 +237,7 @@ def _check_place(name: str) -> None:
     if "/".join(parts) != name or len(parts) < 2 or parts[0] not in {PROGRAMS, MACHINE} or ".." in parts:
         raise _no_place()
     if len(parts) > (MOST_DEPTH if parts[0] == PROGRAMS else 2):
-        raise CommandError("it is in too many folders", "too-deep")
+        raise CommandError("the file is nested in too many folders", "too-deep")
     for part in parts[1:]:
         check_name(part)
 
@@ -189,9 +246,18 @@ def _check_store(source: Path, store: Path) -> None:
     try:
         found = backup.problems(store)
     except StoreError as error:
-        raise CommandError(f"{source}: {error}", error_code(error)) from error
+        raise CommandError(
+            Message("{source}: {error}", source=source, error=error), error_code(error)
+        ) from error
     if found:
-        raise CommandError(f"{source}: {found[0]}; make it anew with 'turndesk setup save'", "damaged-store")
+        raise CommandError(
+            Message(
+                "{source}: {value}; save the setup again with 'turndesk setup save'",
+                source=source,
+                value=found[0],
+            ),
+            "damaged-store",
+        )
 
 
 def _check_program(path: Path) -> None:
@@ -214,4 +280,6 @@ def _check_machine(path: Path) -> None:
     except (ValueError, expat.ExpatError):
         whole = False
     if not whole:
-        raise CommandError(f"it is no {path.suffix[1:].upper()} file", "damaged-member")
+        raise CommandError(
+            Message("this is not a valid {suffix} file", suffix=path.suffix[1:].upper()), "damaged-member"
+        )

@@ -32,6 +32,7 @@ from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from core.coded_error import error_code
 from core.file_placing import make_folder, put_in_place, write_in_place
+from core.message import Message
 from core.store import backup, people
 from core.store.store import Store
 from core.store.store_errors import StoreError
@@ -56,7 +57,8 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
     folder, machine = data_folder(), _machine_members(machine_file)
     if target.is_file() and not zipfile.is_zipfile(target):
         raise CommandError(
-            f"{target} is there already and is no setup file; take another name", "not-replaced"
+            Message("{target} already exists and is not a setup file; use a different name", target=target),
+            "not-replaced",
         )
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
         made, part = Path(name) / "setup", target.with_name(target.name + ".part")
@@ -71,7 +73,10 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
         except OSError as error:
             with suppress(OSError):
                 part.unlink(missing_ok=True)
-            raise CommandError(f"{target} cannot be written: {error.strerror}", "cannot-write") from error
+            raise CommandError(
+                Message("{file} cannot be written: {cause}", file=target, cause=error.strerror),
+                "cannot-write",
+            ) from error
     return replace(_told([each for each in members if each not in left_out]), left_out=left_out)
 
 
@@ -104,7 +109,8 @@ def _machine_members(named: str | None) -> dict[str, Path]:
     read_machine(str(path))
     if not path.is_file():
         raise CommandError(
-            f"{named} is shipped with every TurnDesk; leave --machine out, or name a file", "shipped-machine"
+            Message("{named} comes with every TurnDesk; omit --machine, or specify a file", named=named),
+            "shipped-machine",
         )
     beside = [path.with_suffix(ending) for ending in BESIDE]
     return {f"{MACHINE}/{each.name}": each for each in (path, *beside) if each.is_file()}
@@ -127,9 +133,16 @@ def _write(made: Path, members: dict[str, Path]) -> tuple[str, ...]:
     except OSError as error:
         if error.errno in NO_ROOM:
             raise CommandError(
-                f"{made.parent.parent} has no room for a setup; make room there", "disk-full"
+                Message(
+                    "not enough disk space in {parent} for a setup; free some space",
+                    parent=made.parent.parent,
+                ),
+                "disk-full",
             ) from error
-        raise CommandError(f"{error.filename} cannot be read: {error.strerror}", "unreadable") from error
+        raise CommandError(
+            Message("{path} cannot be read: {cause}", path=error.filename, cause=error.strerror),
+            "unreadable",
+        ) from error
     return tuple(left_out)
 
 
@@ -144,7 +157,7 @@ def _check_loadable(made: Path, target: Path) -> None:
 
 def _told(names: list[str], placed: Path | None = None) -> SetupTold:
     machines = [PurePosixPath(name).name for name in names if name.startswith(f"{MACHINE}/")]
-    machine = f"machine file {machines[0]}" if machines else "no machine file"
+    machine = Message("machine file {path}", path=machines[0]) if machines else "no machine file"
     return SetupTold(sum(name.startswith(f"{PROGRAMS}/") for name in names), machine, placed)
 
 
@@ -176,7 +189,10 @@ def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
             raise CommandError(str(error), error_code(error)) from error
         except OSError as error:
             where = error.filename or folder  # a full disk does not say which file it was
-            raise CommandError(f"{where} cannot be written: {error.strerror}", "cannot-write") from error
+            raise CommandError(
+                Message("{file} cannot be written: {cause}", file=where, cause=error.strerror),
+                "cannot-write",
+            ) from error
     return _told(names, beside.machine), kept
 
 

@@ -18,6 +18,7 @@ from core.executor.snapshot import Event
 from core.file_placing import write_in_place
 from core.machine.machine_model import Machine
 from core.machine.sharing_table import SharingTable
+from core.message import Message
 from core.store.store import Store
 
 if TYPE_CHECKING:
@@ -49,7 +50,7 @@ def give_sharing(desk: Desk, machine: Machine, journal: Journal | None) -> None:
         try:
             sharing = sharing_of(machine, journal.opened)
         except CommandError as error:
-            desk.say(tr("PROGRAMS NOT SHARED: {why}").format(why=error))
+            desk.say(tr(Message("PROGRAMS NOT SHARED: {why}", why=error)))
     desk.attach_later("app.sharing.sharing_model.SharingModel", partial(_model, desk, sharing))
 
 
@@ -99,7 +100,7 @@ class Heard:
         if fresh:
             self._told |= fresh
             who = next(each.desk for each in family.elsewhere if each.id in fresh)
-            text = tr("{name} WAS CHANGED ON {desk}. F1, X: SHOW CHANGES").format(name=name, desk=who)
+            text = tr(Message("{name} WAS CHANGED ON {machine}. F1, X: SHOW CHANGES", name=name, machine=who))
             self.desk.hear(Event(self.desk.snapshot().t, "shared", text))  # said with the next frame
 
 
@@ -129,7 +130,9 @@ def home_of(folder: Path) -> str:
             return text
         return claim(folder, secrets.token_hex(16))
     except (OSError, UnicodeDecodeError) as error:
-        raise CommandError(f"{path} cannot be used: {error}", "unusable") from error
+        raise CommandError(
+            Message("{path} cannot be used: {error}", path=path, error=error), "unusable"
+        ) from error
 
 
 def claim(folder: Path, home: str) -> str:

@@ -10,6 +10,7 @@ from app.compose.machine_status import conditions_of_device, device_of
 from app.shopfloor.floor_reading import FloorReader, Reading
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.ports import DriverError
 from drivers.clocks import RealClock
 from drivers.mtconnect.agent_links import listening
@@ -62,10 +63,17 @@ def device_model(machine: Machine, at: datetime) -> str:
     model = machine.hardware.table(MtconnectTable)
     if model is None:
         raise DriverError(
-            f"{machine.source}: there is no [mtconnect] table; it says under which name and port "
-            "this machine tells the shop floor about itself"
+            Message(
+                "{source}: the [mtconnect] table is missing; add it to specify the name and port "
+                "under which this machine reports to the shop floor",
+                source=machine.source,
+            )
         )
-    return devices_xml(device_of(machine, model.device), f"{machine.name}, {machine.kind}", at)
+    return devices_xml(
+        device_of(machine, model.device),
+        Message("{machine}, {kind}", machine=machine.name, kind=machine.kind),
+        at,
+    )
 
 
 def _report(reading: Reading) -> Report:

@@ -22,6 +22,7 @@ from app.offsets.offsets_in_force import (
 )
 from core.coded_error import error_code
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.message import Message
 from core.store.store_file import has_store
 from core.store.store_rows import SecondaryRow, ToolRow, ZeroRow
 
@@ -110,8 +111,13 @@ def stored_shapes() -> dict[int, ToolShape]:
     except StoreError as error:
         raise CommandError(str(error), error_code(error)) from error
     if wrong := wrong_shapes(shapes, tools):
-        way = "correct it on its shape page (F8) or with 'turndesk offsets set'"
-        raise CommandError(f"a stored tool shape is invalid: {'; '.join(wrong)}; {way}", "invalid-shape")
+        way = "correct the shape on its page (F8) or with 'turndesk offsets set'"
+        raise CommandError(
+            Message(
+                "a stored tool shape is invalid: {wrong}; {details}", wrong="; ".join(wrong), details=way
+            ),
+            "invalid-shape",
+        )
     return tool_shapes(shapes, tools)
 
 

@@ -17,6 +17,7 @@ from app.desk.translation import data, tr
 from core.access.access_table import Act, Level, level_for
 from core.access.pins import Hashed, WrongPins, hashed, is_outdated, is_pin
 from core.executor.snapshot import Snapshot
+from core.message import Message, join_messages
 from core.store.people import People, PersonRow
 from core.store.store_errors import StoreError
 
@@ -72,15 +73,15 @@ class Access:
         if self.pending:
             return self.pending
         level = tr(self.level.name)
-        return f"{data(self.name)} · {level}" if self.name else level
+        return join_messages(" · ", (data(self.name), level)) if self.name else level
 
     def refusal(self, act: Act) -> str:
         """Why this is not changed now; empty when it may be."""
         needed = level_for(act)
         if not self.people.on or self.level >= needed:
             return ""
-        text = tr("{what}: {level} LEVEL REQUIRED, CURRENT LEVEL IS {now}. F10, ACCESS LEVELS: SIGN IN")
-        return text.format(what=tr(act.value), level=tr(needed.name), now=tr(self.level.name))
+        text = tr("{what}: {level} REQUIRED (NOW {now}). F10, ACCESS LEVELS: SIGN IN")
+        return tr(Message(text, what=tr(act.value), level=tr(needed.name), now=tr(self.level.name)))
 
     # --- signing in and out --------------------------------------------------------------------------
 
@@ -88,11 +89,11 @@ class Access:
         """Try a PIN; the answer comes with a later frame, and wrong ones let wait longer and longer."""
         left = self.wrong.left(self.clock())
         if left > 0.0:
-            self.say(tr("TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S").format(seconds=f"{left:.0f}"))
+            self.say(tr(Message("TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S", seconds=f"{left:.0f}")))
         elif not row.has_pin:
-            self.say(tr("{name} HAS NO PIN. A SERVICE USER MUST SET ONE").format(name=data(row.name)))
+            self.say(tr(Message("{name} HAS NO PIN. A SERVICE USER MUST SET ONE", name=data(row.name))))
         elif not self.worker.busy:
-            self.say(tr("CHECKING THE PIN OF {name}").format(name=data(row.name)))
+            self.say(tr(Message("CHECKING THE PIN OF {name}", name=data(row.name))))
             self.worker.queue(partial(self._try, row, pin), partial(self._tried, row), self.say)
 
     def _try(self, row: PersonRow, pin: str) -> bool:
@@ -110,22 +111,28 @@ class Access:
             self.wrong.right()
             self.name, self.level = row.name, Level(row.level)
             self.used()
-            self.note(f"{row.name} has signed in: {self.level.name}")
+            self.note(Message("{row} has signed in: {level}", row=row.name, level=self.level.name))
             self.say(
-                tr("{name} HAS SIGNED IN: {level}").format(name=data(row.name), level=tr(self.level.name))
+                tr(Message("{name} HAS SIGNED IN: {level}", name=data(row.name), level=tr(self.level.name)))
             )
         else:
             self.wrong.wrong(self.clock())
-            self.note(f"wrong PIN for {row.name}, {self.wrong.count} in a row")
+            self.note(
+                Message(
+                    ("wrong PIN for {row}; wrong PINs in a row: {count}"),
+                    row=row.name,
+                    count=self.wrong.count,
+                )
+            )
             left = self.wrong.left(self.clock())
             text = tr("WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S")
-            self.say(text.format(name=data(row.name), seconds=f"{left:.0f}"))
+            self.say(tr(Message(text, name=data(row.name), seconds=f"{left:.0f}")))
         self._keep(_WRONG, self.wrong.count or None)
 
     def sign_out(self, why: str = "") -> None:
         """Nobody is signed in any more: the level is OPERATOR."""
         if self.name:
-            self.note(f"{self.name} has signed out{why}")
+            self.note(Message("{name} has signed out{why}", name=self.name, why=why))
         self.name, self.level = "", Level.OPERATOR
 
     # --- time ----------------------------------------------------------------------------------------
@@ -144,19 +151,19 @@ class Access:
             return
         left = self._used + 60.0 * self.minutes - self.clock()
         if left <= 0.0:
-            words = tr("{name} SIGNED OUT (NO INPUT). LEVEL IS OPERATOR, TYPED TEXT REMAINS. F10: SIGN IN")
-            self.say(words.format(name=data(self.name)))
-            self.sign_out(f", after {self.minutes} min without input")
+            words = tr("{name} SIGNED OUT (NO INPUT). LEVEL: OPERATOR. F10: SIGN IN")
+            self.say(tr(Message(words, name=data(self.name))))
+            self.sign_out(Message(", after {minutes} min without input", minutes=self.minutes))
         elif left <= _WARNED and not self._warned:
             self._warned = True
             words = tr("{name}: SIGN-OUT IN {seconds} S. PRESS ANY KEY TO STAY SIGNED IN")
-            self.say(words.format(name=data(self.name), seconds=f"{left:.0f}"))
+            self.say(tr(Message(words, name=data(self.name), seconds=f"{left:.0f}")))
 
     def choose_minutes(self, minutes: int) -> None:
         """Another time after which a level falls back."""
         self.minutes = minutes
         self._keep(_MINUTES, minutes)
-        self.note(f"automatic sign-out after {minutes} min without input")
+        self.note(Message("automatic sign-out after {minutes} min without input", minutes=minutes))
 
     # --- people --------------------------------------------------------------------------------------
 
@@ -191,7 +198,7 @@ class Access:
         try:
             self.persistence.save_setting(key, value)
         except StoreError as error:
-            self.say(tr("NOT SAVED: {why}").format(why=error))
+            self.say(tr(Message("NOT SAVED: {why}", why=error)))
 
     def close(self) -> None:
         """The desk shuts."""

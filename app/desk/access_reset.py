@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from app.desk.access import Access
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot, State
+from core.message import Message
 
 WAIT = 600.0  # s
 
@@ -38,7 +39,7 @@ class AccessReset:
         if not self.access.people.on:
             return tr("NO ACCESS LEVELS TO RESET")
         if snapshot.state is not State.ESTOP:
-            return tr("TO RESET ACCESS LEVELS, PRESS THE E-STOP FIRST AND LEAVE IT PRESSED FOR 10 MINUTES")
+            return tr("PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET LEVELS")
         return ""
 
     def begin(self) -> None:
@@ -60,4 +61,4 @@ class AccessReset:
             self.access.note("service reset done: all users and PINs removed, access levels off")
             self.reset()
         time = f"{int(left // 60)}:{int(left % 60):02d}"
-        self.access.pending = tr("PIN RESET IN {time}").format(time=time) if self.under_way else ""
+        self.access.pending = tr(Message("PIN RESET IN {time}", time=time)) if self.under_way else ""

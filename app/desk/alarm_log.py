@@ -14,6 +14,7 @@ from app.desk.formats import wall_time
 from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Event
+from core.message import Message
 from core.store.store_rows import EventRow
 
 KEPT = 500
@@ -68,4 +69,7 @@ def read_back(row: EventRow) -> Alarm | None:
     """An alarm as it was written into the log; None for what is none, or has no number."""
     found = _WRITTEN.fullmatch(row.text) if row.kind in KINDS else None
     code = _BY_NUMBER.get(int(found[1])) if found is not None else None
-    return None if found is None or code is None else make_alarm(code, found[3], row.line, 0.0)
+    if found is None or code is None:
+        return None
+    cause = row.text.values.get("cause", found[3]) if isinstance(row.text, Message) else found[3]
+    return make_alarm(code, str(cause), row.line, 0.0)

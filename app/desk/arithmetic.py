@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from math import isfinite
 
+from core.message import Message
+
 CHARACTERS = frozenset("0123456789.,+-*/()−")  # that an entry is typed with
 LONGEST = 80  # characters: more than any sum on the back of a drawing
 _TOKEN = re.compile(r"\s*(?:([0-9]+\.?[0-9]*|\.[0-9]+)|([-+*/()−]))")
@@ -19,13 +21,15 @@ def value_of(entry: str) -> float:
     if not entry.strip():
         raise EntryError("no value entered; type a number")
     if len(entry) > LONGEST:
-        raise EntryError(f"the entry is longer than {LONGEST} characters; type the result")
+        raise EntryError(
+            Message("the entry is longer than {longest} characters; type the result", longest=LONGEST)
+        )
     entry = " ".join(entry.split())
     reader = _Reader(entry)
     value = reader.sum()
     reader.expect_end()
     if not isfinite(value):
-        raise EntryError(f"{entry} is too large; type a smaller number")
+        raise EntryError(Message("{entry} is too large; type a smaller number", entry=entry))
     return value
 
 
@@ -58,7 +62,7 @@ class _Reader:
         while sign := self._take("*", "/"):
             part = self._signed()
             if sign == "/" and part == 0:
-                raise EntryError(f"{self._entry} divides by zero")
+                raise EntryError(Message("{entry} divides by zero", entry=self._entry))
             value = value * part if sign == "*" else value / part
         return value
 
@@ -82,7 +86,7 @@ class _Reader:
 
     def expect_end(self) -> None:
         if self._next < len(self._tokens):
-            raise self._refusal("+ - * / or the end")
+            raise self._refusal("+ - * / or the end of the entry")
 
     def _take(self, *wanted: str) -> str:
         if self._next < len(self._tokens) and self._tokens[self._next][0] in wanted:
@@ -92,9 +96,23 @@ class _Reader:
 
     def _refusal(self, expected: str) -> EntryError:
         if self._next >= len(self._tokens):
-            return EntryError(f"{self._entry} is incomplete; expected {expected} at the end")
+            return EntryError(
+                Message(
+                    "{entry} is incomplete; expected {expected} at the end",
+                    entry=self._entry,
+                    expected=expected,
+                )
+            )
         found, column = self._tokens[self._next]
-        return EntryError(f"unexpected {found} at character {column} of {self._entry}; expected {expected}")
+        return EntryError(
+            Message(
+                "unexpected {value} at character {column} of {entry}; expected {expected}",
+                value=found,
+                column=column,
+                entry=self._entry,
+                expected=expected,
+            )
+        )
 
 
 def _tokens(entry: str) -> list[tuple[str, int]]:
@@ -105,7 +123,9 @@ def _tokens(entry: str) -> list[tuple[str, int]]:
         if not match:
             bad = entry[at:].lstrip()[0]
             hint = "use a decimal point" if bad == "," else ("use only numbers and + - * / ( )")
-            raise EntryError(f"{bad} in {entry} is not a number; {hint}")
+            raise EntryError(
+                Message("{bad} in {entry} is not a number; {hint}", bad=bad, entry=entry, hint=hint)
+            )
         word = match.group(1) or match.group(2)
         tokens.append((word.replace("−", "-"), match.end() - len(word) + 1))
         at = match.end()

@@ -13,6 +13,7 @@ from functools import partial
 from pathlib import Path
 
 from app.desk.repeating_thread import RepeatingThread
+from core.message import Message
 from core.store.store_errors import StoreError
 
 ENDING = ".turndesk.db"
@@ -90,7 +91,11 @@ class DailyBackup:
         if wrong:
             target.unlink(missing_ok=True)
             raise StoreError(
-                f"the backup was written, but {wrong[0]}; check the disk that holds {self.folder}",
+                Message(
+                    "the backup was written, but {wrong}; check the disk that holds {folder}",
+                    wrong=wrong[0],
+                    folder=self.folder,
+                ),
                 "damaged-backup",
             )
         for old in sorted(self._there(), key=partial(_made_at, target.name))[: -self.keep]:
@@ -108,7 +113,7 @@ class DailyBackup:
     def _trouble(self, why: str) -> None:
         now = why, self.now().date()
         if now != self._told:
-            self.tell(f"{self.folder}: {why}")
+            self.tell(Message("{folder}: {why}", folder=self.folder, why=why))
         self._told = now
 
 

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from core.coded_error import CodedError
+from core.message import Message
 
 HOME = "TURNDESK_HOME"
 BACKUPS = "backups"  # the folder of backups, within it
@@ -27,9 +28,13 @@ def check_data_folder() -> None:
     folder = data_folder()
     there = next((each for each in (folder, *folder.parents) if each.exists()), folder)
     if there.exists() and not there.is_dir():
-        what = "is" if there == folder else f"is inside {there}, which is"
+        what = "is" if there == folder else Message("is inside {present}, which is", present=there)
         raise DataFolderError(
-            f"TURNDESK_HOME: {folder} {what} a file, not a folder; set it to a folder or unset it",
+            Message(
+                "TURNDESK_HOME: {folder} {what} a file, not a folder; set it to a folder or unset it",
+                folder=folder,
+                what=what,
+            ),
             "not-a-folder",
         )
 

@@ -48,6 +48,7 @@ from core.executor.commands import (
     SetSwitch,
 )
 from core.executor.snapshot import LINES, Event, Snapshot, Starts, State
+from core.message import Message, join_messages
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ DRIVERS_CLOSE = 10.0  # s: an inverter is stopped, a driver process ends
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
 LAST_PROGRAM = "last_program"  # setting: the path of the program that was loaded last
-BY_SCREEN = "key or touch at the screen"  # who holds, for the log
+BY_SCREEN = "key or touch on the screen"  # who holds, for the log
 
 
 class Attached(Protocol):
@@ -179,7 +180,7 @@ class Desk:
 
     def refuse(self, why: str) -> None:
         """Say that it was not done, and why."""
-        self.say(f"REJECTED: {why}")
+        self.say(Message("REJECTED: {why}", why=why))
 
     def ask(self, question: str, yes: Callable[[], None], key: str = YES) -> None:
         """Ask before something is lost or moves: ``PRESS Y TO …, N TO …``. Esc is N.
@@ -246,7 +247,7 @@ class Desk:
         try:
             change()
         except StoreError as error:
-            self.say(f"NOT SAVED: {error}")
+            self.say(Message("NOT SAVED: {error}", error=error))
 
     def next_readout(self) -> None:
         """Position, distance to go, distance from home."""
@@ -350,7 +351,7 @@ class Desk:
         if self.keyboard_away and snapshot.state in prompt_line.MOVING:
             return prompt_line.KEYBOARD_AWAY
         announced = prompt_line.announced(snapshot, starts_here=self.starts_here)
-        return announced + self._prompt(snapshot, loaded, page)
+        return join_messages(" · ", filter(None, (*announced, self._prompt(snapshot, loaded, page))))
 
     def _prompt(self, snapshot: Snapshot, loaded: Loaded, page: str) -> str:
         if page:
@@ -358,19 +359,19 @@ class Desk:
         words = self.start_words, self.release_words
         standing = prompt_line.prompt(snapshot, loaded, *words, field_open=self.field_open())
         if refusal := self.first_move_refusal(snapshot):
-            standing = f"{prompt_line.NO_START}: {refusal}"
+            standing = Message("{no_start}: {refusal}", no_start=prompt_line.NO_START, refusal=refusal)
         elif self.first_move is not None and self.first_move.checking and snapshot.state is State.IDLE:
             standing = tr("CHECKING THE FIRST MOVE AGAINST THE PART")
         if snapshot.state is State.WAIT:
             standing = how_it_ends(snapshot, self.set_input is not None) or standing
-        return " · ".join(each for each in (self._due(snapshot, standing), standing) if each)
+        return join_messages(" · ", filter(None, (self._due(snapshot, standing), standing)))
 
     def _due(self, snapshot: Snapshot, standing: str) -> str:
         """What is to be done some time soon; behind an alarm, an interrupted job or a refusal it can wait."""
         waits = snapshot.state in {State.ESTOP, State.FAULT} or snapshot.interrupted_line
         if waits or standing.startswith(prompt_line.NO_START):
             return ""
-        return " · ".join(told for watcher in self.watches if (told := watcher.due()))
+        return join_messages(" · ", filter(None, (watcher.due() for watcher in self.watches)))
 
     def first_move_refusal(self, snapshot: Snapshot) -> str:
         """Why Cycle Start does not begin the program from here; empty when its first move is clear."""
@@ -399,7 +400,7 @@ class Desk:
         part, told = loaded.part, self._part_told
         self._part_told = part
         if part is not None and part is not told and part.warned and snapshot.state in UNDER_WAY:
-            self.say(tr("CAUTION: {what}. PAUSE: FEED HOLD").format(what=part.warned[0]))
+            self.say(tr(Message("CAUTION: {what}. PAUSE: FEED HOLD", what=part.warned[0])))
 
     # --- program -------------------------------------------------------------------------------------
 
@@ -437,18 +438,25 @@ class Desk:
         path = str(Path(named).absolute()) if named is not None else ""
         if found is None:
             if named is not None and not self.choose(path):
-                self.say(f"FILE NOT FOUND: {named}")
+                self.say(Message("FILE NOT FOUND: {named}", named=named))
         elif named is not None and Path(named).name == found.program and self.choose(path):
             return
         elif not self.choose(found.program):
             self.say(
-                tr("INTERRUPTED PROGRAM {name} IS NOT IN THE FOLDER. F2: CHOOSE A PROGRAM").format(
-                    name=found.program
+                tr(
+                    Message(
+                        "INTERRUPTED PROGRAM {name} NOT FOUND. F2: CHOOSE A PROGRAM",
+                        name=found.program,
+                    )
                 )
             )
         elif named is not None:
             self.say(
-                tr("{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD").format(name=Path(named).name)
+                tr(
+                    Message(
+                        "{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD", name=Path(named).name
+                    )
+                )
             )
 
     # --- keys ----------------------------------------------------------------------------------------
@@ -464,9 +472,9 @@ class Desk:
         """Turn Block Delete over. It is part of the job that was proved, so the program is loaded anew."""
         loaded = self.session.now
         if loaded.path is None:
-            self.say("CHOOSE A PROGRAM FIRST: BLOCK DELETE IS PROVED WITH THE PROGRAM")
+            self.say("CHOOSE A PROGRAM BEFORE SWITCHING BLOCK DELETE")
         elif self.snapshot().state in UNDER_WAY:
-            self.say("BLOCK DELETE CHANGES THE PROVED PROGRAM: SWITCH IT BETWEEN CYCLES ONLY")
+            self.say("SWITCH BLOCK DELETE ONLY BETWEEN CYCLES")
         else:
             self.clear()
             self.session.load(loaded.path, not loaded.block_delete)
@@ -476,7 +484,7 @@ class Desk:
         waiting = self.waiting()
         if waiting:
             words = tr("NOT SAVED, LOST WHEN YOU CLOSE: {what}. Y: CLOSE   N: STAY")
-            self.ask(words.format(what=waiting), close)
+            self.ask(tr(Message(words, what=waiting)), close)
         return not waiting
 
     def feed_hold(self, by: str = BY_SCREEN) -> None:
@@ -488,7 +496,7 @@ class Desk:
         """Acknowledge an alarm; give up an interrupted program, after asking once."""
         state = self.snapshot().state
         if state in prompt_line.MOVING:
-            self.say("THE MACHINE IS MOVING: PRESS PAUSE FOR FEED HOLD FIRST")
+            self.say("THE MACHINE IS MOVING. FIRST PRESS PAUSE (FEED HOLD)")
         elif state in prompt_line.INTERRUPTED:
             self.ask(prompt_line.GIVE_UP, self._give_up)
         else:
@@ -511,7 +519,7 @@ class Desk:
         ):
             self.say(tr("Y: AUTOMATIC PAGE ONLY, DRIVES ON"))
         elif refusal := self.first_move_refusal(snapshot):
-            self.say(f"{prompt_line.NO_START}: {refusal}")
+            self.say(Message("{no_start}: {refusal}", no_start=prompt_line.NO_START, refusal=refusal))
         else:
             self.clear()
             self.post(ConfirmStart(found.at))
@@ -529,7 +537,7 @@ class Desk:
             self.clear()
             self.post(EnableDrives())
         elif state is State.ESTOP:
-            self.say(f"E-STOP STILL PRESSED. {self.release_words}")
+            self.say(Message("E-STOP STILL PRESSED. {release_words}", release_words=self.release_words))
         elif state is State.FAULT:
             self.say("ALARM ACTIVE: PRESS R TO ACKNOWLEDGE IT FIRST")
         else:

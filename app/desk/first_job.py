@@ -11,6 +11,7 @@ from app.desk.program_loading import Loaded, Phase
 from app.desk.prompt_line import missing_tools
 from app.desk.translation import tr
 from core.executor.snapshot import CYCLE, Snapshot, State
+from core.message import Message
 
 STEP = "first_job_step"  # setting
 CLOSE = "×"  # what the card's key presses, and shows
@@ -32,16 +33,14 @@ STEPS = (
     Step("CHOOSE A PROGRAM", "F2: TYPE A NAME   F1, F6: CHOOSE FROM THE LIST"),
     Step(
         "SET THE TOOLS",
-        "F8: SHOW TOOLS NOT SET   F1, F5: TYPE T AND NUMBER, THEN X AND Z, OR C FOR A SKIM CUT",
+        "TOOLS NOT SET: F8. TO TOUCH OFF: F1, F5, THEN T, X AND Z",
     ),
     Step(
         "PROVE THE PROGRAM",
-        ("THE PROGRAM IS PROVED AUTOMATICALLY WITH THE NEW OFFSET. B (PART): SHOW FINDINGS"),
+        ("PROGRAM IS PROVED AUTOMATICALLY. B (PART): SHOW FINDINGS"),
     ),
     Step("DRY RUN", "DRY RUN, NO STOCK: P, D, CYCLE START. WATCH EVERY MOVE. H: FEED HOLD", _COUNTED),
-    Step(
-        "FIRST PART", "PRESS P AGAIN, LOAD STOCK, CYCLE START. MEASURE THE PART. F9: CORRECT WEAR", _COUNTED
-    ),
+    Step("FIRST PART", "PRESS P, LOAD STOCK, CYCLE START. MEASURE. F9: CORRECT WEAR", _COUNTED),
 )
 
 
@@ -92,6 +91,6 @@ class FirstJob:
         if self.at >= len(STEPS):
             return NoticeRow(tr("FIRST JOB: DONE"), tr("F10, 7, ENTER: SHOW THIS CARD AGAIN"), keys, "run")
         step = STEPS[self.at]
-        head = tr("FIRST JOB, STEP {number} OF {count}").format(number=self.at + 1, count=len(STEPS))
+        head = tr(Message("FIRST JOB, STEP {number} OF {count}", number=self.at + 1, count=len(STEPS)))
         own = tuple((name, tr(label)) for name, label in step.keys)
         return NoticeRow(f"{head}: {tr(step.title)}", tr(step.how), (*own, *keys), "wait")

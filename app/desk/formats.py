@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from datetime import datetime
 
+from core.message import Message
+
 MM_PER_INCH = 25.4
 MM_PER_FOOT = 304.8
 MINUS = "−"  # the true minus: a hyphen is too short to be read from two metres
@@ -78,7 +80,7 @@ def file_size(size: int) -> str:
     for unit, most in (("B", 1e3), ("KB", 1e6), ("MB", 1e9)):
         if size < most:
             return f"{size / (most / 1e3):.{0 if unit == 'B' else 1}f} {unit}"
-    return f"{size / 1e9:.1f} GB"
+    return Message("{size} GB", size=f"{size / 1000000000.0:.1f}")
 
 
 def wall_time(at: str, today: str = "%H:%M") -> str:

@@ -12,6 +12,7 @@ from app.desk.translation import tr
 from core.executor.interrupted_job import CONTROL_LOST, InterruptedJob
 from core.executor.snapshot import Snapshot, Starts, State
 from core.language.source import Dialect
+from core.message import Message
 
 _SAME = 0.05  # mm, degrees: nearer than this the tool still stands where it stood
 
@@ -35,16 +36,17 @@ def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> NoticeRow | N
     if found is None:
         return None
     words = tr(
-        "INTERRUPTED: {program} LINE {line}{passed}, T{tool}, PART {part}, {at}: {why}{changed}"
-    ).format(
-        program=found.program,
-        line=found.line,
-        passed=_pass(found, loaded),
-        tool=found.tool,
-        part=found.part,
-        at=formats.wall_time(found.at),
-        why=tr(found.why),
-        changed=tr(" (PROGRAM TEXT CHANGED SINCE)") if _changed(found, loaded) else "",
+        Message(
+            "INTERRUPTED: {program} LINE {line}{passed}, T{tool}, PART {part}, {position}: {why}{changed}",
+            program=found.program,
+            line=found.line,
+            passed=_pass(found, loaded),
+            tool=found.tool,
+            part=found.part,
+            position=formats.wall_time(found.at),
+            why=tr(found.why),
+            changed=tr(" (PROGRAM TEXT CHANGED SINCE THEN)") if _changed(found, loaded) else "",
+        )
     )
     return NoticeRow(words, _places(found, snapshot, units) + _uncertain(found))
 
@@ -56,11 +58,11 @@ def interrupted_prompt(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
         return ""
     if snapshot.confirmed:
         words = tr("STARTS AT LINE 1 ({text}) FROM CURRENT T{tool} POSITION. {start}. ESC: CANCEL")
-        return words.format(text=_first(loaded), tool=snapshot.modal.tool, start=start)
+        return tr(Message(words, text=_first(loaded), tool=snapshot.modal.tool, start=start))
     if not may_go_on(loaded):
-        return tr("STOPPED IN LINE {line}. JOG THE TOOL CLEAR. Y: START OVER").format(line=line)
+        return tr(Message("STOPPED IN LINE {line}. JOG THE TOOL CLEAR. Y: START OVER", line=line))
     words = tr("STOPPED IN LINE {line}. F6: RETRACT AND RESUME. Y: START OVER")
-    return words.format(line=line)
+    return tr(Message(words, line=line))
 
 
 def may_go_on(loaded: Loaded) -> bool:
@@ -74,7 +76,7 @@ def instead(found: InterruptedJob, name: str) -> str:
         "T{tool} MAY BE IN THE PART, {program} LINE {line}. PRESS Y TO CANCEL THAT JOB AND "
         "LOAD {name}, N TO KEEP IT"
     )
-    return words.format(tool=found.tool, program=found.program, line=found.line, name=name)
+    return tr(Message(words, tool=found.tool, program=found.program, line=found.line, name=name))
 
 
 def _first(loaded: Loaded) -> str:
@@ -94,36 +96,45 @@ def _pass(found: InterruptedJob, loaded: Loaded) -> str:
         return ""
     passes = picture.blocks_of_line(found.line)
     now = next((n for n, (a, b) in enumerate(passes, 1) if a <= found.block <= b), 0)
-    return tr(" PASS {now} OF {all}").format(now=now, all=len(passes)) if now and len(passes) > 1 else ""
+    return (
+        tr(Message(" REPETITION {now} OF {all}", now=now, all=len(passes))) if now and len(passes) > 1 else ""
+    )
 
 
 def _places(found: InterruptedJob, snapshot: Snapshot, units: Units) -> str:
     """From home, as the readout FROM HOME counts: where the tool stood, and where it stands by now."""
     stood = _figures(found.axes, found.where, snapshot, units)
     if not all(snapshot.homed):
-        return tr("WAS AT {stood} FROM HOME. CURRENT POSITION UNKNOWN UNTIL HOMED").format(stood=stood)
+        return tr(Message("POSITION WAS {position} FROM HOME, NOW UNKNOWN UNTIL HOMED", position=stood))
     if snapshot.axes != found.axes:
-        return tr("WAS AT {stood} FROM HOME").format(stood=stood)
+        return tr(Message("POSITION WAS {position} FROM HOME", position=stood))
     if max(abs(a - b) for a, b in zip(found.where, snapshot.actual, strict=True)) <= _SAME:
-        return tr("STILL AT {stood} FROM HOME").format(stood=stood)
+        return tr(Message("POSITION UNCHANGED: {position} FROM HOME", position=stood))
     now = _figures(snapshot.axes, snapshot.actual, snapshot, units)
-    return tr("WAS AT {stood}, NOW AT {now} FROM HOME").format(stood=stood, now=now)
+    return tr(Message("POSITION WAS {position}, IS NOW {now} FROM HOME", position=stood, now=now))
 
 
 def _uncertain(found: InterruptedJob) -> str:
     """What nobody knows of a job whose control was gone at once: its note was written once a second."""
     if found.why != CONTROL_LOST:
         return ""
-    return tr(". LAST SECOND NOT RECORDED. CUT MAY BE INCOMPLETE. CHECK TOOL AND PART")
+    return tr(
+        ". THE LAST SECOND BEFORE THE STOP WAS NOT RECORDED. CUT MAY BE INCOMPLETE. CHECK TOOL AND PART"
+    )
 
 
 def _figures(axes: Sequence[str], where: Sequence[float], snapshot: Snapshot, units: Units) -> str:
     """Slides only: where C stands is nothing that a hand can be in the way of."""
     metric, twice = units.metric(snapshot.modal.metric), snapshot.reads_diameter
     found = [
-        f"{name} {'Ø' if twice else 'R'}{formats.length(2 * at if twice else at, metric)}"
+        Message(
+            "{name} {ending}{position}",
+            name=name,
+            ending="Ø" if twice else "R",
+            position=formats.length(2 * at if twice else at, metric),
+        )
         if name == "X" and "Y" not in axes
-        else f"{name} {formats.length(at, metric)}"
+        else Message("{name} {position}", name=name, position=formats.length(at, metric))
         for name, at in zip(axes, where, strict=False)
         if name in "XYZ"
     ]

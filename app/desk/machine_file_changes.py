@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from app.desk.translation import tr
 from core.machine.machine_changes import Change
+from core.message import Message
 
 
 @dataclass(slots=True)
@@ -22,8 +23,8 @@ class FileChanges:
         """Why the drives stay off; empty when they need not."""
         if not self.changes:
             return ""
-        text = tr("MACHINE FILE CHANGED ({count}). F10, MACHINE FILE: REVIEW AND ACCEPT")
-        return text.format(count=len(self.changes))
+        text = tr("MACHINE FILE CHANGED ({count}). F10: REVIEW AND ACCEPT")
+        return tr(Message(text, count=len(self.changes)))
 
     def accept(self) -> None:
         """Somebody has read the changes and takes them."""

@@ -27,6 +27,7 @@ from app.desk.waiting import waits_for
 from core.alarms import CATALOGUE, Reaction
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.interpreter.modal_state import Modal
+from core.message import Message
 from core.tool_edges import edge_name, tool_of
 
 
@@ -148,13 +149,15 @@ def unasked(snapshot: Snapshot) -> Alarm | None:
 def _state(snapshot: Snapshot, stop: Alarm | None) -> str:
     """In words, with the number of what is in the way."""
     if snapshot.state is State.WAIT and snapshot.waiting_for:
-        return tr("WAITING: {what}").format(what=waits_for(snapshot))
+        return tr(Message("WAITING: {what}", what=waits_for(snapshot)))
     if snapshot.state is State.RUN and snapshot.waiting_for:
         return waits_for(snapshot)
     if snapshot.state is State.FAULT and snapshot.alarms:
-        return f"ALARM {snapshot.alarms[0].number}: {snapshot.alarms[0].text}"
+        return Message(
+            "ALARM {number}: {alarms}", number=snapshot.alarms[0].number, alarms=snapshot.alarms[0].text
+        )
     if snapshot.state is State.HOLD and stop is not None:
-        return f"FEED HOLD {stop.number}: {stop.text}"
+        return Message("FEED HOLD {number}: {stop}", number=stop.number, stop=stop.text)
     if snapshot.state is State.IDLE and not_homed(snapshot):
         return NOT_HOMED
     return snapshot.state.value

@@ -8,6 +8,7 @@ from app.desk import formats
 from app.desk.translation import data, tr
 from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.modal_state import Modal
+from core.message import Message
 from core.tool_edges import edge_name
 
 NONE = formats.NOTHING
@@ -128,21 +129,29 @@ def _feeds(point: Checkpoint) -> tuple[ModalRow, ...]:
         ModalRow("rapid", tr("RAPID"), "G00" if modal.rapid else tr("OFF")),
         ModalRow("cut feed", tr("G01 FEED"), _feed(modal.cut_feed, modal.metric, modal.cut_per_rev)),
         ModalRow("rapid rate", tr("RAPID RATE"), _feed(modal.rapid_rate, modal.metric, False)),
-        ModalRow("first feed", tr("F USED AS RAPID"), first),
+        ModalRow("first feed", tr("F AS RAPID RATE"), first),
     )
 
 
 def _feed(value: float | None, metric: bool, per_rev: bool) -> str:
     if value is None:
         return NONE
-    return f"{formats.feed(value, metric, per_rev)} {formats.feed_unit(metric, per_rev)}"
+    return Message(
+        "{metric} {metric2}",
+        metric=formats.feed(value, metric, per_rev),
+        metric2=formats.feed_unit(metric, per_rev),
+    )
 
 
 def _spindle(modal: Modal) -> tuple[ModalRow, ...]:
     run = {1: "M03", -1: "M04", 0: "M05"}[modal.spindle]
     surface = formats.surface_speed(modal.surface_speed, modal.metric)
     unit = "M/MIN" if modal.metric else "SFM"
-    speed = f"G96 {surface} {unit}" if modal.css else f"G97 {formats.rpm(modal.rpm)} RPM"
+    speed = (
+        Message("G96 {surface} {unit}", surface=surface, unit=unit)
+        if modal.css
+        else Message("G97 {rpm} RPM", rpm=formats.rpm(modal.rpm))
+    )
     least, most = modal.css_min, modal.css_max
     limits = f"{formats.rpm(least)} … {formats.rpm(most) if most is not None else NONE}"
     return (

@@ -16,13 +16,13 @@ from core.executor.snapshot import CYCLE, Snapshot, State
 from core.ports import Unknown
 
 BY_HAND = frozenset({State.JOG, State.HOME})
-SLIDES = "AXES ARE BEING MOVED BY HAND. WAIT UNTIL THEY STOP BEFORE EDITING"
-SPINDLE_ON = "SPINDLE IS ON. STOP IT (M05, OR R FOR RESET) AND WAIT UNTIL IT IS AT REST BEFORE EDITING"
-SPINDLE_UNKNOWN = "SPINDLE STATE UNKNOWN, IT MAY BE TURNING: PRESS E-STOP. DO NOT EDIT NOW"
+SLIDES = "AXES ARE MOVING. WAIT UNTIL THEY STOP BEFORE EDITING"
+SPINDLE_ON = "SPINDLE IS ON. STOP IT (M05 OR R). EDIT WHEN IT IS AT REST"
+SPINDLE_UNKNOWN = "SPINDLE MAY BE TURNING: PRESS E-STOP. DO NOT EDIT NOW"
 COASTING = "SPINDLE IS COASTING. WAIT UNTIL IT STOPS BEFORE EDITING"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST (F2), OR TYPE A NEW NAME THERE"
-CHOOSING = "PROGRAM RUNNING. LET IT END, OR STOP IT AND PRESS R, THEN CHOOSE ANOTHER"
-MOVED = "THE AXES ARE MOVING: STOP THEM (H) BEFORE YOU CHOOSE A PROGRAM"
+CHOOSING = "PROGRAM RUNNING. LET IT END, OR STOP IT AND PRESS R FIRST"
+MOVED = "AXES ARE MOVING. STOP THEM (H) BEFORE CHOOSING A PROGRAM"
 
 
 def program_barred(snapshot: Snapshot) -> str:
@@ -49,14 +49,14 @@ def editor_barred(snapshot: Snapshot, *, named: bool = True) -> str:
 def mdi_barred(snapshot: Snapshot) -> str:
     """Return why MDI cannot be opened; empty when it can."""
     if snapshot.state in CYCLE:
-        return tr("PROGRAM RUNNING. LET IT END, OR STOP IT AND PRESS R, THEN OPEN MDI")
+        return tr("TO OPEN MDI, LET THE PROGRAM END, OR STOP IT AND PRESS R")
     return ""
 
 
 def searchto_barred(snapshot: Snapshot, loaded: Loaded) -> str:
     """Return why SEARCHTO cannot be opened, or does not go on; empty when it can."""
     if snapshot.state in CYCLE:
-        return tr("PROGRAM RUNNING. LET IT END, OR STOP IT AND PRESS R, THEN OPEN SEARCHTO")
+        return tr("FOR SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R")
     if loaded.source is None or loaded.job is None:
         return tr("CHOOSE A PROGRAM FIRST (F2)")
     if loaded.phase is not Phase.READY:

@@ -13,6 +13,7 @@ from core.executor.commands import Command, Prepare
 from core.executor.job import Job
 from core.executor.snapshot import CYCLE, Snapshot, Starts
 from core.language.diagnostics import Diagnostic, Severity
+from core.message import Message
 
 ProveLine = Callable[[str, Snapshot, Watch], tuple[Job, Proved]]
 """From a line and the machine as it stands to its job and its proof; called on the worker."""
@@ -23,7 +24,9 @@ def never_set(job: Job, proved: Proved) -> tuple[Diagnostic, ...]:
     missing = proved.proof.unset(job)
     text = "Tool {number} has not been set."
     return tuple(
-        Diagnostic(1, 0, Severity.ERROR, "tool-never-set", text.format(number=number), "Set it with F8.")
+        Diagnostic(
+            1, 0, Severity.ERROR, "tool-never-set", Message(text, number=number), "Set the tool with F8."
+        )
         for number in missing
     )
 

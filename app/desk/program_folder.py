@@ -19,6 +19,7 @@ from app.desk.translation import tr
 from core.drawings.drawing_file import is_drawing
 from core.executor.attempt import Attempt
 from core.language.source import Source, SourceError, load_source
+from core.message import Message
 
 LISTED = 2000  # a folder with more programs than this is typed into, not looked through
 ENDINGS = frozenset({"", ".nc", ".txt", ".tap", ".cnc", ".prg", ".h", ".mpf", ".spf"})
@@ -97,8 +98,8 @@ _log = logging.getLogger(__name__)
 LOOK = 2.0  # seconds between two looks at the disk
 HANGS = 5.0  # seconds after which a look that has not returned counts as a file that cannot be read
 GONE = "{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED TEXT"
-CHANGED = "{name} ON DISK DIFFERS FROM THE LOADED TEXT. CYCLE START RUNS THE LOADED TEXT. F2: RELOAD"
-UNREADABLE = "{name} CANNOT BE READ: CHECK THE PROGRAM FOLDER. CYCLE START RUNS THE LOADED TEXT"
+CHANGED = "{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD TEXT"
+UNREADABLE = "CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED TEXT"
 _Said = tuple[str, str]  # the text, and the name of the file in it
 _SAME = ("", "")
 _Stamp = tuple[int, int]  # time of the last change in nanoseconds, bytes; an error number and -1
@@ -123,9 +124,9 @@ class ProgramFile:
         if loaded.source is None:
             return ""
         if since is not None and self._clock() - since > HANGS:
-            return tr(UNREADABLE).format(name=loaded.name)
+            return tr(Message(UNREADABLE, name=loaded.name))
         source, said = self._found
-        return tr(said[0]).format(name=said[1]) if said[0] and source is loaded.source else ""
+        return tr(Message(said[0], name=said[1])) if said[0] and source is loaded.source else ""
 
     def start(self) -> None:
         """Begin to look at the file, on a thread of its own."""

@@ -30,7 +30,7 @@ class Phase(StrEnum):
     READING = "READING"
     PROVING = "PROVING"
     DRAWING = "DRAWING"
-    PART = "PROVING THE PART MADE BY"  # before it is known, the program will not start
+    PART = "PROVING PART:"  # before it is known, the program will not start
     READY = "READY"
     REFUSED = "REJECTED"  # the proof found errors: it is shown, but it will not run
     UNREADABLE = "UNREADABLE"

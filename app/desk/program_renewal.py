@@ -19,6 +19,7 @@ from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
 from core.executor.commands import Command, GiveProof, Renew, UseOffsets
 from core.executor.job import Job, Proof, outdated
 from core.executor.snapshot import Snapshot, State
+from core.message import Message
 
 # --- while the program runs ---------------------------------------------------------------------------
 
@@ -156,7 +157,7 @@ class ProgramRenewal:
         trouble, before = book.poll(), self._changes
         self._changes = book.changes
         if trouble:
-            self.warn(f"REJECTED: {trouble}")
+            self.warn(Message("REJECTED: {why}", why=trouble))
         changed, under_way = self._changes != before, snapshot.state in UNDER_WAY
         if changed and under_way:
             self.renewing.begin()
@@ -177,7 +178,7 @@ class ProgramRenewal:
         """While there is still time to take a change back."""
         why = self.renewing.trouble()
         if why and snapshot.state in UNDER_WAY:
-            self.warn(tr("NEXT PART WILL NOT START WITH THE CHANGED OFFSETS: {why}").format(why=why))
+            self.warn(tr(Message("NEXT PART WILL NOT START WITH THE CHANGED OFFSETS: {why}", why=why)))
 
     def _outdated(self, snapshot: Snapshot) -> bool:
         """The job before has left another unit than this program was proved with, and it names none."""

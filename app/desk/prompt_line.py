@@ -19,17 +19,18 @@ from core.alarms import CATALOGUE, Code
 from core.executor.job import WARNING
 from core.executor.snapshot import Alarm, Event, Snapshot, State
 from core.language.diagnostics import Severity
+from core.message import Message
 from core.tool_edges import edge_name
 
 OF_PROGRAM: frozenset[Code] = frozenset({"program-stop", "optional-stop"})  # stops with a message
 NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
 ASK_FILE = "FILE TO BE PROCESSED"
-CHOOSE_FILE = "TYPE A NAME OR SELECT A PROGRAM WITH THE ARROWS   ENTER: LOAD   ESC: CLOSE THE LIST"
-NONE_NAMED = "TO EDIT, TYPE A NAME OR SELECT A PROGRAM WITH THE ARROWS FIRST"
+CHOOSE_FILE = "TYPE A NAME OR SELECT A PROGRAM   ENTER: LOAD   ESC: CLOSE"
+NONE_NAMED = "TO EDIT, FIRST TYPE A NAME OR SELECT ONE WITH THE ARROWS"
 ONE_PALM = "ONLY ONE PALM BUTTON PRESSED: PRESS BOTH WITHIN 0.5 S"
-ONE_HAND = "PRESS BOTH PALM BUTTONS WITHIN 0.5 S. ONE HAND ONLY: F10, 7, ENTER, PALM BUTTONS ON THE SCREEN"
+ONE_HAND = "PRESS BOTH PALM BUTTONS WITHIN 0.5 S. ONE-HAND MODE: F10, 7"
 STOP_HELD = "RELEASE THE STOP KEY FIRST"
-BOTH_UP = "ONE PALM BUTTON PRESSED FOR OVER 0.5 S: RELEASE BOTH, THEN PRESS BOTH"
+BOTH_UP = "RELEASE BOTH PALM BUTTONS, THEN PRESS BOTH WITHIN 0.5 S"
 CONTROL_SILENT = "CONTROL NOT RESPONDING. PRESS E-STOP. SCREEN IS NOT LIVE"
 NOT_HERE = "START CYCLES ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
 RESTORING = "CANNOT START: A BACKUP IS BEING RESTORED"
@@ -37,9 +38,9 @@ STALE = "CANNOT START: THE PROGRAM IS BEING RELOADED"
 NO_START = "WILL NOT START"  # how the standing prompt begins then
 GIVE_UP = "PRESS Y TO ABORT THE PROGRAM, N TO KEEP IT"
 TWIST_OUT = "PRESS Y TO RELEASE THE E-STOP, N TO LEAVE IT PRESSED"
-NO_MUSHROOM = "PRESS THE RED E-STOP BUTTON ON THE MACHINE. THIS KEY ONLY STARTED FEED HOLD"
+NO_MUSHROOM = "PRESS E-STOP ON THE MACHINE. THIS KEY ONLY STARTED FEED HOLD"
 HOW_TO_HOLD = "FEED HOLD: PAUSE, H OR ESC   E-STOP: SCROLL LOCK (STOP)"
-KEYBOARD_AWAY = "KEYBOARD IS IN ANOTHER WINDOW: STOP KEYS DO NOT WORK. USE THE BUTTONS, OR TOUCH THIS WINDOW"
+KEYBOARD_AWAY = "STOP KEYS DO NOT WORK. TAP THIS WINDOW OR USE THE BUTTONS"
 MOVING = frozenset({State.RUN, State.HOLDING, State.WAIT, State.JOG, State.HOME})
 INTERRUPTED = frozenset({State.HOLD, State.BLOCK_END, State.PROGRAM_STOP})
 UNDER_WAY = MOVING | INTERRUPTED
@@ -50,7 +51,7 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str, *, fiel
 
     ``field_open``: letters are text.
     """
-    go_on = f"TO CONTINUE: {start}. R: ABORT THE PROGRAM"
+    go_on = Message("TO CONTINUE: {start}. R: ABORT THE PROGRAM", start=start)
     standing = {
         State.ESTOP: _estop(release),
         State.DISABLED: "DRIVES ARE OFF: PRESS D FOR DRIVES ON",
@@ -67,13 +68,12 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str, *, fiel
     return standing.get(snapshot.state) or _idle(snapshot, loaded, start)
 
 
-def announced(snapshot: Snapshot, *, starts_here: bool = True) -> str:
+def announced(snapshot: Snapshot, *, starts_here: bool = True) -> tuple[str, ...]:
     """What goes before everything else: what will start with the next start; empty when nothing will.
 
     What the proof has warned of is told where a cycle can be started.
     """
-    told = (text for text in snapshot.announced if starts_here or not text.startswith(WARNING))
-    return "".join(f"{text} · " for text in told)
+    return tuple(text for text in snapshot.announced if starts_here or not text.startswith(WARNING))
 
 
 def alarm_of(snapshot: Snapshot, release: str, *, field_open: bool = False) -> str:
@@ -82,30 +82,41 @@ def alarm_of(snapshot: Snapshot, release: str, *, field_open: bool = False) -> s
         if not snapshot.alarms:
             return "ALARM: CORRECT THE CAUSE, THEN PRESS R TO ACKNOWLEDGE"
         if field_open:
-            return f"WHAT TO DO: {snapshot.alarms[0].remedy}  ·  F1: LEAVE THE PAGE, THEN R: ACKNOWLEDGE"
-        return f"WHAT TO DO: {snapshot.alarms[0].remedy}  ·  R: ACKNOWLEDGE   F7: ALARM LIST"
+            return Message(
+                "WHAT TO DO: {remedy}  ·  F1: LEAVE THE PAGE, THEN R: ACKNOWLEDGE",
+                remedy=snapshot.alarms[0].remedy,
+            )
+        return Message(
+            "WHAT TO DO: {remedy}  ·  R: ACKNOWLEDGE   F7: ALARM LIST", remedy=snapshot.alarms[0].remedy
+        )
     return _estop(release) if snapshot.state is State.ESTOP else ""
 
 
 def _estop(release: str) -> str:
-    return f"E-STOP: MAKE THE MACHINE SAFE. {release}. THEN D: DRIVES ON"
+    return Message("E-STOP: MAKE THE MACHINE SAFE. {release}. THEN D: DRIVES ON", release=release)
 
 
 def reason(view: MachineStatus) -> str:
     """Below the prompt, on every page: why the machine stands; of a hold also what to do."""
     if view.alarms:
-        return f"CAUSE: {exactly(view.alarms[0])}"
+        return Message("CAUSE: {stop}", stop=exactly(view.alarms[0]))
     if view.stop is None:
         return ""
-    cause = f"CAUSE: {exactly(view.stop)}"
-    return cause if view.stop.code == "estop" else f"{cause}  ·  WHAT TO DO: {view.stop.remedy}"
+    cause = Message("CAUSE: {stop}", stop=exactly(view.stop))
+    return (
+        cause
+        if view.stop.code == "estop"
+        else Message("{cause}  ·  WHAT TO DO: {remedy}", cause=cause, remedy=view.stop.remedy)
+    )
 
 
 def exactly(alarm: Alarm) -> str:
     """What is known of this one, and the likeliest cause."""
     likely = alarm.causes[0] if alarm.causes else ""
     cause = cause_of(alarm)
-    return cause if likely in {"", alarm.cause} else f"{cause}; {tr(likely)}"
+    return (
+        cause if likely in {"", alarm.cause} else Message("{cause}; {likely}", cause=cause, likely=tr(likely))
+    )
 
 
 def cause_of(alarm: Alarm) -> str:
@@ -118,7 +129,7 @@ def _idle(snapshot: Snapshot, loaded: Loaded, start: str) -> str:
     if loaded.busy:
         return _progress(loaded)
     asked = interrupted_notice.interrupted_prompt(snapshot, loaded, start)
-    return lacking(snapshot, loaded) or asked or f"TO START: {start}"
+    return lacking(snapshot, loaded) or asked or Message("TO START: {start}", start=start)
 
 
 def lacking(snapshot: Snapshot, loaded: Loaded) -> str:
@@ -131,10 +142,16 @@ def lacking(snapshot: Snapshot, loaded: Loaded) -> str:
         return "THE PROGRAM IS NOT PROVED YET AND WILL NOT START"
     missing = missing_tools(loaded)
     if missing and "Y" in snapshot.axes:
-        return f"WILL NOT START: {', '.join(missing)} NOT IN THE TOOL TABLE (F8)"
+        return Message("WILL NOT START: {missing} NOT IN THE TOOL TABLE (F8)", missing=", ".join(missing))
     if missing:
-        return f"WILL NOT START: NO OFFSET SET FOR {', '.join(missing)}. SET IT WITH F8"
-    return f"WILL NOT START: {snapshot.next_barred}" if snapshot.next_barred else ""
+        return Message(
+            "WILL NOT START: NO OFFSET SET FOR {missing}. SET IT WITH F8", missing=", ".join(missing)
+        )
+    return (
+        Message("WILL NOT START: {next_barred}", next_barred=snapshot.next_barred)
+        if snapshot.next_barred
+        else ""
+    )
 
 
 def missing_tools(loaded: Loaded) -> list[str]:
@@ -147,15 +164,27 @@ def missing_tools(loaded: Loaded) -> list[str]:
 def refusal(loaded: Loaded) -> str:
     """Why the program on the desk will not run: the first error, and how many there are."""
     if loaded.phase is Phase.UNREADABLE:
-        return f"{loaded.name} CANNOT BE LOADED: {loaded.trouble}. F2: CHOOSE ANOTHER PROGRAM"
+        return Message(
+            "{loaded} CANNOT BE LOADED: {problem}. F2: CHOOSE ANOTHER PROGRAM",
+            loaded=loaded.name,
+            problem=loaded.trouble,
+        )
     errors = loaded.errors
     if not errors:
-        first = loaded.proof.errors[0] if loaded.proof and loaded.proof.errors else "PROVING FOUND ERRORS"
-        return f"WILL NOT RUN: {first}"
+        first = loaded.proof.errors[0] if loaded.proof and loaded.proof.errors else ("THE PROOF FOUND ERRORS")
+        return Message("WILL NOT RUN: {text}", text=first)
     first_error = errors[0]
     more = len(errors) - 1
-    said = f"{first_error.message} ({more} MORE)" if more else first_error.message
-    return f"WILL NOT RUN: LINE {first_error.line}: {said}" if first_error.line else f"WILL NOT RUN: {said}"
+    said = (
+        Message("{first_error} ({more} MORE)", first_error=first_error.message, more=more)
+        if more
+        else first_error.message
+    )
+    return (
+        Message("WILL NOT RUN: LINE {line}: {text}", line=first_error.line, text=said)
+        if first_error.line
+        else Message("WILL NOT RUN: {text}", text=said)
+    )
 
 
 def remedy(loaded: Loaded, prompt: str) -> str:
@@ -169,12 +198,16 @@ def remedy(loaded: Loaded, prompt: str) -> str:
         return ""
     warned = (each for each in loaded.diagnostics if each.check and each.severity is Severity.WARNING)
     first = next(warned, None)
-    return f"LINE {first.line}: {first.text}  ·  {first.hint}" if first is not None else ""
+    return (
+        Message("LINE {line}: {first}  ·  {hint}", line=first.line, first=first.text, hint=first.hint)
+        if first is not None
+        else ""
+    )
 
 
 def _progress(loaded: Loaded) -> str:
-    count = f" {loaded.reached} BLOCKS" if loaded.reached else ""
-    return f"{loaded.phase.value} {loaded.name}{count}"
+    count = Message(" {reached} BLOCKS", reached=loaded.reached) if loaded.reached else ""
+    return Message("{phase} {loaded}{count}", phase=loaded.phase.value, loaded=loaded.name, count=count)
 
 
 # --- answers and questions ----------------------------------------------------------------------------
@@ -295,15 +328,15 @@ class PromptAnswers:
         while self._heard:
             event = self._heard.popleft()
             if event.kind == "refused" and event.text != snapshot.start_refused:
-                self.say(f"REJECTED: {event.text}")
+                self.say(Message("REJECTED: {why}", why=event.text))
             elif event.kind in {"disturbed", "shared"}:
                 self.say(event.text)
             elif event.kind == "uncounted":
-                self.say(f"NOT COUNTED AS A PART: {event.text}")
+                self.say(Message("NOT COUNTED AS A PART: {event}", event=event.text))
         if snapshot.start_refused != self._refused:
             self._refused = snapshot.start_refused
             if self._refused:
-                self.say(f"CANNOT START: {self._refused}")
+                self.say(Message("CANNOT START: {refused}", refused=self._refused))
         self._tell_not_kept()
 
     def _tell_not_kept(self) -> None:
@@ -312,4 +345,4 @@ class PromptAnswers:
         if trouble != self._not_kept:
             self._not_kept = trouble
             if trouble:
-                self.say(f"NOT SAVED: {trouble}")
+                self.say(Message("NOT SAVED: {error}", error=trouble))

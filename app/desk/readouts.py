@@ -11,6 +11,7 @@ from app.desk import formats
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
 from core.interpreter.working_plane import Swivel
+from core.message import Message, join_messages
 from core.ports import Unknown
 
 # --- lit words ----------------------------------------------------------------------------------------
@@ -74,7 +75,7 @@ def _output_lamp(snapshot: Snapshot, lamp: Lamp) -> Lamp:
     """The lamp; of an output that nobody hears neither on nor off can be said."""
     if Unknown.OUTPUTS not in snapshot.unknown:
         return lamp
-    return Lamp(f"{lamp.word} {UNKNOWN}", lit=True, warn=True)
+    return Lamp(Message("{word} {unknown}", word=lamp.word, unknown=UNKNOWN), lit=True, warn=True)
 
 
 def _rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
@@ -142,7 +143,7 @@ def system_words(swivel: Swivel | None) -> str:
         return tr("MACHINE")
     if not swivel.system.tilted:
         return tr("WORKPIECE")
-    return tr("TILTED PLANE OF LINE {line}").format(line=swivel.system.line)
+    return tr(Message("TILTED PLANE OF LINE {line}", line=swivel.system.line))
 
 
 def rotary_angle(degrees: float) -> str:
@@ -271,13 +272,19 @@ def _words(snapshot: Snapshot, readout: Readout) -> str:
     words = tr("X IS A DIAMETER") if snapshot.reads_diameter else tr("X IS A RADIUS")
     if snapshot.reads_diameter == snapshot.modal.diameter:
         return words
-    return f"{words}  ·  {tr('CONTROL IN G72 Ø') if snapshot.modal.diameter else tr('CONTROL IN G73 R')}"
+    return join_messages(
+        "  ·  ", (words, tr("CONTROL USES G72 Ø") if snapshot.modal.diameter else tr("CONTROL USES G73 R"))
+    )
 
 
 def _unit(metric: bool, control: bool) -> str:
     """The unit of the figures; where the control is in the other one, that is said beside it."""
     names = ("INCH", "MM")
-    return names[metric] if metric == control else f"{names[metric]}  ·  CONTROL IN {names[control]}"
+    return (
+        names[metric]
+        if metric == control
+        else Message("{names}  ·  CONTROL USES {names2}", names=names[metric], names2=names[control])
+    )
 
 
 def _figures(snapshot: Snapshot, readout: Readout, metric: bool, diameter: bool) -> list[str]:
@@ -381,7 +388,7 @@ def spindle_figures(snapshot: Snapshot, metric: bool, language: str) -> SpindleF
     forward, reverse, off = _directions(language)
     direction = forward if command > 0 else reverse if command < 0 else off
     if snapshot.oriented is not None:
-        direction = tr("ORIENTED {angle}").format(angle=formats.angle(snapshot.oriented))
+        direction = tr(Message("ORIENTED {angle}", angle=formats.angle(snapshot.oriented)))
     return SpindleFigures(
         direction=f"{direction} · G96" if modal.css else direction,
         rpm=formats.rpm(command),

@@ -9,6 +9,7 @@ from typing import Protocol
 from core.executor.commands import Command, CycleStart, EnableDrives, FeedHold, Home, LoadJob, SetSwitch
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Snapshot, State
+from core.message import Message
 from core.ports import Clock
 
 TICK = 0.01  # s between two looks at the machine
@@ -76,14 +77,16 @@ class HeadlessRun:
         if not self._home():
             self._executor.post(FeedHold("the command line"))
             self._step()
-            return self._outcome("waiting", f"the axes have not found home in {HOMING:.0f} s")
+            return self._outcome(
+                "waiting", Message("homing did not finish within {homing} s", homing=f"{HOMING:.0f}")
+            )
         self._executor.post(SetSwitch("optional_stop", optional_stop))
         self._executor.post(LoadJob(job, proof))
         self._proof = proof
         self._step()
         before = self._executor.snapshot.parts  # a program of one action is over before anybody looks
         if not self._start(lambda s: s.state is not State.IDLE or bool(s.start_refused) or s.parts > before):
-            return self._outcome("waiting", "no start has come; were both palm buttons pressed?")
+            return self._outcome("waiting", "no Cycle Start received; were both palm buttons pressed?")
         if self._executor.snapshot.state in UNDER_WAY:
             return self._watch()
         return self._ended()
@@ -94,7 +97,7 @@ class HeadlessRun:
         lost = [name for name, homed in zip(snapshot.axes, snapshot.homed, strict=True) if not homed]
         if not lost or snapshot.state is not State.IDLE:
             return True
-        self._say(f"homing {', '.join(lost)}")
+        self._say(Message("homing {lost}", lost=", ".join(lost)))
         self._until(lambda s: s.state is State.HOME, Home(), tries=20)
         return self._wait(lambda s: s.state is not State.HOME, tries=round(HOMING / TICK))
 
@@ -122,15 +125,25 @@ class HeadlessRun:
             if snapshot.state not in UNDER_WAY:
                 return self._ended()
             if snapshot.state is State.PROGRAM_STOP:
-                self._say(f"line {snapshot.line}: stop {snapshot.message!r}: Cycle Start pressed")
+                self._say(
+                    Message(
+                        "line {line}: program stop {snapshot}; Cycle Start pressed",
+                        line=snapshot.line,
+                        snapshot=f"{snapshot.message!r}",
+                    )
+                )
                 if not self._started_again():
-                    return self._outcome("waiting", snapshot.start_refused or "Cycle Start is not obeyed")
+                    return self._outcome("waiting", snapshot.start_refused or ("Cycle Start has no effect"))
             elif snapshot.state is State.HOLD:
                 return self._outcome("hold", snapshot.waiting_for or "feed hold")
             elif self._stuck(snapshot):
                 self._executor.post(FeedHold("the command line"))
                 self._step()
-                hint = f"line {snapshot.line} waits for {snapshot.waiting_for}: give its state in --inputs"
+                hint = Message(
+                    "line {line} waits for {waiting_for}; specify its state with --inputs",
+                    line=snapshot.line,
+                    waiting_for=snapshot.waiting_for,
+                )
                 return self._outcome("waiting", hint)
             self._progress(snapshot.cycle_elapsed)
             self._step()
@@ -154,11 +167,16 @@ class HeadlessRun:
         snapshot = self._executor.snapshot
         alarm = snapshot.alarms[-1] if snapshot.alarms else snapshot.stop
         if alarm is not None and snapshot.state is not State.IDLE:  # an E-stop is a stop, not an alarm
-            return self._outcome("alarm", f"{alarm.text}: {alarm.cause}; {alarm.remedy}")
+            return self._outcome(
+                "alarm",
+                Message(
+                    "{alarm}: {cause}; {remedy}", alarm=alarm.text, cause=alarm.cause, remedy=alarm.remedy
+                ),
+            )
         if snapshot.start_refused:
             return self._outcome("refused", snapshot.start_refused)
         if snapshot.state is not State.IDLE:
-            return self._outcome("refused", f"the machine is in state {snapshot.state}")
+            return self._outcome("refused", Message("the machine is in state {state}", state=snapshot.state))
         return self._outcome("complete", "")
 
     def _outcome(self, state: str, why: str) -> Outcome:

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from enum import StrEnum
 
 from app.desk.persistence import Persistence
+from core.message import Message
 from core.store.store_errors import StoreError
 
 KEY = "screen"
@@ -80,7 +81,9 @@ class SettingsBook:
         before, self.now = getattr(self.now, name), replace(self.now, **{name: value})  # type: ignore[arg-type]
         self.persistence.save_setting(KEY, asdict(self.now))
         if name not in _PASSING:
-            self.persistence.note_change(f"screen: {name} {before} → {value}")
+            self.persistence.note_change(
+                Message("screen: {name} {before} → {value}", name=name, before=before, value=value)
+            )
 
     def following(self, name: str) -> object:
         """The choice after the present one."""

@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from app.desk.latest import sentence
+from core.message import Message
 
 PLAYERS = (("pw-play",), ("paplay",), ("aplay", "-q"), ("afplay",))
 """Programs that play a file: PipeWire's, PulseAudio's, ALSA's, that of macOS. The first that can does."""
@@ -70,9 +71,13 @@ def _played(command: list[str]) -> str:
     try:
         done = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
     except subprocess.TimeoutExpired:
-        return f"{command[0]} did not finish in time"
+        return Message("{command} did not finish in time", command=command[0])
     said = done.stderr.decode(errors="replace").strip().splitlines()
-    return "" if done.returncode == 0 else (said[-1] if said else f"{command[0]} failed")
+    return (
+        ""
+        if done.returncode == 0
+        else (said[-1] if said else Message("{command} failed", command=command[0]))
+    )
 
 
 class Sounds:

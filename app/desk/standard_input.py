@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 
 from app.desk.command_errors import CommandError
+from core.message import Message
 
 DASH = "-"
 MOST_BYTES = 64 * 1024 * 1024  # a program has no more, and a pipe may have no end
@@ -25,11 +26,17 @@ def standard_input(what: str) -> bytes:
         return _taken[what]
     for other in _taken:
         raise CommandError(
-            f"- (stdin) is already used for the {other}; name a file for the {what}", "stdin-taken"
+            Message(
+                "- (stdin) is already used for the {other}; name a file for the {what}",
+                other=other,
+                what=what,
+            ),
+            "stdin-taken",
         )
     if sys.stdin is None:
         raise CommandError(
-            f"stdin is closed, so the {what} cannot be read from it; name a file", "stdin-closed"
+            Message("stdin is closed, so the {what} cannot be read from it; name a file", what=what),
+            "stdin-closed",
         )
     _taken[what] = sys.stdin.buffer.read(MOST_BYTES + 1)
     return _taken[what]

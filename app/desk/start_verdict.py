@@ -21,6 +21,7 @@ from core.executor.job import Job, interpret
 from core.executor.snapshot import Starts
 from core.executor.start_clearance import CROSSES, INSIDE, Clearance
 from core.language.diagnostics import Diagnostic, Severity
+from core.message import Message
 from core.tool_edges import edge_name
 
 if TYPE_CHECKING:
@@ -150,22 +151,26 @@ def _verdict(plain: Clearance, found: FirstMove, part: KnownPart) -> Clearance:
 
 
 def _not_known() -> str:
-    return tr("PART IN THE CHUCK UNKNOWN. CHECK THE FIRST MOVE BEFORE STARTING")
+    return tr("UNKNOWN PART IN CHUCK. CHECK THE FIRST MOVE BEFORE STARTING")
 
 
 def _words(found: FirstMove, part: KnownPart) -> str:
     from core.proving.start_check import Body
 
     what = {Body.PART: tr("THE PART"), Body.CHUCK: tr("THE CHUCK"), Body.TAILSTOCK: tr("THE TAILSTOCK")}
-    text = tr("{tool} IS INSIDE {what}") if found.inside else tr("THE FIRST MOVE TAKES {tool} THROUGH {what}")
-    said = text.format(tool=edge_name(found.tool), what=what[found.met] if found.met else "")
-    return f"{said}: {_way_out(found, part)}"
+    text = (
+        tr("{tool} IS INSIDE {what}")
+        if found.inside
+        else tr("THE FIRST MOVE WOULD TAKE {tool} THROUGH {what}")
+    )
+    said = tr(Message(text, tool=edge_name(found.tool), what=what[found.met] if found.met else ""))
+    return Message("{text}: {value}", text=said, value=_way_out(found, part))
 
 
 def _way_out(found: FirstMove, part: KnownPart) -> str:
-    jog = tr("JOG {direction} UNTIL THE TOOL IS CLEAR").format(direction=found.out)
+    jog = tr(Message("JOG {direction} UNTIL THE TOOL IS CLEAR", direction=found.out))
     if not found.out:
-        jog = tr("JOG IT BACK OUT ALONG ITS ENTRY PATH")
+        jog = tr("JOG THE TOOL BACK OUT ALONG ITS ENTRY PATH")
     if part.broken is None or not may_go_on(Loaded(source=part.job.source)):
         return jog
-    return tr("PRESS F6, THEN F4 TO RETRACT, OR {jog}").format(jog=jog)
+    return tr(Message("PRESS F6, THEN F4 TO RETRACT, OR {jog}", jog=jog))

@@ -22,6 +22,7 @@ from core.executor.commands import Command, GiveClearance
 from core.executor.job import Job
 from core.executor.snapshot import CYCLE, LINES, Snapshot, Starts, State
 from core.executor.start_clearance import Clearance
+from core.message import Message
 
 _AT_REST = frozenset({State.IDLE, State.DISABLED})
 
@@ -128,7 +129,7 @@ class StartWatch:
 
     def _failed(self, asked: StartQuestion, why: str) -> None:
         """A check that fails makes no start safe: that is announced."""
-        warned = tr("THE FIRST MOVE COULD NOT BE CHECKED: {why}").format(why=why)
+        warned = tr(Message("THE FIRST MOVE COULD NOT BE CHECKED: {why}", why=why))
         self._found(FirstMoveSeen((Clearance(asked.job.digest, asked.at, asked.begun, warned=warned),)))
 
 

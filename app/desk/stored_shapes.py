@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from core.message import Message
 from core.part.holder_codes import outline_points
 from core.part.shape_rules import ShapeMistake, shape_mistakes
 from core.part.tool_shape import Hand, ToolKind, ToolShape
@@ -41,7 +42,7 @@ def wrong_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -
     Each field was sound when it was entered; it is another that has changed since, or the tool's offset.
     """
     return tuple(
-        f"{edge_name(number)} {wrong.field}: {wrong.text}"
+        Message("{number} {field}: {wrong}", number=edge_name(number), field=wrong.field, wrong=wrong.text)
         for number, row in shapes.items()
         for wrong in row_mistakes(row, tools.get(number))
     )
@@ -50,6 +51,6 @@ def wrong_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -
 def row_mistakes(row: ShapeRow, tool: ToolRow | None) -> tuple[ShapeMistake, ...]:
     """What in a row cannot be: fields that contradict each other, a code or an outline that means nothing."""
     if row.profile and outline_points(row.profile) is None:
-        text = "a profile needs three or more points, Z and X in mm: 0,0 2.5,0 1.2,1.5"
+        text = "a profile needs at least three points, each with Z and X in mm, for example 0,0 2.5,0 1.2,1.5"
         return (ShapeMistake("profile", text, "not-an-outline"),)
     return shape_mistakes(shape_of(row, tool))

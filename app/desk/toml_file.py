@@ -10,6 +10,7 @@ from app.desk.command_errors import CommandError
 from app.desk.standard_input import DASH, standard_input
 from core.coded_error import CodedError
 from core.input_file import TooLargeError, input_bytes
+from core.message import Message
 from core.nearest import nearest
 from core.toml_text import toml_tables
 
@@ -30,12 +31,21 @@ def read_toml(path: Path) -> dict[str, object]:
         raise _too_large(path) from error
     except OSError as error:
         raise CommandError(
-            f"{path} cannot be read ({error.strerror}); check name and rights", "unreadable"
+            Message(
+                "{path} cannot be read ({cause}); check the name and the permissions",
+                path=path,
+                cause=error.strerror,
+            ),
+            "unreadable",
         ) from error
     except UnicodeDecodeError as error:
-        raise CommandError(f"{path} is not UTF-8 text; save it as such", "not-utf8") from error
+        raise CommandError(
+            Message("{path} is not UTF-8 text; save the file as UTF-8", path=path), "not-utf8"
+        ) from error
     except ValueError as error:
-        raise CommandError(f"{path} is no TOML: {error}", "not-toml") from error
+        raise CommandError(
+            Message("{path} is not a valid TOML file: {error}", path=path, error=error), "not-toml"
+        ) from error
 
 
 def _with_nought(found: re.Match[str]) -> str:
@@ -54,7 +64,9 @@ def _bytes_of(path: Path) -> bytes:
 
 
 def _too_large(path: Path) -> CommandError:
-    text = f"{path} is over 16 MB, so it is no file of this kind; look at its name"
+    text = Message(
+        "{path} is larger than 16 MB, so it cannot be a file of this type; check the name", path=path
+    )
     return CommandError(text, "too-large")
 
 
@@ -62,16 +74,25 @@ def unknown(key: str, known: Iterable[str]) -> str:
     """The sentence for a key that nobody reads, with the nearest that somebody does."""
     names = list(known)
     near = nearest(key, names)
-    return f"{key} is unknown; " + (f"did you mean {near}?" if near else f"known here: {', '.join(names)}")
+    return Message(
+        "{key} is unknown; {nearest}",
+        key=key,
+        nearest=f"did you mean {near}?" if near else f"known here: {', '.join(names)}",
+    )
 
 
 def unknown_key(key: str, known: Iterable[str], table: str = "") -> CodedError:
     """Return the mistake of a key that nothing reads, with the table that holds it."""
-    return CodedError(f"[{table}] {unknown(key, known)}" if table else unknown(key, known), "unknown-key")
+    return CodedError(
+        Message("[{table}] {key}", table=table, key=unknown(key, known)) if table else unknown(key, known),
+        "unknown-key",
+    )
 
 
 def refuse(path: Path, mistakes: Sequence[CodedError]) -> None:
     """Raise CommandError with the texts and the codes of all mistakes, in their order, if there are any."""
     if mistakes:
         text = "; ".join(str(each) for each in mistakes)
-        raise CommandError(f"{path}: {text}", " ".join(each.code for each in mistakes))
+        raise CommandError(
+            Message("{path}: {text}", path=path, text=text), " ".join(each.code for each in mistakes)
+        )

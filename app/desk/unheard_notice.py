@@ -5,6 +5,7 @@ from __future__ import annotations
 from app.desk.interrupted_notice import NoticeRow
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.ports import Unknown
 
 
@@ -20,8 +21,8 @@ def unheard_notice(snapshot: Snapshot) -> NoticeRow | None:
         Unknown.INPUTS: tr("INPUTS"),
     }
     what = ", ".join(words for which, words in named.items() if which in unknown)
-    head = tr("{what} UNKNOWN: NO RESPONSE FROM THE MACHINE").format(what=what)
+    head = tr(Message("{what} UNKNOWN: NO RESPONSE FROM THE MACHINE", what=what))
     if Unknown.SPINDLE in unknown:
         head = tr("SPINDLE UNKNOWN – SPINDLE MAY BE TURNING: PRESS E-STOP")
-    below = tr("UNKNOWN: {what} · LAST KNOWN VALUES ARE SHOWN").format(what=what)
+    below = tr(Message("UNKNOWN: {what} · LAST KNOWN VALUES ARE SHOWN", what=what))
     return NoticeRow(head, below, tone="alarm")

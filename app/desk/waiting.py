@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
+from core.message import Message, join_messages
 
 _ENDS = {
     "AT SPEED": "SPINDLE COMING TO SPEED: PROGRAM CONTINUES AUTOMATICALLY",
     "DWELL": "PROGRAM DWELL (G04): CONTINUES AUTOMATICALLY",
     "COLLET": "COLLET MOVING: PROGRAM CONTINUES AUTOMATICALLY",
     "SPINDLE STOP": "SPINDLE STOPPING: PROGRAM CONTINUES AUTOMATICALLY",
-    "SPINDLE STOPPED": "SPINDLE WAS STOPPED: SWITCH IT OFF AND BACK TO AUTO (A), THEN CYCLE START",
+    "SPINDLE STOPPED": ("TURN SPINDLE SWITCH OFF, BACK TO AUTO (A), THEN CYCLE START"),
     "SPINDLE SWITCH OFF": "SPINDLE SWITCH IS OFF. A: SWITCH TO AUTO",
     "SPINDLE OVERRIDE AT 0": "SPINDLE OVERRIDE IS AT 0: TURN IT UP (.)",
     "FEED OVERRIDE AT 0": "FEED OVERRIDE IS AT 0: TURN IT UP (+)",
-    "FEED HOLD BEHIND THE TAP": "TAP BACKS OUT OF ITS HOLE FIRST. E-STOP: STOP IT AT ONCE",
+    "FEED HOLD BEHIND THE TAP": "THE TAP BACKS OUT OF THE HOLE FIRST. E-STOP: STOP AT ONCE",
     "GUARD OPEN": "THE GUARD IS OPEN: CLOSE IT",
 }
 GIVES_UP = "FEED HOLD (PAUSE), THEN R: ABORT THE PROGRAM"
@@ -27,7 +28,7 @@ def waits_for(snapshot: Snapshot) -> str:
         return name
     if _is_input(snapshot):
         state = tr("OFF") if name in snapshot.inputs else tr("ON")
-        return tr("INPUT {name} TO TURN {state}").format(name=name, state=state)
+        return tr(Message("INPUT {name} TO TURN {state}", name=name, state=state))
     return name
 
 
@@ -37,13 +38,13 @@ def how_it_ends(snapshot: Snapshot, simulated: bool = False) -> str:
     if not name:
         return ""
     if name in _ENDS:
-        return f"{tr(_ENDS[name])}  ·  {tr(GIVES_UP)}"
+        return join_messages("  ·  ", (tr(_ENDS[name]), tr(GIVES_UP)))
     if not _is_input(snapshot):
         return ""
-    words = tr("PROGRAM WAITING FOR {what}").format(what=waits_for(snapshot))
+    words = tr(Message("PROGRAM WAITING FOR {what}", what=waits_for(snapshot)))
     if simulated:
         words += "  ·  " + tr("F10, 3, ENTER, F4: SWITCH SIMULATED INPUTS")
-    return f"{words}  ·  {tr(GIVES_UP)}"
+    return join_messages("  ·  ", (words, tr(GIVES_UP)))
 
 
 def _is_input(snapshot: Snapshot) -> bool:

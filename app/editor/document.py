@@ -10,6 +10,7 @@ from app.editor.versions import Archive
 from app.programs.whole_file import present, write_whole
 from core.coded_error import CodedError
 from core.language.source import SourceError, load_source
+from core.message import Message
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
 
@@ -59,8 +60,12 @@ def open_document(path: Path, samples: Path) -> Document:
     if text.count("\n") >= MOST_LINES:
         raise TooLongError(
             (
-                f"{path.name} has over {MOST_LINES} lines, too many for this editor; split the file "
-                "in another editor"
+                Message(
+                    "{path} has over {most_lines} lines, too many for this editor; split the file in "
+                    "another editor",
+                    path=path.name,
+                    most_lines=MOST_LINES,
+                )
             ),
             "too-long",
         )
@@ -90,17 +95,25 @@ def program_name(typed: str, usual: str) -> str:
     if not name:
         raise NameRefusedError("ENTER A PROGRAM NAME")
     if name.startswith("."):
-        raise NameRefusedError(f"{name} WOULD BE A HIDDEN FILE. START THE NAME WITH A LETTER OR DIGIT")
+        raise NameRefusedError(
+            Message("{name} WOULD BE A HIDDEN FILE. START WITH A LETTER OR DIGIT", name=name)
+        )
     try:
         check_name(name)
     except StoreError as error:
         raise NameRefusedError(
-            f"{name} IS NOT A VALID NAME. USE LETTERS, DIGITS, DOT, DASH, SPACE"
+            Message("{name}: INVALID NAME. USE LETTERS, DIGITS, DOT, DASH, SPACE", name=name)
         ) from error
     ending = Path(name).suffix
     if ending.lower() not in ENDINGS:
         allowed = " ".join(sorted(ENDINGS - {""}))
-        raise NameRefusedError(f"FILE EXTENSION {ending} NOT ALLOWED. USE NONE OR ONE OF {allowed}")
+        raise NameRefusedError(
+            Message(
+                "EXTENSION {ending} IS NOT ALLOWED. USE ONE OF {allowed} OR NONE",
+                ending=ending,
+                allowed=allowed,
+            )
+        )
     return name if ending else name + usual
 
 

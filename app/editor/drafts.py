@@ -11,6 +11,7 @@ from app.editor import editor_messages as messages
 from app.editor.document import Document
 from app.editor.versions import Archive
 from core.file_placing import write_in_place
+from core.message import Message
 from core.store.store_errors import StoreError
 
 WHY = "unsaved draft"
@@ -56,7 +57,7 @@ class Drafts:
         except (OSError, UnicodeDecodeError, StoreError) as error:
             why = str(error)
         aside = place.replace(place.with_suffix(".left"))  # what is typed now gets its own
-        return messages.DRAFT_STAYS.format(name=aside, why=why)
+        return Message(messages.DRAFT_STAYS, name=aside, why=why)
 
     def poll(self) -> None:
         """Once a frame: take up what was written, and write what was typed since."""

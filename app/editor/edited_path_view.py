@@ -58,7 +58,7 @@ class EditedPath(PathView):
         """To the source line of what the cross stands on; answers a sentence where it stands on none."""
         block = self.ruler.block() if self.ruler is not None else 0
         if not block:
-            return tr("CROSSHAIR IS NOT ON THE PATH. PRESS AN ARROW TO MOVE IT THERE")
+            return tr("CROSSHAIR NOT ON THE PATH. PRESS AN ARROW KEY TO MOVE IT")
         self._picked_block(block)
         return ""
 

@@ -31,6 +31,7 @@ from app.editor.document import (
 from app.editor.drafts import Drafts
 from app.editor.live_proof import LiveProof
 from app.editor.versions import Archive
+from core.message import Message
 
 
 class Stage(StrEnum):
@@ -125,7 +126,7 @@ class Editor:
         try:
             document = new_document(self.programs, self._offered, self.usual_ending)
         except NameRefusedError as error:
-            self.notice = f"{error}. ESC: BACK"
+            self.notice = Message("{error}. ESC: BACK", error=error)
             return
         if document.path.exists():
             self.notice = messages.THERE_ALREADY.format(document.name)
@@ -286,7 +287,7 @@ class Editor:
         if self._leaving:
             self._go(self.document)
         elif not trouble:
-            self.notice = f"{document.name} SAVED"
+            self.notice = Message("{document} SAVED", document=document.name)
 
     def _not_saved(self, why: str) -> None:
         self.stage, self.notice, self._leaving = Stage.OPEN, why, False
@@ -332,10 +333,10 @@ def _take_up(desk: Desk, left: LeftProgram) -> None:
         desk.saved_here()
     if not left.to_desk:
         if left.changed or path != now.path:
-            desk.done(tr(_stays(left, now)).format(name=path.name, other=now.name))
+            desk.done(tr(Message(_stays(left, now), name=path.name, other=now.name)))
     elif not _is_to_load(left, now):
         if path != now.path:
-            desk.done(tr(messages.LOOKED).format(name=path.name, other=now.name))
+            desk.done(tr(Message(messages.LOOKED, name=path.name, other=now.name)))
     elif desk.snapshot().state in UNDER_WAY:
         desk.say(tr(messages.RELOAD))  # somebody started a cycle at the station meanwhile
     elif path == now.path:

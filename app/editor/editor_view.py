@@ -41,6 +41,7 @@ from app.working_plane.plane_instant import at_line, plane_words
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
 from core.language.source import dialect_of
+from core.message import Message
 from core.shapes.shape_table import HELPERS
 
 if TYPE_CHECKING:
@@ -186,7 +187,9 @@ class EditorPage(Page):
         line = self.field.line
         found = self.field.finding_at(line)
         if found is not None:
-            return f"LINE {line}: {found.text} {found.hint}".strip()
+            return Message(
+                "LINE {line}: {value} {hint}", line=line, value=found.text, hint=found.hint
+            ).strip()
         return messages.STANDING
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
@@ -420,7 +423,7 @@ class EditorPage(Page):
         elif self.mode is Mode.NAME:
             self.editor.take_name(entry)
         elif (number := line_of(entry)) is None or number > self.field.blockCount():
-            self.ask.answer = f"ENTER A NUMBER FROM 1 TO {self.field.blockCount()}"
+            self.ask.answer = Message("ENTER A NUMBER FROM 1 TO {count}", count=self.field.blockCount())
             self.ask.first.selectAll()  # the next digit replaces it
         else:
             self.enter(Mode.TEXT)
@@ -434,7 +437,7 @@ class EditorPage(Page):
         line, column, count = self.field.line, self.field.column, self.field.blockCount()
         if self.mode is Mode.SHAPES:  # of the text with what the form writes
             line, count = self.shapes.model.line, self.shapes.model.text.count("\n") + 1
-        place = f"LINE {line} OF {count}  ·  COL {column}"
+        place = Message("LINE {line} OF {count}  ·  COL {column}", line=line, count=count, column=column)
         self.head.heading = Heading(editor.name, self.typed_text.mark, place)
         self.head.with_shapes, self.codes.dialect = written_in(editor.name), dialect_of(editor.name)
         findings = editor.proof.now

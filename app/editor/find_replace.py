@@ -6,6 +6,8 @@ import re
 from bisect import bisect_left
 from dataclasses import dataclass
 
+from core.message import Message
+
 
 @dataclass(frozen=True, slots=True)
 class Search:
@@ -44,11 +46,15 @@ class Search:
     def words(self, text: str) -> str:
         """The count as the screen tells it."""
         count = len(self.places(text))
-        found = f"{count} FOUND" if count else "NOT FOUND"
+        found = Message("{count} FOUND", count=count) if count else "NOT FOUND"
         if not self.whole:
-            return f"{found}, INCLUDING PARTS OF WORDS"
+            return Message("{value}, INCLUDING PARTS OF WORDS", value=found)
         more = self.inside(text)
-        return f"{found}, {more} MORE WITHIN LONGER WORDS" if more else found
+        return (
+            Message(("{value}; {more} MORE ARE PARTS OF LONGER WORDS"), value=found, more=more)
+            if more
+            else found
+        )
 
 
 def following(places: tuple[int, ...], at: int) -> int | None:

@@ -15,6 +15,7 @@ from app.editor.text_view import TONES, WORDS
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Panel
 from core.language.diagnostics import Diagnostic, Severity
+from core.message import Message
 
 ROW = 5.2  # units: two lines of text, at least a fingertip
 
@@ -50,8 +51,12 @@ class FindingList(Panel):
             return "PROVING"
         if not found.diagnostics:
             time = formats.duration(found.cycle_time)
-            return f"PROVED  ·  {found.blocks} BLOCKS  ·  CYCLE {time}"
-        return f"FINDINGS  ·  {_many(found.errors, 'ERROR')}  ·  {_many(found.warnings, 'WARNING')}"
+            return Message("PROVED  ·  {blocks} BLOCKS  ·  CYCLE {time}", blocks=found.blocks, time=time)
+        return Message(
+            "FINDINGS  ·  {errors}  ·  {warnings}",
+            errors=_many(found.errors, "ERROR"),
+            warnings=_many(found.warnings, "WARNING"),
+        )
 
     def following(self, line: int) -> Diagnostic | None:
         """The next error after a line, round the end; without errors the next of what else was found."""

@@ -11,6 +11,7 @@ from app.desk.program_loading import LoadingSteps
 from core.interpreter.dialects import code_book
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
@@ -117,4 +118,4 @@ class LiveProof:
             self._now = findings
 
     def _failed(self, why: str) -> None:
-        self._now = Findings(self._number, trouble=f"PROVING FAILED: {why}")
+        self._now = Findings(self._number, trouble=Message("PROVING FAILED: {why}", why=why))

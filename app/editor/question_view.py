@@ -14,6 +14,7 @@ from app.editor.text_view import TextField
 from app.screen.entry_panel import dress_line
 from app.screen.look import RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
+from core.message import Message
 
 LABEL = 15.0  # units before a field
 ANSWER = 34.0  # units for what is said of the entry
@@ -130,7 +131,9 @@ class Finder:
         places = self._places()
         if places:
             self._field.replace_at(places, len(self._search.needle), self._ask.second.text())
-        self._ask.answer = f"{len(places)} REPLACED" if places else "NOT FOUND"
+        self._ask.answer = (
+            Message("{places_count} REPLACED", places_count=len(places)) if places else "NOT FOUND"
+        )
 
     def other_width(self) -> None:
         """Whole words and numbers only, or parts of them too."""

@@ -8,6 +8,7 @@ from difflib import SequenceMatcher
 from typing import Protocol
 
 from app.desk.latest import Latest, Watch
+from core.message import Message
 from core.store.store_errors import StoreError
 from core.store.store_rows import VersionRow
 
@@ -37,7 +38,10 @@ class NoArchive:
 
     def text_of(self, name: str, version: int) -> bytes:
         """Raises StoreError: no version is kept."""
-        raise StoreError(f"version {version} of {name} is not stored here", "no-version")
+        raise StoreError(
+            Message("version {version} of {name} is not in the program history", version=version, name=name),
+            "no-version",
+        )
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
         """Keeps nothing and answers 0."""
@@ -140,7 +144,7 @@ class VersionHistory:
 
     def heading(self) -> str:
         """What the lines of the comparison are."""
-        return f"CHANGES FROM VERSION {self.number} TO THE EDITOR TEXT"
+        return Message("CHANGES FROM VERSION {number} TO THE EDITOR TEXT", number=self.number)
 
     @property
     def number(self) -> int:

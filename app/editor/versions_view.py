@@ -14,6 +14,7 @@ from app.desk.sheet import Key
 from app.editor.versions import DifferenceRow, VersionHistory
 from app.screen.look import LEFT, RIGHT, Look, Painter, put, put_raw
 from app.screen.panel import Panel, Shown
+from core.message import Message
 from core.store.store_rows import VersionRow
 
 ROW = 5.2  # units: a version, a fingertip high
@@ -76,7 +77,7 @@ class VersionList(Panel):
         upper = box.adjusted(u, 0.4 * u, -u, -box.height() / 2)
         painter.write(upper, f"{version.number}", 2.0, ink)
         painter.write(upper.adjusted(5 * u, 0, 0, 0), at, 1.8, ink, bold=False)
-        painter.write(upper, f"{version.size} bytes", 1.6, soft, at=RIGHT, bold=False)
+        painter.write(upper, Message("{size} bytes", size=version.size), 1.6, soft, at=RIGHT, bold=False)
         put(
             painter,
             upper.translated(5 * u, upper.height()),

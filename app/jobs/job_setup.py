@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from app.desk.formats import local_time
 from app.desk.translation import tr
 from core.language.diagnostics import Diagnostic, Severity
+from core.message import Message
 from core.quality.tool_life import LifeState, ToolLife
 from core.store.store_rows import ToolRow
 from core.tool_edges import edge_name
@@ -70,11 +71,11 @@ def _of_life(tool: SheetTool, life: ToolLife | None, parts: int) -> Iterator[str
     if life is None or life.state is LifeState.NO_LIMIT:
         return
     if life.state is LifeState.SPENT:
-        yield tr("tool life used up, {words}: change the insert").format(words=tr(life.words))
+        yield tr(Message("tool life used up, {words}: change the insert", words=tr(life.words)))
         return
     left = _parts_left(life, tool.time.cutting)
     if left is not None and left < parts:
-        yield tr("tool life left for {left} of {parts} parts").format(left=left, parts=parts)
+        yield tr(Message("remaining tool life covers {left} of {parts} parts", left=left, parts=parts))
 
 
 def _parts_left(life: ToolLife, seconds: float) -> int | None:
@@ -92,19 +93,24 @@ def _of_tip(tool: SheetTool, job: ProvedJob) -> Iterator[str]:
         return
     if then.quadrant == now.quadrant and abs(then.nose_radius - now.nose_radius) < _SAME:
         return
-    words = tr("tip changed: now R {radius}, {tip}; in the run of {when} it was R {was}, {was_tip}")
+    words = tr(
+        "since the last run ({when}), the tool tip has changed from R {was}, {was_tip}, to R {radius}, {tip}"
+    )
     length = job.sheet.length
-    yield words.format(
-        radius=length(now.nose_radius),
-        tip=_tip(now.quadrant),
-        when=local_time(job.ran, seconds=False),
-        was=length(then.nose_radius),
-        was_tip=_tip(then.quadrant),
+    yield tr(
+        Message(
+            words,
+            radius=length(now.nose_radius),
+            tip=_tip(now.quadrant),
+            when=local_time(job.ran, seconds=False),
+            was=length(then.nose_radius),
+            was_tip=_tip(then.quadrant),
+        )
     )
 
 
 def _tip(quadrant: int) -> str:
-    return tr("tip quadrant {quadrant}").format(quadrant=quadrant)
+    return tr(Message("tip quadrant {quadrant}", quadrant=quadrant))
 
 
 def tool_name(number: int) -> str:

@@ -15,7 +15,7 @@ class JobsFunction(PageFunction):
     """How many jobs wait, and which is next."""
 
     name = "JOBS"
-    use = "which job is next, how many parts, what it needs"
+    use = "next job, number of parts, setup requirements"
     page = PAGE
     way = "Press Enter to open the page. Shift+F6 opens it from any page, J from the main menu."
 

@@ -22,13 +22,14 @@ from app.special.parts_counter import whole_number
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Severity
+from core.message import Message
 from core.store import job_queue
 from core.store.job_queue import NOTE_LONGEST, JobRow
 from core.store.program_settings import notes_key
 from core.store.store_errors import StoreError
 
-NONE_YET = "NO JOBS WAITING. F3: ADD LOADED PROGRAM. FOR ANOTHER ONE: PROGRAM LIST (F1, F6), F10"
-NO_PROGRAM = "LOAD A PROGRAM (F1, F2), OR SELECT ONE IN THE PROGRAM LIST (F1, F6) AND PRESS F10"
+NONE_YET = "NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, F10: ADD FROM LIST"
+NO_PROGRAM = "F1, F2: LOAD A PROGRAM   F1, F6, F10: ADD ONE FROM THE LIST"
 _WIDE = 46  # letters of a cell
 
 
@@ -81,7 +82,7 @@ class JobsModel:
         question = ""
         if self.asking == "count":
             name = self.program or (self.job.program if self.job is not None else "")
-            question = tr("HOW MANY PARTS OF {program}?").format(program=name)
+            question = tr(Message("HOW MANY PARTS OF {program}?", program=name))
         elif self.asking == "note":
             question = tr("NOTE")
         return Sheet(
@@ -115,7 +116,7 @@ class JobsModel:
 
     def _state(self, job: JobRow) -> str:
         if job.done:
-            return tr("DONE, STILL LOADED") if self.watch.on_desk(job) else tr("DONE")
+            return tr("JOB DONE, STILL LOADED") if self.watch.on_desk(job) else tr("DONE")
         return tr("IN PROGRESS") if self.watch.on_desk(job) else self.watch.state_words(job)
 
     def setup(self) -> Sheet:
@@ -132,7 +133,7 @@ class JobsModel:
         elif made is None:
             words = tr("PROVING …")
             if self.watch.on_desk(job) or job.done:
-                words = tr("PROGRAM LOADED: ITS FINDINGS ARE ON PAGE B") if not job.done else tr("DONE")
+                words = tr("PROGRAM LOADED. SEE ITS FINDINGS ON PAGE B") if not job.done else tr("DONE")
             yield Row((tr("PROOF"), words, ""), False)
         else:
             yield from self._proved_rows(job, made)
@@ -144,7 +145,7 @@ class JobsModel:
         for station in stations(made, self.watch.lives, job.left):
             yield self._station(station, made)
         for each in findings(sheet):
-            name = tr("LINE {line}").format(line=each.line) if each.line else tr("PROOF")
+            name = tr(Message("LINE {line}", line=each.line)) if each.line else tr("PROOF")
             tone = Tone.ALARM if each.severity is Severity.ERROR else Tone.PAUSE
             yield Row((name, _folded(tr(each.message)), _folded(tr(each.hint))), True, tone)
         yield Row((tr("STOCK"), sheet.stock_words, ""))
@@ -177,8 +178,8 @@ class JobsModel:
         if self.job is None:
             return NONE_YET if self.desk.session.now.name else NO_PROGRAM
         if self.load_barred:
-            return "CANNOT LOAD A JOB: MACHINE MOVING OR PROGRAM RUNNING. ESC: AUTOMATIC"
-        return "F2: LOAD JOB (DOES NOT START IT)   CYCLE START: RUN   ESC: AUTOMATIC"
+            return "CANNOT LOAD: MACHINE MOVING OR PROGRAM RUNNING. ESC: BACK"
+        return "F2: LOAD JOB ONLY   CYCLE START: RUN   ESC: AUTOMATIC"
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -233,7 +234,7 @@ class JobsModel:
         if job is None:
             self.desk.say(NONE_YET)
         elif what == "note" and self.desk.snapshot().state in UNDER_WAY:
-            self.desk.say("TYPE NOTES BETWEEN CYCLES: DURING A CYCLE, LETTER KEYS STOP THE MACHINE")
+            self.desk.say("NO NOTES DURING A CYCLE: LETTER KEYS STOP THE MACHINE")
         else:
             self.desk.clear()
             text = job.note if what == "note" else ""
@@ -249,7 +250,7 @@ class JobsModel:
             self._write(
                 lambda c: job_queue.move(c, job.id, to),
                 partial(self._mark, to - 1),
-                f"job {job.program}: moved to position {to}",
+                Message("job {program}: moved to position {to}", program=job.program, to=to),
             )
 
     def _mark(self, row: int) -> None:
@@ -261,12 +262,14 @@ class JobsModel:
         if job is None:
             self.desk.say(NONE_YET)
             return
-        words = tr("{program}: {made} OF {wanted} MADE. PRESS Y TO REMOVE IT FROM THE QUEUE, N TO KEEP IT")
-        words = words.format(program=job.program, made=job.made, wanted=job.wanted)
+        words = tr("{program}: {made} OF {wanted} MADE. Y: REMOVE FROM QUEUE   N: KEEP")
+        words = tr(Message(words, program=job.program, made=job.made, wanted=job.wanted))
         self.desk.ask(
             words,
             partial(
-                self._write, lambda c: job_queue.remove(c, job.id), change=(f"job {job.program} removed")
+                self._write,
+                lambda c: job_queue.remove(c, job.id),
+                change=(Message("job {program} removed", program=job.program)),
             ),
         )
 
@@ -276,8 +279,8 @@ class JobsModel:
         if not done:
             self.desk.done("NO FINISHED JOBS TO CLEAR")
             return
-        words = tr("PRESS Y TO REMOVE {count} FINISHED JOBS FROM THE QUEUE, N TO KEEP THEM")
-        self.desk.ask(words.format(count=done), partial(self._write, _clear_done))
+        words = tr("Y: REMOVE {count} FINISHED JOBS FROM THE QUEUE   N: KEEP THEM")
+        self.desk.ask(tr(Message(words, count=done)), partial(self._write, _clear_done))
 
     def _write(
         self,
@@ -298,7 +301,7 @@ class JobsModel:
         if key == "Enter":
             self._answer()
         elif self.asking == "note" and len(self.entry.text) >= NOTE_LONGEST and len(key) == 1:
-            self.desk.say(tr("NOTE TOO LONG: {most} CHARACTERS AT MOST").format(most=NOTE_LONGEST))
+            self.desk.say(tr(Message("NOTE TOO LONG: {maximum} CHARACTERS AT MOST", maximum=NOTE_LONGEST)))
         elif self.entry.type(key):
             self.desk.clear()
         else:
@@ -311,7 +314,7 @@ class JobsModel:
             if job is not None:
                 self._write(
                     lambda c: job_queue.change(c, job.id, job.wanted, text),
-                    change=f"job {job.program}: {text}",
+                    change=Message("job {program}: {text}", program=job.program, text=text),
                 )
             self.asking = ""
             return
@@ -326,12 +329,17 @@ class JobsModel:
             self._write(
                 lambda c: job_queue.add(c, program, wanted),
                 partial(self._mark, last),
-                f"job {program}: {wanted} parts",
+                Message("job {program}: {expected} parts", program=program, expected=wanted),
             )
         elif job is not None:
             self._write(
                 lambda c: job_queue.change(c, job.id, wanted, job.note),
-                change=f"job {job.program}: {job.wanted} → {wanted} parts",
+                change=Message(
+                    "job {program}: {expected} → {expected2} parts",
+                    program=job.program,
+                    expected=job.wanted,
+                    expected2=wanted,
+                ),
             )
         self.asking = ""
 

@@ -16,6 +16,7 @@ from app.jobs.next_job import JobProofs
 from app.quality.parts_watch import PartsWatch
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.quality.tool_life import ToolLife
 from core.store import job_queue
 from core.store.job_queue import JobRow
@@ -87,7 +88,7 @@ class JobsWatch:
         path = self.desk.program_folders.find(job.program)
         if path is None:
             self.desk.say(
-                tr("{name} IS NOT IN THE PROGRAM LIST. F1, F6: CHECK THE LIST").format(name=job.program)
+                tr(Message("{name} IS NOT IN THE PROGRAM LIST. F1, F6: CHECK THE LIST", name=job.program))
             )
             return
         loads = self.desk.session.loads
@@ -107,7 +108,7 @@ class JobsWatch:
                     lambda connection: job_queue.begin(connection, job.id),
                     _nothing,
                     self.parts.refuse,
-                    f"job {job.program} started",
+                    Message("job {program} started", program=job.program),
                 )
         elif not self.desk.asked:
             self._loading = None
@@ -120,21 +121,28 @@ class JobsWatch:
             return
         done = job.id if job is not None and job.done else 0
         if done and done != self._told and self._known and job is not None:
-            self.desk.done(f"{self._done_words(job)} {self._next_words()}")
+            self.desk.done(
+                Message("{job} {next_words}", job=self._done_words(job), next_words=self._next_words())
+            )
         self._told, self._known = done, True
 
     @staticmethod
     def _done_words(job: JobRow) -> str:
-        return tr("JOB DONE: {made} OF {wanted} PARTS OF {program}.").format(
-            made=job.made, wanted=job.wanted, program=job.program
+        return tr(
+            Message(
+                "JOB DONE: {count} OF {expected} PARTS OF {program}.",
+                count=job.made,
+                expected=job.wanted,
+                program=job.program,
+            )
         )
 
     def _next_words(self) -> str:
         job = self.next
         if job is None:
             return tr("NO MORE JOBS WAITING.")
-        words = tr("NEXT: {program}, {left} PARTS").format(program=job.program, left=job.left)
-        return f"{words}, {self.state_words(job)}"
+        words = tr(Message("NEXT: {program}, {left} PARTS", program=job.program, left=job.left))
+        return Message("{words}, {job}", words=words, job=self.state_words(job))
 
     def state_words(self, job: JobRow) -> str:
         """How a job that waits stands: not proved yet, what is missing, ready."""
@@ -146,7 +154,7 @@ class JobsWatch:
         if made.sheet.errors:
             return tr("PROOF FOUND ERRORS")
         lacking = missing(made, self.lives, job.left)
-        return tr("{count} ITEMS NOT READY").format(count=lacking) if lacking else tr("TOOLS COMPLETE")
+        return tr(Message("{count} ITEMS NOT READY", count=lacking)) if lacking else tr("TOOLS COMPLETE")
 
     def notice(self, snapshot: Snapshot) -> NoticeRow | None:
         """On the Automatic page, between cycles: the job is done, and which comes next."""

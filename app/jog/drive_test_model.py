@@ -39,6 +39,7 @@ from core.executor.drive_test_path import DriveTestPath, Limits, Shape
 from core.executor.jog_line import room_to_limit
 from core.executor.snapshot import BY_HAND, Snapshot, State
 from core.machine.machine_model import Axis, Machine
+from core.message import Message
 from core.records.record import Record
 from core.records.record_errors import AnalysisError
 
@@ -182,7 +183,7 @@ class DriveTests:
 
     def _choose(self) -> None:
         self.desk.clear()
-        self.hold.let_go(tr("ANOTHER TEST SELECTED. THE RUNNING TEST WAS STOPPED"))
+        self.hold.let_go(tr("TEST STOPPED: ANOTHER TEST WAS SELECTED"))
         self.hold.asked, self.part = None, None
 
     # --- may it, and where does it go ------------------------------------------------------------------
@@ -193,7 +194,7 @@ class DriveTests:
         if self.desk.stop_held():
             return tr(STOP_HELD)
         if snapshot.drive_test.barred:
-            return tr("DRIVE TEST NOT POSSIBLE: {why}").format(why=snapshot.drive_test.barred)
+            return tr(Message("DRIVE TEST NOT POSSIBLE: {why}", why=snapshot.drive_test.barred))
         if abs(snapshot.rpm_actual) >= 1.0 or snapshot.spindle_asked:
             return tr("SPINDLE IS TURNING. STOP IT FIRST")
         return why_no_jog(snapshot.state)
@@ -204,7 +205,7 @@ class DriveTests:
         snapshot, model = self.desk.snapshot(), self.machine.axis(axis)
         index = snapshot.axes.index(axis)
         if not snapshot.homed[index]:
-            return tr("{axis} IS NOT HOMED, SO ITS TRAVEL CANNOT BE CHECKED. HOME IT FIRST").format(axis=axis)
+            return tr(Message("{axis} NOT HOMED, SO TRAVEL CANNOT BE CHECKED. HOME IT FIRST", axis=axis))
         path, limits = self.path(axis, sign), self._limits(axis)
         if why := path.refusal(limits):
             return why
@@ -213,7 +214,7 @@ class DriveTests:
         if max(high, 1e-9) > room_to_limit(model, here, 1.0) or max(-low, 1e-9) > room_to_limit(
             model, here, -1.0
         ):
-            return tr("NOT ENOUGH TRAVEL IN {axis}. JOG AWAY FROM THE END OF TRAVEL").format(axis=axis)
+            return tr(Message("NOT ENOUGH TRAVEL IN {axis}. JOG AWAY FROM THE END OF TRAVEL", axis=axis))
         return ""
 
     def travel(self, asked: Asked) -> str:
@@ -223,11 +224,14 @@ class DriveTests:
         path, limits = self.path(axis, sign), self._limits(axis)
         ramps, here = path.ramps(limits), snapshot.demand[snapshot.axes.index(axis)]
         low, high = drive_test_path.reach(ramps)
-        return tr("{axis} FROM {here} TO {there} AND BACK, {seconds} S").format(
-            axis=axis,
-            here=units.way(here),
-            there=units.way(here + (high if sign > 0 else low)),
-            seconds=formats.fixed(drive_test_path.seconds(ramps), 1),
+        return tr(
+            Message(
+                "{axis} FROM {position} TO {present} AND BACK, {seconds} S",
+                axis=axis,
+                position=units.way(here),
+                present=units.way(here + (high if sign > 0 else low)),
+                seconds=formats.fixed(drive_test_path.seconds(ramps), 1),
+            )
         )
 
     def asks(self) -> str:
@@ -238,8 +242,10 @@ class DriveTests:
         if why := self.barred() or self.refusal(asked):
             return why
         key = next(each.label for each in self.directions if (each.axis, each.sign) == asked)
-        return tr("{travel}: HOLD {key} TO RUN THE TEST, RELEASE TO STOP").format(
-            travel=self.travel(asked), key=key
+        return tr(
+            Message(
+                "{travel}: HOLD {key} TO RUN THE TEST, RELEASE TO STOP", travel=self.travel(asked), key=key
+            )
         )
 
     # --- every frame ---------------------------------------------------------------------------------
@@ -281,7 +287,8 @@ class DriveTests:
             instant = began - float(record.times[0]) if len(record.times) else 0.0
             told = {**record.about, TESTED: words_of(path), INSTANT: f"{instant:.6f}"}
             return _figures(replace(record, about=told), path, drives), shelf.keep(
-                replace(record, about=told), f"drive test {path.axis} {path.shape.value}"
+                replace(record, about=told),
+                Message("drive test {axis} {shape}", axis=path.axis, shape=path.shape.value),
             ).name
 
         self.scope.filing.queue(work, self._take, self.desk.refuse)
@@ -292,7 +299,7 @@ class DriveTests:
             self.desk.say(found)
             return
         self.found, self.part = found, Part.RESPONSE
-        self.desk.say(tr("SAVED: {path}").format(path=self.kept))
+        self.desk.say(tr(Message("SAVED: {path}", path=self.kept)))
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -327,7 +334,7 @@ class DriveTests:
 
     def let_go(self) -> None:
         """Hands off: the keyboard, the window or the page is gone."""
-        self.hold.let_go(tr("TEST STOPPED: THIS PAGE LOST THE KEYBOARD"))
+        self.hold.let_go(tr("TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.hold.asked = None
 
     def leave(self) -> None:
@@ -352,7 +359,7 @@ class DriveTests:
             return tr("KEEP HOLDING THE KEY UNTIL THE AXIS IS BACK")
         if self.found is None:
             return tr("PRESS AN ARROW TO SHOW THE TRAVEL. HOLD IT TO RUN THE TEST")
-        return tr("PRESS AN ARROW TO SHOW THE TRAVEL. HOLD IT TO RUN THE TEST. F5: VALUES")
+        return tr("PRESS ARROW: SHOW TRAVEL   HOLD ARROW: RUN TEST   F5: VALUES")
 
     def drawing(self) -> Drawing:
         """Asked and done of the last test."""
@@ -374,7 +381,7 @@ class DriveTests:
         if self.shape is Shape.RAMP:
             speed = units.speed(path.speed)
         elif self.shape is Shape.SINE:
-            speed = f"{', '.join(f'{each:g}' for each in path.frequencies)} Hz"
+            speed = Message("{item} Hz", item=", ".join(f"{each:g}" for each in path.frequencies))
         rows = [
             Row((tr("SHAPE"), "F2", tr(SHAPES[self.shape]))),
             Row((tr("SIZE"), "F3", units.way(abs(path.size)))),
@@ -390,8 +397,12 @@ class DriveTests:
         why = self.barred()
         notes = (
             *((why,) if why else ()),
-            *(() if "Y" in self.drives else (tr("The size is axis travel: in X, half of the diameter."),)),
-            tr("The test writes nothing to the drive."),
+            *(
+                ()
+                if "Y" in self.drives
+                else (tr("SIZE is the travel of the axis; in X, the diameter changes by twice this travel."),)
+            ),
+            tr("The test does not write any data to the drive."),
         )
         heads, shares = ("", tr("KEY"), tr("SETTING")), (0.34, 0.16, 0.5)
         return Sheet(tr("DRIVE TEST"), heads, shares, tuple(rows), notes=notes, figures=frozenset({2}))
@@ -401,7 +412,7 @@ class DriveTests:
         return [
             Row(
                 (
-                    tr("FOLLOWING ERROR LIMIT {axis}").format(axis=name),
+                    tr(Message("FOLLOWING ERROR LIMIT {axis}", axis=name)),
                     "",
                     f"{units.way(axis.still_window)} … {units.way(axis.following_window)}",
                 )

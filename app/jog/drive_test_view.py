@@ -22,6 +22,7 @@ from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Shown
 from app.screen.sheet_panel import SheetPanel
 from core.executor.snapshot import Snapshot
+from core.message import Message
 
 _TABLE, _HEAD, _PAD = 50.0, 3.4, 0.42  # units, units, share of the height
 
@@ -42,7 +43,7 @@ class DriveTestPad(JogCross):
         middle = self.cross(painter, QRectF(self.inside()))
         if asked is not None:
             axis, sign = asked
-            words = tr("HOLD {way}").format(way=f"{axis}{'+' if sign > 0 else '−'}")
+            words = tr(Message("HOLD {direction}", direction=f"{axis}{'+' if sign > 0 else '−'}"))
             painter.write(middle, words, 3.0, "pause", at=CENTRE, margin=0.6)
 
 

@@ -20,6 +20,7 @@ from core.executor.commands import ForceOutput, Reset, SpindleStop
 from core.executor.snapshot import CYCLE, STOPPED, Snapshot, Starts, State
 from core.language.diagnostics import Diagnostic
 from core.machine.machine_model import Machine
+from core.message import Message
 
 FORWARD, REVERSE, STOP = "forward", "reverse", "stop"
 COOLANT_ON, COOLANT_OFF = "coolant on", "coolant off"
@@ -33,7 +34,7 @@ KEYS = {
     "5": CLOSE,
     "6": OPEN,
 }
-NOT_OPENED = "COLLET CANNOT BE OPENED BY HAND WHILE THE SPINDLE TURNS. 0: STOP SPINDLE"
+NOT_OPENED = "CANNOT OPEN COLLET WHILE SPINDLE TURNS. 0: STOP SPINDLE"
 SPEED = "9"  # the key that asks for it
 
 
@@ -171,7 +172,7 @@ class HandFunctions:
             OPEN: words.collet[1],
             SPEED: words.speed,
         }
-        return lines[name].format(rpm=self.rpm if name == SPEED else self.speed)
+        return tr(Message(lines[name], rpm=self.rpm if name == SPEED else self.speed))
 
     def _barred(self, snapshot: Snapshot) -> str:
         """Why nothing is chosen now; the executor says the same of a start, and more."""
@@ -239,14 +240,18 @@ class HandFunctions:
             rpm = value_of(self.text)
         except EntryError as error:
             self.text = refused(self.text)
-            self.desk.say(tr("REJECTED: {why}").format(why=error))
+            self.desk.say(tr(Message("REJECTED: {why}", why=error)))
             return
         highest = self.desk.snapshot().spindle_limit or self.machine.spindle.rpm_max
         if not 0.0 < rpm <= highest:
             self.text = refused(self.text)
             self.desk.say(
-                tr("{rpm:g} RPM REJECTED. ENTER MORE THAN 0, UP TO {highest:g} RPM").format(
-                    rpm=rpm, highest=highest
+                tr(
+                    Message(
+                        "{rpm:g} RPM REJECTED. ENTER MORE THAN 0, UP TO {highest:g} RPM",
+                        rpm=rpm,
+                        highest=highest,
+                    )
                 )
             )
             return
@@ -287,11 +292,11 @@ class HandFunctions:
 
     def _refused(self, error: Diagnostic) -> None:
         self._forget()
-        self.desk.say(tr("REJECTED: {why}").format(why=f"{tr(error.message)} {tr(error.hint)}".strip()))
+        self.desk.say(tr(Message("REJECTED: {why}", why=f"{tr(error.message)} {tr(error.hint)}".strip())))
 
     def _failed(self, why: str) -> None:
         self._forget()
-        self.desk.say(tr("THE LINE CANNOT BE PROVED: {why}").format(why=why))
+        self.desk.say(tr(Message("THE LINE CANNOT BE PROVED: {why}", why=why)))
 
     # --- every frame ---------------------------------------------------------------------------------
 
@@ -332,8 +337,8 @@ class HandFunctions:
         if self.under_way(snapshot):
             words = tr("{line} IS RUNNING. 0: STOP SPINDLE")
             if snapshot.state in STOPPED:
-                words = tr("{line} IS STOPPED. CYCLE START: RESUME   0: STOP SPINDLE AND CANCEL")
-            return words.format(line=snapshot.block_text)
+                words = tr("{line} STOPPED. CYCLE START: RESUME   0: STOP SPINDLE, CANCEL")
+            return tr(Message(words, line=snapshot.block_text))
         if snapshot.state is not State.IDLE:
             return ""
         if self.line.busy:
@@ -346,7 +351,7 @@ class HandFunctions:
             line = self.line.ready.source.text
             if self.words.speed and self.chosen in {FORWARD, REVERSE}:
                 line = f"{line} (S{self.speed:g})"  # which S counts does not stand in it
-            return words.format(line=line, start=tr(self.desk.start_words))
+            return tr(Message(words, line=line, start=tr(self.desk.start_words)))
         if self._moved:
             return tr("AXES WERE MOVED. PICK THE FUNCTION AGAIN")
         if self.turns(snapshot):

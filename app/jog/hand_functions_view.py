@@ -26,6 +26,7 @@ from app.screen.look import CENTRE, LEFT, Look, Painter
 from app.screen.panel import FingerPanel, Shown, pressed
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
+from core.message import Message
 
 KEY = 4.5  # units: height of a key of the strip
 Key = tuple[str, str, Callable[[], object]]  # letter, words, what it does
@@ -105,7 +106,7 @@ class HandPanel(FingerPanel):
         u, hand, snapshot = self.look.u, self._model.hand, self._model.desk.snapshot()
         words = tr("SPINDLE STOPPED")
         if hand.turns(snapshot):
-            words = tr("SPINDLE TURNING AT {rpm:.0f} RPM").format(rpm=abs(snapshot.rpm_actual))
+            words = tr(Message("SPINDLE TURNING AT {rpm:.0f} RPM", rpm=abs(snapshot.rpm_actual)))
         left = QRectF(row.x(), row.y(), 0.56 * row.width(), row.height())
         painter.write(left, words, 2.4, "pause" if hand.turns(snapshot) else "text", at=LEFT)
         box = QRectF(left.right() + 0.6 * u, row.y(), row.right() - left.right() - 0.6 * u, row.height())

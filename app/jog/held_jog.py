@@ -78,7 +78,7 @@ class HeldJog:
     def _step(self, axis: str, sign: int, rapid: bool) -> None:
         """One step, which is its own length and not longer by being held."""
         if rapid:
-            self.say(tr("RAPID NEEDS CONTINUOUS JOG. SELECT CONT, OR PRESS WITHOUT SHIFT"))
+            self.say(tr("RAPID NEEDS CONTINUOUS JOG. SELECT CONT OR RELEASE SHIFT"))
             return
         self.clear()
         distance = sign * self.speeds.distance(axis, self.mode)
@@ -143,7 +143,7 @@ class HeldJog:
         if away > self.lease:
             self.stop(tr("SCREEN FROZE. JOG STOPPED"))
         elif held.repeated is not None and now - held.repeated > SILENT:
-            self.stop(tr("JOG KEY LOST. RELEASE, THEN PRESS AGAIN"))
+            self.stop(tr("JOG KEY SIGNAL LOST. RELEASE THE KEY, THEN PRESS IT AGAIN"))
         elif snapshot.state is State.JOG:
             held.moving = True
             self._renew(held, now)

@@ -17,6 +17,7 @@ from core.executor.commands import Command, Wheel, WheelOff
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
 from core.machine.station_rules import FACTORS, WHEEL, selector
+from core.message import Message
 
 FINE = 2  # of the steps: .001 in
 _LONG = 0  # .1 in is for keys
@@ -118,7 +119,7 @@ class JogHandwheel:
             self._by_hand, self._left = axis, None  # another step, or another axis at the switch
         elif self.choice is not None and now - self._asked > BEGINS and not snapshot.wheel:
             why = snapshot.wheel_ended.upper()  # of the control
-            self.drop(tr("HANDWHEEL IS OFF: {why}").format(why=why) if why else "")
+            self.drop(tr(Message("HANDWHEEL IS OFF: {why}", why=why)) if why else "")
         elif wanted is not None and not self.barred():
             self._renew(wanted, now)
 

@@ -10,6 +10,7 @@ from app.desk.translation import tr
 from core.executor.commands import Home
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Axis, Machine
+from core.message import Message
 
 
 class AxisState(StrEnum):
@@ -80,7 +81,7 @@ class HomingQuestion:
         else:
             text = tr("HOME {first}. ENTER: ALL AXES   {letters}: ONE AXIS   ESC: CANCEL")
             order = tr(", THEN ").join(lost)
-            question = text.format(first=order, letters=tr(" OR ").join(sorted(lost)))
+            question = tr(Message(text, first=order, letters=tr(" OR ").join(sorted(lost))))
             self.desk.ask(_stands(snapshot) + question, lambda: self._go(""), "Enter")
             self._asked = True
 
@@ -92,7 +93,7 @@ class HomingQuestion:
         self.give_up()
         if name in {axis.name for axis in self.axes}:
             if name not in self.lost(snapshot):
-                self.desk.say(tr("{axis} IS ALREADY HOMED").format(axis=name))
+                self.desk.say(tr(Message("{axis} IS ALREADY HOMED", axis=name)))
             elif read:
                 self._go(name)
             return True
@@ -123,4 +124,4 @@ def _stands(snapshot: Snapshot) -> str:
     found = snapshot.interrupted
     if found is None:
         return ""
-    return tr("T{tool} MAY BE IN THE PART. JOG IT CLEAR FIRST. ").format(tool=found.tool)
+    return tr(Message("T{tool} MAY BE IN THE PART. JOG IT CLEAR FIRST. ", tool=found.tool))

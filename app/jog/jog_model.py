@@ -22,6 +22,7 @@ from app.offsets.mill_touch import MillTouch
 from core.executor.commands import JogStop
 from core.executor.snapshot import ACTIVE, Snapshot, State
 from core.machine.machine_model import Machine
+from core.message import Message
 
 LEASE = 0.25  # s: no jog is held longer without renewal, whatever the machine file says
 
@@ -103,7 +104,7 @@ class JogModel:
         if self.desk.stop_held():
             return tr(STOP_HELD)
         if self.asked:
-            return tr("ARROWS DO NOT JOG DURING AN ENTRY. PRESS ENTER OR ESC")
+            return tr("ARROWS DO NOT JOG WHILE YOU TYPE A VALUE. PRESS ENTER OR ESC")
         if self.home.give_up():
             return tr("HOMING CANCELED. PRESS THE ARROW AGAIN TO JOG")
         return why_no_jog(state)
@@ -113,7 +114,7 @@ class JogModel:
         if self.tilt.on:
             return tr("HANDWHEEL MOVES ONLY MACHINE AXES. F5: TURN 3D-ROT OFF FIRST")
         if self.asked:
-            return tr("HANDWHEEL IS OFF DURING AN ENTRY")
+            return tr("HANDWHEEL IS OFF WHILE YOU ENTER A VALUE")
         return why_no_jog(self.desk.snapshot().state)
 
     def look(self, snapshot: Snapshot) -> None:
@@ -134,7 +135,7 @@ class JogModel:
         if self.tool.by_setter:
             return tr("ENTER: SAVE MEASURED VALUE   ESC: DISCARD")
         if self.tool.asked:
-            return tr("TYPE A VALUE OR EXPRESSION (.5-.002), PRESS ENTER. ESC: CANCEL")
+            return tr("TYPE VALUE OR EXPRESSION (.5-.002), PRESS ENTER. ESC: CANCEL")
         return self._prompt_of_work(snapshot) or self._prompt_of_jog(snapshot)
 
     def _prompt_of_work(self, snapshot: Snapshot) -> str:
@@ -153,10 +154,10 @@ class JogModel:
         if not self.on_mill and not self.tool.number:
             return tr("HOLD AN ARROW TO JOG. SHIFT: RAPID   T: SELECT TOOL")
         if not self.on_mill:
-            return tr("HOLD AN ARROW TO JOG. SHIFT: RAPID   T: SELECT TOOL   X, Z: TOUCH OFF")
+            return tr("HOLD ARROW TO JOG. SHIFT: RAPID   T: TOOL   X, Z: TOUCH OFF")
         if self.tilt.on:
-            return tr("HOLD A KEY TO JOG IN TILTED X' Y' Z'. SHIFT: RAPID   F5: 3D-ROT OFF")
-        return tr("HOLD A KEY TO JOG. SHIFT: RAPID   F8: TOUCH OFF TOOL   F9: TOUCH OFF PART")
+            return tr("HOLD A KEY TO JOG IN TILTED X' Y' Z'. SHIFT: RAPID")
+        return tr("HOLD KEY TO JOG. SHIFT: RAPID   TOUCH OFF: F8 TOOL, F9 PART")
 
     # --- step and speed: any change ends what is held ------------------------------------------------
 
@@ -329,8 +330,8 @@ class JogModel:
 
     def let_go(self) -> None:
         """Hands off: the keyboard, the window or the page is gone."""
-        self.hold.let_go(tr("JOG STOPPED: THIS PAGE LOST THE KEYBOARD"))
-        self.wheel.drop(tr("HANDWHEEL IS OFF: THIS PAGE LOST THE KEYBOARD"))
+        self.hold.let_go(tr("JOG STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
+        self.wheel.drop(tr("HANDWHEEL IS OFF: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.armed = False
         self._stop_step()
 
@@ -366,7 +367,7 @@ def why_no_jog(state: State) -> str:
     if state in ACTIVE:
         return tr("PROGRAM RUNNING. TO JOG, LET IT END OR PRESS PAUSE, THEN R")
     if state in prompt_line.INTERRUPTED:
-        return tr("PROGRAM IS NOT FINISHED. TO JOG, LET IT END OR PRESS R TO CANCEL")
+        return tr("PROGRAM NOT FINISHED. TO JOG, LET IT END OR CANCEL IT (R)")
     return words.get(state, "")
 
 
@@ -376,11 +377,14 @@ def jog_prompt(state: State, lost: list[str], wheel: str, step: int) -> str:
     if why:
         return why
     if lost:
-        return tr("{axes} NOT HOMED, NO SOFT LIMITS. JOG SLOWLY. PRESS HOME").format(
-            axes=tr(" AND ").join(sorted(lost))
+        return tr(
+            Message(
+                "{axes} NOT HOMED: SOFT LIMITS ARE OFF. JOG SLOWLY. PRESS HOME",
+                axes=tr(" AND ").join(sorted(lost)),
+            )
         )
     if wheel:
-        return tr("HANDWHEEL MOVES {axis}, ONE STEP PER CLICK. V: NEXT AXIS").format(axis=wheel)
+        return tr(Message("HANDWHEEL MOVES {axis}, ONE STEP PER CLICK. V: NEXT AXIS", axis=wheel))
     if step != CONTINUOUS:
         return tr("EACH ARROW PRESS JOGS ONE STEP. F2: STEP SIZE")
     return ""

@@ -21,6 +21,7 @@ from app.screen.look import CENTRE, Look, Painter
 from app.screen.panel import Control, Shown, pressed
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
+from core.message import Message
 
 # --- rows of tiles ------------------------------------------------------------------------------------
 
@@ -305,7 +306,7 @@ class JogPad(JogCross):
         )
         if model.wheel.choice is not None:
             axis, step = model.wheel.choice
-            words = (tr("HANDWHEEL {axis}").format(axis=axis), model.speeds.step_word(axis, mode, step))
+            words = (tr(Message("HANDWHEEL {axis}", axis=axis)), model.speeds.step_word(axis, mode, step))
         if model.wheel_drawn:
             self._dial.draw(painter, box, words[1])
             self.controls.append(self._dial.control(box))

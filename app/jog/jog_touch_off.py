@@ -15,6 +15,7 @@ from app.offsets.offset_questions import OffsetQuestions
 from app.offsets.offset_values import TOOL_FIELDS, Mode, to_mm, word
 from app.offsets.tool_fields import NewTool
 from core.executor.snapshot import Snapshot, State
+from core.message import Message
 from core.store.touch_off import Touch
 
 TOUCH_X, TOUCH_Z = "touch x", "touch z"
@@ -26,7 +27,7 @@ def refusal(what: str, snapshot: Snapshot) -> str:
     """Why nothing is touched off now; empty when it may be."""
     axis = TOUCHES[what].upper()
     if not snapshot.homed[snapshot.axes.index(axis)]:
-        return tr("{axis} IS NOT HOMED, ITS POSITION IS UNKNOWN. HOME IT FIRST").format(axis=axis)
+        return tr(Message("{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST", axis=axis))
     if snapshot.state not in {State.IDLE, State.DISABLED}:
         return tr("TOUCH OFF ONLY WITH THE MACHINE STOPPED AND READY")
     return ""
@@ -80,7 +81,7 @@ class TouchOff:
 
     def _within(self, place: float) -> float:
         if not TOOL_FIELDS[self.name].takes(place):
-            raise EntryError(tr("{axis} would be out of range").format(axis=word(self.name)))
+            raise EntryError(tr(Message("{axis} would be outside the allowed range", axis=word(self.name))))
         return place
 
     def save(self, number: int, text: str, history: OffsetHistory, new: NewTool) -> str:

@@ -14,6 +14,7 @@ from app.jog.tilted_jog import SLIDES
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
 from core.executor.snapshot import Snapshot
+from core.message import Message
 
 _PLACES = 4  # of the cosines of a direction
 _HIGH = 6.0  # units: a row
@@ -59,7 +60,7 @@ class MillJogPanel(Panel):
     def _tool(self, painter: Painter, row: QRectF) -> None:
         book, number = self._model.desk.book, self._model.desk.snapshot().modal.tool
         tool = book.mill_tools.get(number)
-        words = tr("none; run TOOL CALL in MDI")
+        words = tr("no tool active; run TOOL CALL in MDI")
         if tool is not None:
             words = f"{tool.name}   L {tool.length + tool.dl:.3f}   R {tool.radius + tool.dr:.3f}"
         self._key(painter, row, "F8", f"T{number}" if number else tr("TOOL"), words, self._tools)
@@ -67,10 +68,18 @@ class MillJogPanel(Panel):
     def _preset(self, painter: Painter, row: QRectF) -> None:
         book = self._model.desk.book
         preset = book.presets.get(book.preset)
-        words = tr("from the machine file")
+        words = tr("zero point from the machine file")
         if preset is not None:
-            words = f"X {preset.x:.3f}   Y {preset.y:.3f}   Z {preset.z:.3f}   ROT {preset.rotation:.3f}"
-        self._key(painter, row, "F9", tr("PRESET {number}").format(number=book.preset), words, self._presets)
+            words = Message(
+                "X {x}   Y {y}   Z {z}   ROT {rotation}",
+                x=f"{preset.x:.3f}",
+                y=f"{preset.y:.3f}",
+                z=f"{preset.z:.3f}",
+                rotation=f"{preset.rotation:.3f}",
+            )
+        self._key(
+            painter, row, "F9", tr(Message("PRESET {number}", number=book.preset)), words, self._presets
+        )
 
     def _tilted(self, painter: Painter, row: QRectF) -> None:
         tilt = self._model.tilt
@@ -79,10 +88,18 @@ class MillJogPanel(Panel):
         words = (
             tr("not tilted")
             if tilted is None or not tilted.system.tilted
-            else tr("rotary axes not at the plane angles")
+            else tr("rotary axes are not at the angles of the tilted plane")
         )
         words = tilt.frame.words if tilt.frame is not None else words
-        self._key(painter, row, "F5", f"3D-ROT {state}", words, self._model.turn_tilt, lit=tilt.on)
+        self._key(
+            painter,
+            row,
+            "F5",
+            Message("3D-ROT {state}", state=state),
+            words,
+            self._model.turn_tilt,
+            lit=tilt.on,
+        )
 
     def _key(
         self,
@@ -109,7 +126,7 @@ class MillJogPanel(Panel):
         head = QRectF(room.x(), room.y(), room.width(), 2.2 * u)
         painter.write(head, tr("TIP POSITION"), 1.5, "soft")
         if tilt.frame is not None:
-            painter.write(head, tr("KEY DIRECTION IN MACHINE X Y Z"), 1.5, "soft", at=RIGHT)
+            painter.write(head, tr("JOG KEY DIRECTION IN MACHINE X Y Z"), 1.5, "soft", at=RIGHT)
         high = min(4.4 * u, (room.height() - 2.4 * u) / len(SLIDES))
         for place, name in enumerate(SLIDES):
             row = QRectF(room.x(), head.bottom() + place * high, room.width(), high)
@@ -123,7 +140,7 @@ class MillJogPanel(Panel):
                 words = "   ".join(f"{share + 0.0:+.{_PLACES}f}" for share in direction)
                 painter.write(row, words, 2.2, "text" if tilt.on else "soft", at=RIGHT)
         if self._tip is None:
-            painter.write(room, tr("unknown until a line has run"), 2.2, "soft", at=CENTRE)
+            painter.write(room, tr("position unknown until a line has run"), 2.2, "soft", at=CENTRE)
 
 
 def _slides(snapshot: Snapshot) -> tuple[float, float, float]:

@@ -20,6 +20,7 @@ from core.executor.commands import Command, Touch
 from core.executor.snapshot import Snapshot, State, Touched, TouchPhase
 from core.machine.machine_model import Machine
 from core.machine.setter_table import SetterModel
+from core.message import Message
 from core.ports import PROBE
 from core.store.store_rows import ToolRow
 
@@ -97,16 +98,16 @@ class SetterTouch:
         if not tool.number:
             return tr("NO TOOL SELECTED. PRESS T AND TYPE ITS NUMBER")
         if not ways_of(tool.row):
-            return tr("T{number}: TIP DIRECTION NOT SET. PRESS Q AND TYPE 1…9").format(number=tool.number)
+            return tr(Message("T{number}: TIP DIRECTION NOT SET. PRESS Q AND TYPE 1…9", number=tool.number))
         return ""
 
     def command(self, axis: str, sign: int, button: str) -> Command | str:
         """What a press of this direction does: a touch-off, or why not."""
         ways = ways_of(self.tool.row)
         if (axis, sign) not in ways:
-            text = tr("T{number} CAN TOUCH OFF ONLY IN {ways}")
+            text = tr("T{number} CAN BE TOUCHED OFF ONLY IN {ways}")
             words = tr(" OR ").join(way_word(way) for way in ways)
-            return text.format(number=self.tool.number, ways=words)
+            return tr(Message(text, number=self.tool.number, ways=words))
         self._presses += 1
         return Touch(axis, sign, self.lease, self._presses, button)
 
@@ -123,7 +124,7 @@ class SetterTouch:
         if not self.armed or self.model is None:
             return
         if touched.place is None:
-            self.desk.say(tr("TOUCH-OFF FAILED: {why}").format(why=touched.why.upper()))
+            self.desk.say(tr(Message("TOUCH-OFF FAILED: {why}", why=touched.why.upper())))
         else:
             self.armed = False
             self._found(touched, touched.place, self.model)
@@ -133,7 +134,7 @@ class SetterTouch:
         value = stands_at(place, way, model, self.tool.row)
         metric = self.tool.history.mode.metric
         about = signed(touched.error, metric).removeprefix("+")
-        cause = tr("tool setter {way} ±{error}").format(way=way_word(way), error=about)
+        cause = tr(Message("tool setter {direction} ±{error}", direction=way_word(way), error=about))
         self.tool.found(TOUCH_X if touched.axis == "X" else TOUCH_Z, value, cause)
 
     def prompt(self, snapshot: Snapshot) -> str:
@@ -155,8 +156,8 @@ class SetterTouch:
             for each in self.directions
             if (each.axis, each.sign) in ways
         )
-        text = tr("T{number} AT THE TOOL SETTER. HOLD {keys} UNTIL IT RETURNS. P OR ESC: CANCEL")
-        return text.format(number=self.tool.number, keys=keys)
+        text = tr("TOOL SETTER, T{number}: HOLD {keys} UNTIL IT RETURNS. ESC: CANCEL")
+        return tr(Message(text, number=self.tool.number, keys=keys))
 
 
 @dataclass(slots=True)

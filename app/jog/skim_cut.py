@@ -16,6 +16,7 @@ from app.desk.translation import tr
 from app.jog.jog_touch_off import MOVED, TOUCH_X, TOUCH_Z, TOUCHES
 from app.jog.tool_setting import ToolSetting
 from core.executor.snapshot import CYCLE, Snapshot, State
+from core.message import Message
 
 LEAST_CUT = 0.25  # mm along the other axis with the spindle turning: less is no cut that can be measured
 
@@ -101,8 +102,12 @@ class SkimCut:
             return ""
         if abs(snapshot.rpm_actual) <= TURNING:
             return tr("NO CUT YET, SPINDLE STOPPED. PRESS B TO START IT")
-        return tr("NO CUT YET, {axis} MOVED LAST. FEED IN {other} WITHOUT MOVING {axis}").format(
-            axis=self.axis, other=self.other
+        return tr(
+            Message(
+                "NO CUT YET: {axis} MOVED LAST. FEED {other} WITHOUT MOVING {axis}",
+                axis=self.axis,
+                other=self.other,
+            )
         )
 
     def typed(self, key: str) -> bool:
@@ -157,9 +162,9 @@ class SkimCut:
     def _spoilt(self, snapshot: Snapshot) -> str:
         """Why it cannot go on; empty when it may."""
         if snapshot.state in {State.ESTOP, State.FAULT, State.DISABLED, State.HOME}:
-            return tr("MACHINE STOPPED. SKIM CUT CANCELED, NOTHING CHANGED")
+            return tr("MACHINE STOPPED. SKIM CUT CANCELED. NOTHING CHANGED")
         if not snapshot.homed[snapshot.axes.index(self.axis)]:
-            return tr("{axis} IS NOT HOMED. SKIM CUT CANCELED, NOTHING CHANGED").format(axis=self.axis)
+            return tr(Message("{axis} IS NOT HOMED. SKIM CUT CANCELED, NOTHING CHANGED", axis=self.axis))
         return ""
 
     def _follow(self, snapshot: Snapshot) -> None:
@@ -183,8 +188,8 @@ class SkimCut:
             self.tool.close()
         self.step = CutStep.CUT
         self._anew(snapshot)
-        words = tr("{axis} MOVED {away} AFTER THE CUT, NOTHING CHANGED. CUT AGAIN OR PRESS ESC")
-        self.spoilt = words.format(axis=self.axis, away=shown)
+        words = tr("{axis} MOVED {away} AFTER CUT, NOT SAVED. CUT AGAIN OR PRESS ESC")
+        self.spoilt = tr(Message(words, axis=self.axis, away=shown))
 
     def _measure(self, snapshot: Snapshot) -> None:
         """The spindle stands and so do the slides: the size may be taken."""
@@ -209,8 +214,8 @@ class SkimCut:
         if self.step is CutStep.AXIS:
             return tr("SKIM CUT. X: DIAMETER   Z: FACE   ESC: CANCEL")
         if self.step is CutStep.AWAY:
-            words = tr("RETRACT IN {other} ONLY, DO NOT MOVE {axis}, THEN 0: STOP SPINDLE   ESC: CANCEL")
-            return words.format(axis=self.axis, other=self.other)
+            words = tr("RETRACT {other} ONLY. DO NOT MOVE {axis}. THEN 0: STOP SPINDLE")
+            return tr(Message(words, axis=self.axis, other=self.other))
         return self._words_of_cut(snapshot) if self.step is CutStep.CUT else ""
 
     def _words_of_cut(self, snapshot: Snapshot) -> str:
@@ -218,8 +223,8 @@ class SkimCut:
             return self.spoilt
         if self.way >= LEAST_CUT and snapshot.state not in CYCLE:
             words = tr("CUT FAR ENOUGH IN {other} TO MEASURE, THEN PRESS ENTER")
-            return words.format(other=self.other)
+            return tr(Message(words, other=self.other))
         if not self._turns(snapshot):
             return tr("START THE SPINDLE (B), THEN JOG INTO THE CUT. ESC: CANCEL")
-        words = tr("JOG {axis} SLOWLY TO THE CUT, THEN FEED IN {other}. ESC: CANCEL")
-        return words.format(axis=self.axis, other=self.other)
+        words = tr("JOG {axis} TO THE DEPTH OF CUT, THEN FEED IN {other}. ESC: CANCEL")
+        return tr(Message(words, axis=self.axis, other=self.other))

@@ -11,6 +11,7 @@ from core.executor.snapshot import BY_HAND, Snapshot
 from core.geometry.rotary_axes import Kinematics, Rotary
 from core.geometry.rotation_frames import Matrix, product, turned
 from core.interpreter.working_plane import PlaneSystem
+from core.message import Message
 
 SLIDES = "XYZ"
 _ROTARY = "ABC"  # of Q120, Q121, Q122
@@ -47,8 +48,8 @@ def jog_frame(machine: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
         if off:
             turn = " ".join(f"{axis.name}+Q{120 + _ROTARY.index(axis.name)}" for axis in axes)
             words = tr("{axes} NOT AT THE PLANE ANGLE. FIRST RUN L {turn} FMAX IN MDI")
-            return words.format(axes=tr(" AND ").join(off), turn=turn)
-        return JogFrame(system.place.turn, tr("TILTED PLANE OF LINE {line}").format(line=system.line))
+            return tr(Message(words, axes=tr(" AND ").join(off), turn=turn))
+        return JogFrame(system.place.turn, tr(Message("TILTED PLANE OF LINE {line}", line=system.line)))
     if machine is None or abs(machine.tool_axis(angles)[2] - 1.0) <= _UPRIGHT:
         return tr("NO TILT ACTIVE. RUN PLANE IN MDI (F4) OR TILT THE HEAD")
     heads = [turned(each.direction, angles[each.name]) for each in machine.rotaries if not each.table]
@@ -100,7 +101,7 @@ class TiltedJog:
         self.frame, self.why = (None, found) if isinstance(found, str) else (found, "")
         if self.on and self.frame is None:
             self.on = False
-            why = tr("3D-ROT IS OFF, KEYS JOG IN MACHINE X Y Z: {why}").format(why=self.why)
+            why = tr(Message("3D-ROT IS OFF, KEYS JOG IN MACHINE X Y Z: {why}", why=self.why))
             self.let_go(why)
             self.say(why)
 

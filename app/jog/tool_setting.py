@@ -26,6 +26,7 @@ from app.offsets.offset_values import (
 )
 from app.offsets.tool_fields import ToolFields
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.store.offset_fields import REMARK_LONGEST, Sort
 from core.store.store_rows import OFFSETS, Kind, ToolRow
 from core.tool_edges import edge_name, edge_number
@@ -101,29 +102,38 @@ class ToolSetting:
         if self.asked == TOOL:
             return tr("TOOL NUMBER?")
         if self.by_setter:
-            return tr("{tool} {axis} FROM THE TOOL SETTER: SAVE IT?").format(
-                tool=name, axis=self.touching.name.upper()
+            return tr(
+                Message(
+                    "{tool} {axis} FROM THE TOOL SETTER: SAVE IT?", tool=name, axis=self.touching.name.upper()
+                )
             )
         if self.asked == TOUCH_X:
-            return tr("{tool} MEASURED DIAMETER?").format(tool=name)
+            return tr(Message("{tool} MEASURED DIAMETER?", tool=name))
         if self.asked == TOUCH_Z:
-            return tr("{tool} Z POSITION OF THE FACE?").format(tool=name)
+            return tr(Message("{tool} Z POSITION OF THE FACE?", tool=name))
         return f"{name}  {word(self.asked)}?" if self.asked else ""
 
     def note(self) -> str:
         """What has to be known before the answer is entered."""
         number, new = self.number, self.fields.new
         if self.masters and self.touching.alone:
-            return tr("ONLY T{number} CHANGES, OTHER TOOLS STAY. L: ALL FOLLOW").format(
-                number=edge_number(number)
+            return tr(
+                Message(
+                    "ONLY T{number} CHANGES. L: ALL TOOLS FOLLOW",
+                    number=edge_number(number),
+                )
             )
         if self.masters:
-            return tr("T{number} IS THE MASTER, {others} FOLLOW. L: THIS TOOL ONLY").format(
-                number=edge_number(number), others=follower_names(self.book.tools, number) or tr("no tools")
+            return tr(
+                Message(
+                    "T{number} IS THE MASTER, {others} FOLLOW. L: THIS TOOL ONLY",
+                    number=edge_number(number),
+                    others=follower_names(self.book.tools, number) or tr("no tools"),
+                )
             )
         if new.number and new.number == number:
             text = tr("T{number} IS NOT SET YET. TOUCH OFF {axis} TOO")
-            return text.format(number=edge_number(number), axis=new.missing.upper())
+            return tr(Message(text, number=edge_number(number), axis=new.missing.upper()))
         return ""
 
     def old_to_new(self) -> str:
@@ -171,7 +181,7 @@ class ToolSetting:
         self.history.look(snapshot)
         if self.history.mode != before and self.asked:
             self.close()
-            self.desk.say(tr("CONTROL CHANGED UNITS OR DIAMETER/RADIUS. NOTHING SAVED. ENTER IT AGAIN"))
+            self.desk.say(tr("UNITS OR DIAMETER/RADIUS CHANGED. NOT SAVED. RE-ENTER VALUE"))
         if snapshot.modal.tool != self._active:
             self._active = snapshot.modal.tool
             if self._active and not self.asked:
@@ -206,7 +216,9 @@ class ToolSetting:
         if what in TOUCHES:
             return jog_touch_off.refusal(what, snapshot)
         if self.row is None:
-            return tr("T{number} IS NOT SET. TOUCH OFF X AND Z FIRST").format(number=edge_number(self.number))
+            return tr(
+                Message("T{number} IS NOT SET. TOUCH OFF X AND Z FIRST", number=edge_number(self.number))
+            )
         return ""
 
     def close(self) -> None:
@@ -239,7 +251,7 @@ class ToolSetting:
             why = self._answer()
         except EntryError as error:
             self.text = refused(self.text)
-            why = tr("REJECTED: {why}").format(why=error)
+            why = tr(Message("REJECTED: {why}", why=error))
         if why:
             self.desk.say(why)
 
@@ -256,7 +268,7 @@ class ToolSetting:
     def _tool(self) -> str:
         value = value_of(self.text)
         if value not in OFFSETS:
-            raise EntryError(tr("T{number:g} does not exist; tools are T1…32").format(number=value))
+            raise EntryError(tr(Message("T{number:g} does not exist; tools are T1…32", number=value)))
         self._choose(int(value))
         self.close()
         return ""
@@ -298,7 +310,7 @@ class ToolSetting:
         """Close the question, forget half a tool; False when there was nothing."""
         was = bool(self.asked or self.fields.new.number)
         if was and self.number:
-            self.desk.say(tr("T{number} NOT CHANGED").format(number=edge_number(self.number)))
+            self.desk.say(tr(Message("T{number} NOT CHANGED", number=edge_number(self.number))))
         self.forget()
         return was
 

@@ -18,6 +18,7 @@ from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
 from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
+from core.message import join_messages
 from core.tool_edges import edge_name
 
 # Field, and the key that asks for it.
@@ -61,12 +62,16 @@ class ToolPanel(Panel):
     def tip_words(self) -> str:
         """What the position of the tip counts from, and in which unit where that is not the panel's."""
         if self.shown_mode.metric == self._mode.metric:
-            return tr("TIP FROM PART ZERO")
-        return tr("TIP FROM PART ZERO, MM") if self.shown_mode.metric else tr("TIP FROM PART ZERO, INCH")
+            return tr("TIP POSITION FROM PART ZERO")
+        return (
+            tr("TIP POSITION FROM PART ZERO, MM")
+            if self.shown_mode.metric
+            else tr("TIP POSITION FROM PART ZERO, INCH")
+        )
 
     def draw(self, painter: Painter) -> None:
         unit = tr("MM") if self._mode.metric else tr("INCH")
-        self.frame(painter, f"{tr('TOOL SETTING')}  ·  {unit}")
+        self.frame(painter, join_messages("  ·  ", (tr("TOOL SETTING"), unit)))
         u = self.look.u
         room = self.inside().adjusted(-0.3 * u, 0, 0.3 * u, 0.3 * u)
         head = QRectF(room.x(), room.y(), room.width(), min(10.5 * u, 0.36 * room.height()))

@@ -15,6 +15,7 @@ from core.executor.commands import Command, SpindleStop
 from core.executor.snapshot import CYCLE, Snapshot, State
 from core.language.code_book import CodeBook
 from core.language.diagnostics import Diagnostic
+from core.message import Message
 
 
 @dataclass(slots=True)
@@ -97,7 +98,7 @@ class MdiModel:
         snapshot = self.snapshot()
         self.clear()
         if snapshot.state is not State.IDLE:
-            self.say(tr("DRIVES MUST BE ON TO PROVE AND RUN THE LINE. F5: DRIVES ON   F6: RESET"))
+            self.say(tr("DRIVES MUST BE ON TO PROVE A LINE. F5: DRIVES ON   F6: RESET"))
             return
         if not self.typing.text.strip():
             self.say(tr("TYPE A LINE FIRST. UP ARROW: EARLIER LINES"))
@@ -157,7 +158,7 @@ class MdiModel:
         if snapshot.state is not State.IDLE:
             return ""
         if self.completion.open:
-            return tr("ARROWS: SELECT CODE OR CHAPTER   ENTER: INSERT INTO THE LINE   ESC: BACK")
+            return tr("ARROWS: SELECT CODE OR CHAPTER   ENTER: INSERT   ESC: BACK")
         return self._of_the_line(start)
 
     def _of_the_line(self, start: str) -> str:
@@ -167,17 +168,17 @@ class MdiModel:
         if self.line.errors:
             return tr("CORRECT THE LINE. ESC: CLEAR IT")
         if self.line.ready is not None:
-            return tr("TO RUN THE LINE: {start}. ESC: CANCEL").format(start=start)
-        return tr("TYPE A LINE   TAB: COMPLETE CODE   ENTER: PROVE   F1: LEAVE, SPINDLE STAYS AS IT IS")
+            return tr(Message("TO RUN THE LINE: {start}. ESC: CANCEL", start=start))
+        return tr("TYPE A LINE   ENTER: PROVE   F1: EXIT, SPINDLE UNCHANGED")
 
     def barred(self) -> str:
         """Why the palms start nothing now; empty when they may."""
         if self.snapshot().state is State.IDLE and self.line.ready is None:
-            return tr("NO LINE IS READY: TYPE ONE AND PRESS ENTER")
+            return tr("NO LINE IS READY. TYPE A LINE AND PRESS ENTER")
         return ""
 
     def _failed(self, why: str) -> None:
-        self.say(tr("THE LINE CANNOT BE PROVED: {why}").format(why=why))
+        self.say(tr(Message("THE LINE CANNOT BE PROVED: {why}", why=why)))
 
     def _refused(self, error: Diagnostic) -> None:
         self.typing.refuse(error.column)

@@ -16,6 +16,7 @@ from app.offsets.offset_history import LETTERS, refusal
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offset_values import UNKNOWN, cell_text, out_of_range, signed_zero_offset
 from core.executor.snapshot import Snapshot, State
+from core.message import Message
 from core.store.offset_fields import Field, Sort
 from core.store.store_rows import FIELDS, Row, Value
 
@@ -133,12 +134,12 @@ class CellTable(OffsetTable):
         """How a value is entered and another cell chosen."""
         if self.writing:
             return tr("TYPE THE TEXT. ENTER: SAVE   ESC: CANCEL")
-        return tr("TYPE A NUMBER OR EXPRESSION AND PRESS ENTER. ARROWS, TAB: OTHER CELL")
+        return tr("ENTER A NUMBER OR EXPRESSION   ARROWS, TAB: OTHER CELL")
 
     def barred(self, snapshot: Snapshot, *, correction: bool = False) -> str:
         """Nothing here is a correction: what says where zero or a tip is changes between cycles only."""
         if snapshot.state in UNDER_WAY - {State.JOG, State.HOME} and not self.book.locked:
-            return tr("PROGRAM RUNNING. THIS TABLE CAN CHANGE ONLY BETWEEN CYCLES")
+            return tr("PROGRAM RUNNING. CHANGE THIS TABLE ONLY BETWEEN CYCLES")
         return self.book.locked or refusal(snapshot, correction=correction)
 
     # --- keys ----------------------------------------------------------------------------------------
@@ -259,10 +260,10 @@ class CellTable(OffsetTable):
             new = value()
         except EntryError as error:
             self.text = refused(self.text)
-            self.desk.say(tr("REJECTED: {why}").format(why=error))
+            self.desk.say(tr(Message("REJECTED: {why}", why=error)))
             return False
         if self.stored is not None and self.value_before == new:
-            self.desk.say(tr("{which} NOT CHANGED").format(which=self.which))
+            self.desk.say(tr(Message("{which} NOT CHANGED", which=self.which)))
         elif why := self.keep({self.name: new, **also(new)}, self._reason(typed)):
             self.text = refused(self.text)
             self.desk.say(why)

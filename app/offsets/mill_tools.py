@@ -11,6 +11,7 @@ from app.offsets.cell_table import CellTable
 from app.offsets.mill_lives import MillLives
 from app.offsets.mill_touch import MillTouch
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.quality.tool_life import LifeState
 from core.store.offset_fields import LIFE_REACH, Field, Sort
 from core.store.store_rows import MILL_TOOLS, Kind, Value
@@ -72,14 +73,16 @@ class MillTools(CellTable):
             )
         if self.name == "stops":
             return tr("STOP: no new part starts once TIME2 is reached        Enter: on/off")
-        return tr("F2: set L so that the tip is at the typed height now        Esc: exit")
+        return tr("F2: set L so that the current tip position becomes the typed height        Esc: exit")
 
     def keep(self, values: Mapping[str, Value], why: str) -> str:
         """CUR.TIME goes to what counts it, all else to the table; answers why not, or nothing."""
         if USED not in values:
             return super().keep(values, why)
         if self.stored is None:
-            return tr("T{number} IS NOT IN THE TABLE YET: ENTER ITS LENGTH FIRST").format(number=self.number)
+            return tr(
+                Message("T{number} IS NOT IN THE TABLE YET: ENTER ITS LENGTH FIRST", number=self.number)
+            )
         self.lives.set_used(self.number, 60.0 * float(values[USED]))
         return ""
 
@@ -98,5 +101,5 @@ class MillTools(CellTable):
             return
         reads = self.text.strip() or "0"
         self.save(
-            lambda: self.checked(nose - value_of(reads)), tr("touch-off at {value}").format(value=reads)
+            lambda: self.checked(nose - value_of(reads)), tr(Message("touch-off at {value}", value=reads))
         )

@@ -12,6 +12,7 @@ from core.executor.snapshot import Snapshot, State
 from core.geometry.rotary_axes import DatumPreset, Kinematics
 from core.geometry.rotation_frames import Vector
 from core.interpreter.job_setup import Setup
+from core.message import Message
 
 _HERE: Vector = (0.0, 0.0, 0.0)
 _UPRIGHT = 1e-6  # of a unit vector: a tool that leans less stands upright
@@ -43,7 +44,7 @@ class MillTouch:
         number = self.desk.snapshot().modal.tool
         row = self.desk.book.mill_tools.get(number)
         if row is None:
-            return tr("NO TOOL FROM THE TABLE IN THE SPINDLE, LENGTH UNKNOWN. RUN TOOL CALL IN MDI")
+            return tr("SPINDLE HAS NO TOOL FROM THE TABLE. RUN TOOL CALL IN MDI")
         length = row.length + row.dl
         bare = machine.with_preset(DatumPreset(_HERE, zeros=tuple(zeros.items())))
         return bare.at_zeros(replace(bare, origin=_HERE).place(angles, tool_length=length).point(slides))
@@ -77,7 +78,7 @@ class MillTouch:
             return stands
         machine, angles, slides = stands
         if abs(machine.frame(angles)[2][2] - 1.0) > _UPRIGHT:
-            return tr("TOOL IS TILTED TO THE WORKPIECE. TURN THE ROTARY AXES UNTIL IT IS UPRIGHT")
+            return tr("TOOL IS TILTED. TURN ROTARY AXES UNTIL SQUARE TO WORKPIECE")
         return machine.place(angles).point(slides)[2]
 
     def _stands(self) -> tuple[Kinematics, dict[str, float], Vector] | str:
@@ -99,5 +100,5 @@ def _unknown(snapshot: Snapshot) -> str:
         return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP TO CHANGE OFFSETS")
     for axis, homed in zip(snapshot.axes, snapshot.homed, strict=True):
         if not homed:
-            return tr("{axis} IS NOT HOMED. HOME IT FIRST").format(axis=axis)
+            return tr(Message("{axis} IS NOT HOMED. HOME IT FIRST", axis=axis))
     return ""

@@ -11,6 +11,7 @@ from app.desk.access import Access
 from app.offsets.offset_acts import act_of
 from app.offsets.offsets_in_force import PRESET, preset_of
 from core.access.access_table import Act
+from core.message import Message
 from core.store.store_errors import StoreError
 from core.store.store_rows import (
     Change,
@@ -29,7 +30,7 @@ from core.store.touch_off import Touch
 if TYPE_CHECKING:
     from core.store.store import Store
 
-NONE_KEPT = "NO OFFSETS ARE STORED HERE"
+NONE_KEPT = "OFFSETS CANNOT BE SAVED: NO DATA STORE"
 SAVING = "STILL SAVING THE PREVIOUS CHANGE. PRESS ENTER AGAIN"
 
 
@@ -150,7 +151,9 @@ class OffsetBook:
         before = self.preset
 
         def choose(store: Store, _who: str) -> Future[None]:
-            self.access.persistence.note_change(f"active preset: {before} → {number}")
+            self.access.persistence.note_change(
+                Message("active preset: {before} → {number}", before=before, number=number)
+            )
             return store.set_setting(PRESET, number)
 
         return self._post(Act.PRESETS, choose)
@@ -220,7 +223,9 @@ class OffsetBook:
         if rows is not None:
             self.show(rows)
         self.store, self.unread = store, self.unread and store is None and rows is None
-        self.locked = "" if store is not None else f"OFFSETS CANNOT BE SAVED: {trouble}"
+        self.locked = (
+            "" if store is not None else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=trouble)
+        )
         return self._read_or_why()
 
     def _read_or_why(self) -> str:

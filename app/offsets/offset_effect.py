@@ -20,6 +20,7 @@ from app.offsets.offset_table import OffsetTable
 from app.offsets.offsets_in_force import secondary_offsets, tool_offsets
 from core.executor.job import Job
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
+from core.message import Message
 from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ class Effect:
 
     def _compared(self, part: OtherPart | None) -> None:
         self.part = part
-        self.trouble = "" if part is not None else tr("THIS PROGRAM MAKES NO PART")
+        self.trouble = "" if part is not None else tr("THIS PROGRAM DOES NOT MAKE A PART")
 
     def _drawn(self, pair: Compared) -> None:
         self.now = pair
@@ -219,15 +220,15 @@ class EffectDisplay:
     def _words_of_part(self, effect: Effect) -> str:
         part = self.part
         if effect.trouble:
-            return tr("PART CANNOT BE COMPARED: {why}. F6: SHOW TABLE").format(why=effect.trouble)
+            return tr(Message("PART CANNOT BE COMPARED: {why}. F6: SHOW TABLE", why=effect.trouble))
         if part is None:
             return tr("SIMULATING THE PART WITH OLD AND NEW OFFSETS")
         if not part.differing:
-            return tr("NO DIAMETER OR SHOULDER OF THE PART CHANGES. F6: SHOW TABLE")
+            return tr("NO DIAMETER OR SHOULDER ON THE PART CHANGES. F6: SHOW TABLE")
         if part.differing == 1:
             return tr("1 PART FEATURE CHANGES. F6: SHOW TABLE")
         words = tr("{count} PART FEATURES CHANGE. F6: SHOW TABLE")
-        return words.format(count=part.differing)
+        return tr(Message(words, count=part.differing))
 
     @property
     def words(self) -> str:
@@ -238,22 +239,22 @@ class EffectDisplay:
     def _words_of_path(self) -> str:
         effect, pair = self.effect, self.pictures
         if effect is not None and effect.trouble:
-            return tr("THE EFFECT CANNOT BE DRAWN: {why}").format(why=effect.trouble)
+            return tr(Message("THE EFFECT CANNOT BE DRAWN: {why}", why=effect.trouble))
         if pair is None:
             return tr("DRAWING THE OLD AND NEW PATHS")
         if pair.same:
-            return tr("THIS CHANGE DOES NOT AFFECT THE LOADED PROGRAM. F6: SHOW TABLE")
+            return tr("THE CHANGE DOES NOT AFFECT THE LOADED PROGRAM. F6: SHOW TABLE")
         mode = self.table.mode
         if pair.furthest == float("inf"):
             return tr("THE TWO PATHS HAVE DIFFERENT MOVES. F6: SHOW TABLE")
         far = f"{length(pair.furthest, mode.metric)} {mode.name}"
         if not self.near:
-            text = tr("PATHS DIFFER BY UP TO {far} (CIRCLED). F6: CLOSE-UP   Z: ZOOM   ESC: TABLE")
-            return text.format(far=far)
+            text = tr("PATHS DIFFER BY {far} (CIRCLED). F6: CLOSE-UP   ESC: TABLE")
+            return tr(Message(text, far=far))
         text = tr("PATHS DIFFER BY UP TO {far}. Z: ZOOM   F6: SHOW TABLE")
         if effect is not None and effect.compare is not None:
             text = tr("PATHS DIFFER BY UP TO {far}. Z: ZOOM   F6: EFFECT ON THE PART")
-        return text.format(far=far)
+        return tr(Message(text, far=far))
 
 
 def _tables(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow]) -> Tables:

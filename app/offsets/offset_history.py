@@ -15,6 +15,7 @@ from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_values import Mode, from_to
 from core.executor.snapshot import Snapshot, State
+from core.message import Message
 from core.store.store_errors import StoreError
 from core.store.store_rows import Change, Kind
 from core.tool_edges import edge_name
@@ -47,7 +48,7 @@ def counts_from(snapshot: Snapshot) -> str:
     if snapshot.state not in UNDER_WAY:
         return ""
     if snapshot.cycle_repeat:
-        return tr("PARTS RUNNING. OFFSET CHANGES APPLY FROM NEXT PART, ONCE PROVED")
+        return tr("PROVED OFFSET CHANGES APPLY FROM THE NEXT PART")
     return tr("WEAR APPLIES FROM NEXT CYCLE START")
 
 
@@ -107,9 +108,9 @@ class OffsetHistory:
             return tr("SAVED")
         names = " ".join(self._named(change) for change in reversed(self.last))
         if len(self.last) > 1 and self.kind is not Kind.ZERO:
-            names = tr("{count} OFFSETS").format(count=len(self.last))
+            names = tr(Message("{count} OFFSETS", count=len(self.last)))
         taken_back = self.last[0].undoes is not None
-        return (tr("{names} UNDONE") if taken_back else tr("{names} SAVED")).format(names=names)
+        return tr(Message(tr("{names} UNDONE") if taken_back else tr("{names} SAVED"), names=names))
 
     def _named(self, change: Change) -> str:
         letter = LETTERS[self.kind]
@@ -128,7 +129,11 @@ class OffsetHistory:
         if len(self.last) == 1:
             _at, which, change, _why = self.in_words(self.last[0])
             return f"{which}   {change}"
-        return tr("{count} offsets changed. F5: show them").format(count=len(self.last)) if self.last else ""
+        return (
+            tr(Message(("{count} offsets changed. F5: show the changes"), count=len(self.last)))
+            if self.last
+            else ""
+        )
 
     def toggle(self) -> None:
         """The history instead of the table, or the table again."""

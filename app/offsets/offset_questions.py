@@ -27,6 +27,7 @@ from app.offsets.suspicious_changes import (
     travel_of,
 )
 from core.access.access_table import Act
+from core.message import Message
 from core.store.store_errors import StoreError
 from core.store.store_rows import FIELDS, Kind, ToolRow, Value
 from core.store.touch_off import Touch
@@ -115,8 +116,8 @@ class OffsetQuestions:
         changes = described(found, lambda each: self._named(kind, each), lambda each: _reason(each.doubt))
         text = tr("{changes}. Y: CHANGE   N: KEEP OLD VALUE")
         if others:
-            text = tr("{changes}. FOLLOWERS: {others}. Y: CHANGE   N: KEEP")
-        question = text.format(changes=changes, others=others)
+            text = tr("{changes}. TOOLS THAT FOLLOW: {others}. Y: CHANGE   N: KEEP")
+        question = tr(Message(text, changes=changes, others=others))
         history.desk.ask(question, lambda: history.answer(save() if unchanged() else _changed_meanwhile()))
         return ""
 
@@ -156,19 +157,22 @@ class OffsetQuestions:
 
     def _master_question(self, before: int, chosen: int) -> str:
         if not chosen:
-            text = tr("MASTER {before} → NONE, NO TOOL WILL FOLLOW. Y: CHANGE   N: KEEP")
-            return text.format(before=edge_name(before))
+            text = tr("MASTER {before} → NONE: NO TOOLS FOLLOW. Y: CHANGE   N: KEEP")
+            return tr(Message(text, before=edge_name(before)))
         text = tr(
-            "MASTER {before} → {tool}. FOLLOWERS: {others}. TOUCH-OFF OVER {limit} {unit} WILL "
-            "ASK FIRST. Y: CHANGE   N: KEEP"
+            "MASTER {before} → {tool}. TOOLS THAT FOLLOW: {others}. TOUCH-OFF CHANGES OVER "
+            "{limit} {unit} MUST BE CONFIRMED. Y: CHANGE   N: KEEP"
         )
         mode = self.history.mode
-        return text.format(
-            before=edge_name(before) if before else tr("none"),
-            tool=edge_name(chosen),
-            others=follower_names(self.history.book.tools, chosen) or tr("no tools"),
-            limit=f"{LARGE_MM / mode.unit:.2g}",
-            unit=mode.name.upper(),
+        return tr(
+            Message(
+                text,
+                before=edge_name(before) if before else tr("none"),
+                tool=edge_name(chosen),
+                others=follower_names(self.history.book.tools, chosen) or tr("no tools"),
+                limit=f"{LARGE_MM / mode.unit:.2g}",
+                unit=mode.name.upper(),
+            )
         )
 
     # --- undo ----------------------------------------------------------------------------------------
@@ -186,15 +190,15 @@ class OffsetQuestions:
         except StoreError as error:
             return str(error)
         if not step:
-            return tr("NO CHANGE TO UNDO IN {row}").format(row=_table_or_row(kind, number))
+            return tr(Message("NO CHANGE TO UNDO IN {row}", row=_table_or_row(kind, number)))
         chosen = next((each for each in step if each.number == number), step[0])
         _at, _which, change, _why = self.history.in_words(chosen._replace(old=chosen.new, new=chosen.old))
         others = [_row_name(kind, each.number) for each in step if each is not chosen]
         text = tr("UNDO {row}: {change}? Y: UNDO   N: KEEP")
         if others:
             text = tr("UNDO {row}: {change}, AND ALSO {others}? Y: UNDO   N: KEEP")
-        words = text.format(
-            row=_row_name(kind, chosen.number), change=change, others=", ".join(_short(others))
+        words = tr(
+            Message(text, row=_row_name(kind, chosen.number), change=change, others=", ".join(_short(others)))
         )
         self.history.desk.ask(words, partial(self._undo, kind, number, step[0].step, done))
         return ""
@@ -211,13 +215,13 @@ def _reason(doubt: Doubt) -> str:
         Doubt.TRAVEL: tr("OUTSIDE AXIS TRAVEL"),
         Doubt.SIDE: tr("OPPOSITE SIDE OF THE PART"),
         Doubt.LARGE: tr("LARGE CHANGE"),
-        Doubt.MASTER: tr("OTHER TOOLS FOLLOW"),
+        Doubt.MASTER: tr("OTHER TOOLS FOLLOW THIS TOOL"),
     }
     return words[doubt]
 
 
 def _changed_meanwhile() -> str:
-    return tr("OFFSETS CHANGED IN BETWEEN. ENTER THE VALUE AGAIN")
+    return tr("OFFSETS CHANGED BEFORE YOU ANSWERED. ENTER THE VALUE AGAIN")
 
 
 def _row_name(kind: Kind, number: int) -> str:
@@ -237,4 +241,4 @@ def follower_names(tools: Mapping[int, ToolRow], master: int) -> str:
 def _short(names: list[str]) -> list[str]:
     """Return the first names, and how many more there are."""
     more = len(names) - _MOST_NAMES
-    return names if more <= 0 else [*names[:_MOST_NAMES], tr("{count} MORE").format(count=more)]
+    return names if more <= 0 else [*names[:_MOST_NAMES], tr(Message("{count} MORE", count=more))]

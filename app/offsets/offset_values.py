@@ -11,6 +11,7 @@ from app.desk import formats
 from app.desk.arithmetic import EntryError, value_of
 from app.desk.formats import MINUS, MM_PER_INCH
 from app.desk.translation import tr
+from core.message import Message
 from core.store.offset_fields import Field, Sort
 from core.store.store_rows import (
     FIELDS,
@@ -81,7 +82,7 @@ def added(mm: float, value: float, metric: bool) -> float:
 def out_of_range(field: str, value: str, unit: str, low: float, high: float) -> str:
     """Why a value is not kept, said in the unit of the entry."""
     text = tr("{field} would become {value} {unit}; allowed range is {low}…{high}")
-    return text.format(field=field, value=value, unit=unit, low=f"{low:g}", high=f"{high:g}")
+    return tr(Message(text, field=field, value=value, unit=unit, low=f"{low:g}", high=f"{high:g}"))
 
 
 # --- an offset in one line -------------------------------------------------------------------------------
@@ -193,7 +194,11 @@ def value_added(name: str, old: ToolRow, text: str, mode: Mode) -> Value:
     field, before = TOOL_FIELDS[name], getattr(old, name)
     if field.sort is not Sort.LENGTH:
         raise EntryError(
-            tr("no value can be added to {field}; press Enter to set it").format(field=field.word)
+            tr(
+                Message(
+                    "{field} does not accept an added value; press Enter to set the value", field=field.word
+                )
+            )
         )
     return _taken(field, added(before, value_of(text) / _doubled(name, mode), mode.metric), mode)
 
@@ -202,7 +207,7 @@ def _taken(field: Field, value: Value, mode: Mode) -> Value:
     if field.takes(value):
         return value
     if field.sort is not Sort.LENGTH:
-        raise EntryError(tr("{field} must be {range}").format(field=field.word, range=field.range))
+        raise EntryError(tr(Message("{field} must be {range}", field=field.word, range=field.range)))
     factor = _doubled(field.name, mode) / mode.unit
     figure = shown_value(field.name, value, mode)
     raise EntryError(out_of_range(field.word, figure, mode.name, field.low * factor, field.high * factor))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from app.desk.toml_file import read_toml, refuse, unknown, unknown_key
 from core.coded_error import CodedError
+from core.message import Message
 from core.store.offset_fields import MM_PER_INCH, Field, Sort
 from core.store.store_rows import (
     FIELDS,
@@ -33,14 +34,14 @@ if TYPE_CHECKING:
 
 _KINDS = (Kind.TOOL, Kind.SECONDARY)
 _NUMBERS = {
-    Kind.TOOL: ({str(number): number for number in OFFSETS}, "offsets are 1…32"),
-    Kind.SECONDARY: ({str(number): number for number in OFFSETS}, "offsets are 1…32"),
-    Kind.ZERO: ({str(code): code for code in ZERO_CODES}, "settable offsets are 54…59"),
+    Kind.TOOL: ({str(number): number for number in OFFSETS}, "offset numbers are 1…32"),
+    Kind.SECONDARY: ({str(number): number for number in OFFSETS}, "offset numbers are 1…32"),
+    Kind.ZERO: ({str(code): code for code in ZERO_CODES}, "settable zero offsets are 54…59"),
 }
 _EXPECTED = {
-    Sort.LENGTH: "a number of inches",
-    Sort.METRIC: "a number of mm",
-    Sort.ANGLE: "a number of degrees",
+    Sort.LENGTH: "a number in inches",
+    Sort.METRIC: "a number in mm",
+    Sort.ANGLE: "a number in degrees",
     Sort.WHOLE: "a whole number",
     Sort.TEXT: "a text",
     Sort.FLAG: "true or false",
@@ -65,7 +66,12 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], 
     masters = [f"tool.{n}" for n, row in tools.items() if row.master]
     mistakes += [
         CodedError(
-            f"[tool.{tool_of(n)}.d{edge_of(n)}] is an edge of T{tool_of(n)}, which has no X and Z of its own",
+            Message(
+                "[tool.{number}.d{number2}] is an edge of T{number3}, but that tool has no X and Z values",
+                number=tool_of(n),
+                number2=edge_of(n),
+                number3=tool_of(n),
+            ),
             "edge-without-tool",
         )
         for n in tools
@@ -73,7 +79,13 @@ def read_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], 
     ]
     if len(masters) > 1:
         mistakes.append(
-            CodedError(f"{' and '.join(masters)} are both master; one tool at most is", "two-masters")
+            CodedError(
+                Message(
+                    "{masters} are both set as master; only one tool can be the master",
+                    masters=" and ".join(masters),
+                ),
+                "two-masters",
+            )
         )
     refuse(path, mistakes)
     zero = {code: with_fields(ZeroRow(), values) for code, values in _table(data, Kind.ZERO, mistakes)}
@@ -138,11 +150,18 @@ def _shape_mistakes(number: int, row: ShapeRow, tool: ToolRow) -> Iterator[Coded
 
     if not row.kind:
         kinds = FIELDS[Kind.SHAPE]["kind"].range
-        text = f"[tool.{number}] has no kind, and a shape is nothing without; it is one of {kinds}"
+        text = Message(
+            "[tool.{number}] has a shape but no kind; set kind to one of {kinds}",
+            number=number,
+            kinds=kinds,
+        )
         yield CodedError(text, "no-kind")
         return
     for wrong in row_mistakes(row, tool):
-        yield CodedError(f"tool.{number}.{wrong.field}: {wrong.text}", "invalid-shape")
+        yield CodedError(
+            Message("tool.{number}.{field}: {wrong}", number=number, field=wrong.field, wrong=wrong.text),
+            "invalid-shape",
+        )
 
 
 def _table(
@@ -151,14 +170,38 @@ def _table(
     table, (numbers, those) = data.get(kind.value, {}), _NUMBERS[kind]
     if not isinstance(table, dict):
         mistakes.append(
-            CodedError(f"{kind} must hold tables such as [{kind}.{next(iter(numbers))}]", "not-tables")
+            CodedError(
+                Message(
+                    "{kind} must contain tables such as [{kind2}.{numbers}]",
+                    kind=kind,
+                    kind2=kind,
+                    numbers=next(iter(numbers)),
+                ),
+                "not-tables",
+            )
         )
         return
     for name, entry in table.items():
         if name not in numbers:
-            mistakes.append(CodedError(f"[{kind}.{name}] does not exist; {those}", "unknown-number"))
+            mistakes.append(
+                CodedError(
+                    Message("[{kind}.{name}] does not exist; {those}", kind=kind, name=name, those=those),
+                    "unknown-number",
+                )
+            )
         elif not isinstance(entry, dict):
-            mistakes.append(CodedError(f"{kind}.{name} must be a table, [{kind}.{name}]", "not-a-table"))
+            mistakes.append(
+                CodedError(
+                    Message(
+                        "{kind}.{name} must be a table, [{kind2}.{name2}]",
+                        kind=kind,
+                        name=name,
+                        kind2=kind,
+                        name2=name,
+                    ),
+                    "not-a-table",
+                )
+            )
         else:
             edges = _edges(entry) if kind is Kind.TOOL else {}
             own = {key: value for key, value in entry.items() if key not in edges}
@@ -167,10 +210,22 @@ def _table(
             for key, values in edges.items():
                 if not isinstance(values, dict):
                     mistakes.append(
-                        CodedError(f"tool.{name}.{key} must be a table, [tool.{name}.{key}]", "not-a-table")
+                        CodedError(
+                            Message(
+                                "tool.{name}.{key} must be a table, [tool.{name2}.{key2}]",
+                                name=name,
+                                key=key,
+                                name2=name,
+                                key2=key,
+                            ),
+                            "not-a-table",
+                        )
                     )
                     continue
-                yield edge_key(numbers[name], int(key[1])), _values(values, kind, f"{name}.{key}", mistakes)
+                yield (
+                    edge_key(numbers[name], int(key[1])),
+                    _values(values, kind, Message("{name}.{key}", name=name, key=key), mistakes),
+                )
 
 
 def _edges(entry: dict[str, object]) -> dict[str, object]:
@@ -189,7 +244,11 @@ def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[Code
         elif field.name in values:
             mistakes.append(
                 CodedError(
-                    f"{where} is given under two names, {' and '.join(*ALIASES.items())}; give one",
+                    Message(
+                        "{place} is specified under two names, {value}; use only one name",
+                        place=where,
+                        value=" and ".join(*ALIASES.items()),
+                    ),
                     "key-twice",
                 )
             )
@@ -203,12 +262,21 @@ def _values(entry: dict[str, object], kind: Kind, name: str, mistakes: list[Code
 def _mistake(where: str, field: Field, value: object) -> CodedError | None:
     """Return the mistake of a value of the file, or None if the value is accepted."""
     if not _fits(field, value):
-        return CodedError(f"{where} must be {_EXPECTED[field.sort]}", "wrong-type")
+        return CodedError(
+            Message("{place} must be {expected}", place=where, expected=_EXPECTED[field.sort]), "wrong-type"
+        )
     if field.choices and isinstance(value, str) and value not in field.choices:
         word = unknown(value or '""', field.choices)
-        return CodedError(f"{where} = {word}", "unknown-word")
+        return CodedError(Message("{place} = {word}", place=where, word=word), "unknown-word")
     mistake = out_of_range(field, _kept(field, value))
-    return CodedError(f"{where} = {shown(value)} {mistake}", "out-of-range") if mistake else None
+    return (
+        CodedError(
+            Message("{place} = {value} {mistake}", place=where, value=shown(value), mistake=mistake),
+            "out-of-range",
+        )
+        if mistake
+        else None
+    )
 
 
 def _fits(field: Field, value: object) -> bool:
@@ -233,4 +301,4 @@ def shown(value: object) -> str:
 
 def out_of_range(field: Field, value: Value) -> str:
     """What is wrong with a value (lengths mm), or nothing; NaN is out of every range."""
-    return "" if field.takes(value) else f"is out of range; expected {field.range}"
+    return "" if field.takes(value) else Message("is out of range; expected {range}", range=field.range)

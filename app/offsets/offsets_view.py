@@ -203,7 +203,7 @@ class OffsetPage(ModelPage):
             self.history.leaf_by((1 if key == "Page down" else -1) * self.history.rows)
             return True
         if self.effect_model.open and len(key) == 1 and self.model.takes(key):
-            self.desk.say(tr("VALUES ARE TYPED IN THE TABLE. PRESS ESC TO SHOW IT"))
+            self.desk.say(tr("TYPE VALUES IN THE TABLE. ESC: SHOW TABLE"))
             return True
         return self.model.typed(key)
 

@@ -8,6 +8,7 @@ from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.offsets.offset_values import Mode, signed
 from core.language.diagnostics import Diagnostic
+from core.message import Message, join_messages
 from core.proving.other_offsets import SAME, OtherPart
 from core.proving.part_features import Feature, FeatureKind, Pair
 
@@ -18,7 +19,7 @@ def part_table(part: OtherPart, mode: Mode) -> Sheet:
     """Features from the face on, those that change with a lamp; then findings that come or go."""
     unit = tr("MM") if mode.metric else tr("INCH")
     return Sheet(
-        f"{tr('EFFECT ON THE PART')}  ·  {unit}",
+        join_messages("  ·  ", (tr("EFFECT ON THE PART"), unit)),
         ("FEATURE", "BEFORE", "AFTER", "DIFFERENCE"),
         (0.4, 0.2, 0.2, 0.2),
         tuple(_row(each, mode) for each in part.pairs),
@@ -33,8 +34,8 @@ def _findings(part: OtherPart) -> list[tuple[bool, Diagnostic]]:
 
 def _note(found: Diagnostic, *, gone: bool) -> str:
     if gone:
-        return tr("LINE {line}: {check} NO LONGER REPORTED").format(line=found.line, check=found.code)
-    return tr("LINE {line}: {what}").format(line=found.line, what=tr(found.text))
+        return tr(Message("LINE {line}: {check} NO LONGER REPORTED", line=found.line, check=found.code))
+    return tr(Message("LINE {line}: {what}", line=found.line, what=tr(found.text)))
 
 
 def _row(pair: Pair, mode: Mode) -> Row:
@@ -42,7 +43,7 @@ def _row(pair: Pair, mode: Mode) -> Row:
     assert one is not None
     change = pair.difference
     same = change is not None and abs(change) <= SAME
-    told = _NONE if same else tr("NOT IN BOTH")
+    told = _NONE if same else tr("FOUND IN ONLY ONE OF THE TWO PARTS")
     if change is not None and not same:
         told = signed(change, mode.metric)
     cells = (_name(one, mode), _figure(pair.here, mode), _figure(pair.there, mode), told)

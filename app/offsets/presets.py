@@ -13,6 +13,7 @@ from app.offsets.mill_offsets import zeros_of
 from app.offsets.mill_touch import MillTouch
 from core.executor.snapshot import Snapshot
 from core.geometry.rotation_frames import Vector
+from core.message import Message
 from core.store.store_rows import PRESETS, Kind, PresetRow, Value
 
 _ROTARY = {"a": "A", "b": "B", "c": "C"}
@@ -51,11 +52,9 @@ class Presets(CellTable):
         if self.name in _ROTARY:
             told = tr("F2: set the current axis position to the typed value")
         elif self.name == "rotation":
-            told = tr(
-                "F2 at one point of an edge, then at another: set ROT so that the edge has the typed angle"
-            )
+            told = tr("F2 at two points of an edge: set ROT so that the edge has the typed angle")
         active = self.book.preset
-        now = tr("active preset: {preset}").format(preset=active or tr("0, from the machine file"))
+        now = tr(Message("active preset: {preset}", preset=active or tr("0, from the machine file")))
         return f"{told}        {tr('F3: make active')}        {now}"
 
     @property
@@ -82,7 +81,7 @@ class Presets(CellTable):
         elif self.name == "rotation":
             self._touch_edge()
         else:
-            self.desk.say(tr("SELECT X, Y, Z, A ROTARY AXIS OR ROT FIRST. F2: TOUCH OFF WORKPIECE"))
+            self.desk.say(tr("SELECT X, Y, Z, A ROTARY AXIS OR ROT FIRST. F2: TOUCH OFF"))
 
     @property
     def _reads(self) -> str:
@@ -94,7 +93,8 @@ class Presets(CellTable):
         if tip is not None:
             at = tip["xyz".index(self.name)]
             self.save(
-                lambda: self.checked(at - value_of(reads)), tr("position set to {value}").format(value=reads)
+                lambda: self.checked(at - value_of(reads)),
+                tr(Message("position set to {value}", value=reads)),
             )
 
     def _tip(self) -> Vector | None:
@@ -112,7 +112,7 @@ class Presets(CellTable):
             return
         self.save(
             lambda: self.checked(remainder(at - value_of(reads), 360.0)),
-            tr("position set to {value}").format(value=reads),
+            tr(Message("position set to {value}", value=reads)),
             self._followed,
         )
 
@@ -132,11 +132,12 @@ class Presets(CellTable):
             return
         if self.edge is None:
             self.edge = tip
-            self.desk.say(tr("FIRST POINT STORED. TOUCH THE SAME EDGE FURTHER ON, THEN F2"))
+            self.desk.say(tr("POINT 1 STORED. TOUCH SAME EDGE AT ANOTHER POINT, PRESS F2"))
             return
         first = self.edge
         if self.save(
-            lambda: self._turned(first, tip, value_of(reads)), tr("edge angle {value}").format(value=reads)
+            lambda: self._turned(first, tip, value_of(reads)),
+            tr(Message("edge angle set to {value}", value=reads)),
         ):
             self.edge = None
 
@@ -144,7 +145,7 @@ class Presets(CellTable):
         """Of an edge that shall read so many degrees from X; it has no beginning, so a half turn is none."""
         dx, dy = last[0] - first[0], last[1] - first[1]
         if hypot(dx, dy) < _APART:
-            raise EntryError(tr("POINTS LESS THAN 1 MM APART. TOUCH THE EDGE FURTHER ON"))
+            raise EntryError(tr("POINTS LESS THAN 1 MM APART. TOUCH FARTHER ALONG THE EDGE"))
         return self.checked(remainder(degrees(atan2(dy, dx)) - reads, 180.0))
 
     def activate_barred(self) -> str:
@@ -152,7 +153,7 @@ class Presets(CellTable):
         if why := self.barred(self.desk.snapshot()):
             return why
         if self.stored is None:
-            return tr("PRESET {number} IS NOT SET. TOUCH IT OFF OR TYPE IT").format(number=self.number)
+            return tr(Message("PRESET {number} IS NOT SET. TOUCH IT OFF OR TYPE IT", number=self.number))
         return ""
 
     def here_barred(self) -> str:
@@ -162,7 +163,7 @@ class Presets(CellTable):
         elif self.name in {"x", "y", "z", "rotation"}:
             place = MillTouch.of(self.desk).tip(zeros_of(self.row_now))
         else:
-            place = tr("SELECT X, Y, Z, A ROTARY AXIS OR ROT FIRST. F2: TOUCH OFF WORKPIECE")
+            place = tr("SELECT X, Y, Z, A ROTARY AXIS OR ROT FIRST. F2: TOUCH OFF")
         return place if isinstance(place, str) else self.barred(self.desk.snapshot())
 
     def activate(self) -> None:

@@ -17,6 +17,7 @@ from app.offsets.offset_history import counts_from
 from app.offsets.offset_table import OffsetTable, Proposed
 from app.offsets.offset_values import Mode, added, in_words, out_of_range, to_mm
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.store.offset_fields import RADIUS_MAX, SECONDARY_REACH
 from core.store.store_rows import OFFSETS, Kind, SecondaryRow
 
@@ -110,7 +111,7 @@ class SecondaryOffsets(OffsetTable):
         """Return what is typed now, or from when a correction counts."""
         if self.step is Step.NUMBER and not counts_from(snapshot):
             return tr("TYPE AN OFFSET NUMBER AND PRESS ENTER")
-        return counts_from(snapshot) or tr("TYPE A VALUE OR EXPRESSION (.5-.002). ENTER ALONE: KEEP VALUE")
+        return counts_from(snapshot) or tr("TYPE A VALUE OR EXPRESSION (.5-.002). ENTER ALONE: NO CHANGE")
 
     def proposed(self) -> Proposed:
         """The tables as they would be with what is being entered."""
@@ -127,7 +128,7 @@ class SecondaryOffsets(OffsetTable):
         super().look(snapshot)
         if self.mode.metric != before.metric and self.step is not Step.NUMBER:
             self.drop()
-            self.desk.say(tr("THE CONTROL CHANGED ITS UNIT. NOTHING SAVED. ENTER IT AGAIN"))
+            self.desk.say(tr("CONTROL CHANGED UNITS. NOTHING SAVED. ENTER THE VALUE AGAIN"))
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -152,7 +153,7 @@ class SecondaryOffsets(OffsetTable):
             self.text = str(number)
             self._enter()
         else:
-            self.desk.say(tr("FINISH D{number} FIRST, OR PRESS ESC").format(number=self.number))
+            self.desk.say(tr(Message("FINISH D{number} FIRST, OR PRESS ESC", number=self.number)))
 
     def clear(self) -> None:
         """C; not in the middle of an entry."""
@@ -168,7 +169,7 @@ class SecondaryOffsets(OffsetTable):
             return False
         number = self.number
         self.drop()
-        self.desk.say(tr("D{number} NOT CHANGED").format(number=number) if number else "")
+        self.desk.say(tr(Message("D{number} NOT CHANGED", number=number)) if number else "")
         return True
 
     def drop(self) -> None:
@@ -184,12 +185,12 @@ class SecondaryOffsets(OffsetTable):
             self._take_number() if self.step is Step.NUMBER else self._take_value()
         except EntryError as error:
             self.text = refused(self.text)
-            self.desk.say(tr("REJECTED: {why}").format(why=error))
+            self.desk.say(tr(Message("REJECTED: {why}", why=error)))
 
     def _take_number(self) -> None:
         value = value_of(self.text)
         if value not in OFFSETS:
-            raise EntryError(tr("D{number:g} does not exist; offsets are D1…32").format(number=value))
+            raise EntryError(tr(Message("D{number:g} does not exist; offsets are D1…32", number=value)))
         self.number, self.step, self.text = int(value), Step.X, ""
 
     def _take_value(self) -> None:
@@ -216,7 +217,7 @@ class SecondaryOffsets(OffsetTable):
 
     def _save(self, new: SecondaryRow, typed: list[str]) -> None:
         if new == self.old:
-            self.desk.say(tr("D{number} NOT CHANGED").format(number=self.number))
+            self.desk.say(tr(Message("D{number} NOT CHANGED", number=self.number)))
             self.drop()
             return
         reason = ("MM " if self.mode.metric else "") + " ".join(filter(None, typed))

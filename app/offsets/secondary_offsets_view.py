@@ -20,6 +20,7 @@ from app.screen.look import RIGHT, Look, Painter
 from app.screen.page_base import Host
 from app.screen.panel import Panel, Shown
 from core.executor.snapshot import Snapshot
+from core.message import join_messages
 from core.store.store_rows import SecondaryRow
 
 ROWS = 16
@@ -57,7 +58,7 @@ class SecondaryTable(Panel):
 
     def draw(self, painter: Painter) -> None:
         unit = tr("MM") if self._mode.metric else tr("INCH")
-        self.frame(painter, f"{tr('SECONDARY OFFSETS  ·  X STORED AS A RADIUS')}  ·  {unit}")
+        self.frame(painter, join_messages("  ·  ", (tr("SECONDARY OFFSETS  ·  X STORED AS A RADIUS"), unit)))
         room = self.inside().adjusted(-0.6 * self.look.u, 0, 0.6 * self.look.u, 0.4 * self.look.u)
         if self.near:
             self._draw_near(painter, room)

@@ -14,6 +14,7 @@ from app.offsets.offset_history import OffsetHistory
 from app.offsets.offset_questions import OffsetQuestions
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offset_values import TOOL_FIELDS, heading, shown_value, value_added, value_typed, word
+from core.message import Message
 from core.store.offset_fields import Sort
 from core.store.store_rows import Kind, ToolRow, Value
 from core.tool_edges import edge_name, edge_number
@@ -55,7 +56,7 @@ class ToolFields:
     def never_set(self, number: int) -> str:
         """Why a tool that nobody has set has no fields."""
         text = tr("T{number} IS NOT SET. TYPE X AND Z, OR TOUCH OFF ON THE JOG PAGE")
-        return text.format(number=edge_number(number))
+        return tr(Message(text, number=edge_number(number)))
 
     def save(self, number: int, name: str, text: str, *, adding: bool = False) -> str:
         """Set a field to what is typed, or add that to it. Raises EntryError for a text that is no value."""
@@ -64,7 +65,7 @@ class ToolFields:
             return self._first(number, name, value_typed(name, text, mode))
         value = value_added(name, row, text, mode) if adding else value_typed(name, text, mode)
         if value == getattr(row, name):
-            self.history.desk.say(tr("T{number} NOT CHANGED").format(number=edge_number(number)))
+            self.history.desk.say(tr(Message("T{number} NOT CHANGED", number=edge_number(number))))
             return ""
         typed = f"{'MM ' if mode.metric else ''}{word(name)} {'+ ' if adding else ''}{text.strip()}"
         return OffsetQuestions(self.history).change(Kind.TOOL, number, {name: value}, typed)
@@ -75,8 +76,8 @@ class ToolFields:
             return self.never_set(number)
         values = self.new.add(number, name, value)
         if len(values) < 2:
-            text = tr("NOW ENTER {axis}. T{number} IS SET ONCE X AND Z ARE ENTERED")
-            self.history.desk.say(text.format(axis=word(self.new.missing), number=edge_number(number)))
+            text = tr("NOW ENTER {axis}. T{number} IS SET WHEN BOTH X AND Z ARE ENTERED")
+            self.history.desk.say(tr(Message(text, axis=word(self.new.missing), number=edge_number(number))))
             return ""
         why = OffsetQuestions(self.history).change(Kind.TOOL, number, values, tr("manual entry"))
         if not why:
@@ -187,7 +188,7 @@ class ToolEntry(OffsetTable):
         try:
             why = barred or save()
         except EntryError as error:
-            why = tr("REJECTED: {why}").format(why=error)
+            why = tr(Message("REJECTED: {why}", why=error))
         if why:
             self.text = self.text if barred else refused(self.text)
             self.desk.say(why)
@@ -205,7 +206,7 @@ class ToolEntry(OffsetTable):
         if not self.entering:
             return False
         self.drop()
-        self.desk.say(tr("T{number} NOT CHANGED").format(number=edge_number(self.number)))
+        self.desk.say(tr(Message("T{number} NOT CHANGED", number=edge_number(self.number))))
         return True
 
     def drop(self) -> None:

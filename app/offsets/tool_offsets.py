@@ -15,6 +15,7 @@ from app.offsets.offset_values import (
 )
 from app.offsets.tool_fields import ToolEntry, ToolFields
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.store.store_rows import OFFSETS, Kind, with_fields
 from core.tool_edges import EDGES, edge_key, edge_number, tool_of
 
@@ -97,10 +98,8 @@ class ToolOffsets(ToolEntry):
     def hint(self, snapshot: Snapshot) -> str:
         """Of an open remark, or of the table."""
         if self.writing:
-            return tr("TYPE THE REMARK. ENTER: SAVE   ESC: CANCEL   F-KEYS STILL WORK")
-        return counts_from(snapshot) or tr(
-            "TYPE A NUMBER OR EXPRESSION. ENTER: SET   F2: ADD   ARROWS: OTHER CELL"
-        )
+            return tr("TYPE A REMARK. ENTER: SAVE   ESC: CANCEL   F-KEYS STILL WORK")
+        return counts_from(snapshot) or tr("TYPE A NUMBER OR EXPRESSION   ENTER: SET   F2: ADD")
 
     def proposed(self) -> Proposed:
         """The tables as they would be with what is typed."""
@@ -121,7 +120,7 @@ class ToolOffsets(ToolEntry):
     def cell_barred(self) -> str:
         """Why the cell under the cursor may not be changed now; empty when it may."""
         if self.relative and self.name in {"x", "z"}:
-            return tr("X AND Z ARE RELATIVE TO THE MASTER. PRESS F3 TO TYPE THEM FROM HOME")
+            return tr("X AND Z ARE RELATIVE TO THE MASTER. F3: ENTER THEM FROM HOME")
         return super().cell_barred()
 
     def look(self, snapshot: Snapshot) -> None:
@@ -135,7 +134,7 @@ class ToolOffsets(ToolEntry):
         changed = self.mode != before if position else self.mode.metric != before.metric
         if changed and (self.text or self.fields.new.number):
             self.drop()
-            self.desk.say(tr("CONTROL CHANGED UNITS OR DIAMETER/RADIUS. NOTHING SAVED. ENTER IT AGAIN"))
+            self.desk.say(tr("UNITS OR DIAMETER/RADIUS CHANGED. NOT SAVED. RE-ENTER VALUE"))
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -174,7 +173,7 @@ class ToolOffsets(ToolEntry):
     def relative_barred(self) -> str:
         """Return why X and Z cannot be shown from the master; empty when they can."""
         if not self.relative and not self.book.master:
-            return tr("NO MASTER TOOL. PRESS ENTER IN THE MASTER COLUMN TO CHOOSE ONE")
+            return tr("NO MASTER TOOL. PRESS ENTER IN MASTER COLUMN TO CHOOSE ONE")
         return ""
 
     def turn_relative(self) -> None:
@@ -198,11 +197,11 @@ class ToolOffsets(ToolEntry):
         if tool not in self.book.tools:
             self.desk.say(self.fields.never_set(tool))
         elif not key:
-            self.desk.say(tr("T{number} ALREADY HAS ALL CUTTING EDGES, D1 TO D9").format(number=tool))
+            self.desk.say(tr(Message("T{number} ALREADY HAS ALL CUTTING EDGES, D1 TO D9", number=tool)))
         else:
             self.opened_edge = key
             self._go(key, COLUMNS.index("x"))
-            self.desk.say(tr("T{number}: TYPE X AND Z").format(number=edge_number(key)))
+            self.desk.say(tr(Message("T{number}: TYPE X AND Z", number=edge_number(key))))
 
     def _go(self, number: int, column: int) -> None:
         """The cursor there; what was typed and not entered stays behind, and that is said."""
@@ -215,7 +214,7 @@ class ToolOffsets(ToolEntry):
         new = self.fields.new
         if new.number and self.number != new.number:
             self.desk.say(
-                tr("T{number} IS NOT SET: BOTH X AND Z ARE NEEDED").format(number=edge_number(new.number))
+                tr(Message("T{number} IS NOT SET: ENTER BOTH X AND Z", number=edge_number(new.number)))
             )
             self.drop()
 

@@ -21,6 +21,7 @@ from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel, Shown
 from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
+from core.message import Message, join_messages
 from core.tool_edges import edge_of, tool_of
 
 NUMBER = 5.4  # units: width of the column of numbers
@@ -76,9 +77,9 @@ class ToolTable(Panel):
         u, model = self.look.u, self._model
         mode = model.mode
         x = tr("X IS A DIAMETER") if mode.diameter else tr("X IS A RADIUS")
-        title = f"{tr('TOOL OFFSETS')}  ·  {tr('MM') if mode.metric else tr('INCH')}  ·  {x}"
+        title: str = join_messages("  ·  ", (tr("TOOL OFFSETS"), tr("MM") if mode.metric else tr("INCH"), x))
         if model.relative:
-            title += "  ·  " + tr("X AND Z RELATIVE TO MASTER T{number}").format(number=model.book.master)
+            title += "  ·  " + tr(Message("X AND Z RELATIVE TO MASTER T{number}", number=model.book.master))
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, -0.2 * u, 0.7 * u, 0.5 * u)
         body = room.adjusted(0, HEAD * u, 0, 0)

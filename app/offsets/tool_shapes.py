@@ -9,6 +9,7 @@ from app.desk.translation import tr
 from app.offsets.offset_values import TOOL_FIELDS, choice_word, shown_value, value_typed, word
 from app.offsets.tool_fields import ToolEntry, ToolFields
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.part.shape_rules import FIELDS_OF, ShapeMistake
 from core.part.tool_outline import ToolOutline, outline
 from core.part.tool_shape import ToolKind
@@ -103,7 +104,7 @@ class ToolShapes(ToolEntry):
             return tr("LEFT/RIGHT: CHANGE    ENTER: ACCEPT")
         if self.is_text:
             return tr(self.to_write)
-        return tr("UP/DOWN: FIELD   TYPE A NUMBER OR EXPRESSION   ENTER: SET   0: NOT SPECIFIED")
+        return tr("TYPE A NUMBER OR EXPRESSION   ENTER: SET   0: NOT SPECIFIED")
 
     @property
     def corrects(self) -> bool:
@@ -189,7 +190,7 @@ class ToolShapes(ToolEntry):
         if of_offset and self.tool is None:
             return ToolFields(self.history).never_set(self.number)
         if (self.row is not None or of_offset) and value == self.value(name):
-            self.desk.say(tr("T{number} NOT CHANGED").format(number=edge_number(self.number)))
+            self.desk.say(tr(Message("T{number} NOT CHANGED", number=edge_number(self.number))))
             return ""
         self._check(name, value)
         typed = f"{'MM ' if self.mode.metric else ''}{word(name)} {self.text.strip()}"
@@ -213,7 +214,7 @@ class ToolShapes(ToolEntry):
     def remove_barred(self) -> str:
         """Return why the shape of the tool is not removed now; empty when it is."""
         if self.row is None:
-            return tr("T{number} HAS NO SHAPE").format(number=edge_number(self.number))
+            return tr(Message("T{number}: NO TOOL SHAPE DEFINED", number=edge_number(self.number)))
         return self.cell_barred()
 
     def remove(self) -> None:
@@ -222,8 +223,8 @@ class ToolShapes(ToolEntry):
             self.desk.say(why)
         else:
             number = self.number
-            question = tr("PRESS Y TO DELETE THE SHAPE OF T{number}, N TO KEEP IT").format(
-                number=edge_number(number)
+            question = tr(
+                Message("PRESS Y TO DELETE THE SHAPE OF T{number}, N TO KEEP IT", number=edge_number(number))
             )
             self.desk.ask(question, lambda: self._remove(number))
 

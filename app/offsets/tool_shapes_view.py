@@ -20,6 +20,7 @@ from app.screen.panel import Panel, Shown
 from app.screen.tool_outline_drawing import draw_outline
 from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
+from core.message import Message, join_messages
 from core.tool_edges import edge_number
 
 ROWS = 6  # fields in one of the two columns
@@ -44,7 +45,9 @@ class ShapeTable(Panel):
     def draw(self, painter: Painter) -> None:
         u, model = self.look.u, self._model
         unit = tr("MM") if model.mode.metric else tr("INCH")
-        title = f"{tr('SHAPE OF T{number}').format(number=edge_number(model.number))}  ·  {unit}"
+        title: str = join_messages(
+            "  ·  ", (tr(Message("SHAPE OF T{number}", number=edge_number(model.number))), unit)
+        )
         if model.tool is not None and model.tool.remark:
             title += f"  ·  {data(model.tool.remark)}"
         self.frame(painter, title)
@@ -91,7 +94,7 @@ class ShapeTable(Panel):
         painter.fill(room, "panel")
         outline = model.outline
         if model.row is None:
-            text = tr("NO SHAPE: THE PROOF CHECKS ONLY THE TOOL NOSE")
+            text = tr("SHAPE NOT DEFINED: THE PROOF CHECKS ONLY THE TOOL NOSE")
             painter.write(room, text, 1.8, "soft", at=CENTRE, margin=1.0)
         elif outline is None:
             painter.write(room, tr("IMPOSSIBLE TOOL SHAPE"), 1.8, "alarm", at=CENTRE, margin=1.0)
@@ -99,7 +102,7 @@ class ShapeTable(Panel):
             draw_outline(painter, room.adjusted(0, 0, 0, -2.8 * u), outline)
             if outline.assumed:
                 names = ", ".join(word("quadrant" if name == "tip" else name) for name in outline.assumed)
-                text = tr("ASSUMED: {names}").format(names=names)
+                text = tr(Message("ASSUMED: {names}", names=names))
                 painter.write(words, text, 1.5, "soft", at=CENTRE, bold=False, margin=1.0)
 
 

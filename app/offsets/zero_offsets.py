@@ -9,6 +9,7 @@ from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.cell_table import CellTable
 from core.executor.snapshot import Snapshot, State
+from core.message import Message
 from core.store.store_rows import ZERO_CODES, Kind
 
 
@@ -19,7 +20,7 @@ class ZeroOffsets(CellTable):
     own_key = "C"
     numbers = ZERO_CODES
     clears = "PRESS Y TO CLEAR G54 TO G59, N TO KEEP THEM"
-    why_cleared = "C: all cleared"
+    why_cleared = "C: all zero offsets cleared"
 
     @property
     def title(self) -> str:
@@ -56,16 +57,16 @@ class ZeroOffsets(CellTable):
     def barred(self, snapshot: Snapshot, *, correction: bool = False) -> str:
         """Nothing here is a correction: part zero changes between cycles only."""
         if snapshot.state in UNDER_WAY - {State.JOG, State.HOME} and not self.book.locked:
-            return tr("PROGRAM RUNNING. G54 TO G59 CAN CHANGE ONLY BETWEEN CYCLES")
+            return tr("PROGRAM RUNNING. CHANGE G54 TO G59 ONLY BETWEEN CYCLES")
         return super().barred(snapshot, correction=correction)
 
     def here_barred(self) -> str:
         """Return why the position of the machine is not taken now; empty when it is."""
         snapshot, axis = self.desk.snapshot(), self.name.upper()
         if axis not in snapshot.axes:
-            return tr("THIS MACHINE HAS NO AXIS {axis}").format(axis=axis)
+            return tr(Message("THIS MACHINE HAS NO {axis} AXIS", axis=axis))
         if not snapshot.homed[snapshot.axes.index(axis)]:
-            return tr("{axis} IS NOT HOMED. HOME IT FIRST").format(axis=axis)
+            return tr(Message("{axis} IS NOT HOMED. HOME IT FIRST", axis=axis))
         return self.barred(snapshot)
 
     def here(self) -> None:
@@ -76,7 +77,7 @@ class ZeroOffsets(CellTable):
         snapshot = self.desk.snapshot()
         place = snapshot.axes.index(self.name.upper())
         reads = self.text.strip() or "0"
-        words = tr("position set to {value}").format(value=reads)
+        words = tr(Message("position set to {value}", value=reads))
         self.save(lambda: self._touched(snapshot.actual[place], value_of(reads)), words)
 
     def _touched(self, at: float, reads: float) -> float:

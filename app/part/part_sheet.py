@@ -23,6 +23,7 @@ from app.desk.translation import tr
 from app.part.stock_entry import StockEntry, StockField, StockKind
 from core.access.access_table import Act
 from core.language.diagnostics import Diagnostic, Severity
+from core.message import Message
 from core.part.stock_spec import StockError
 from core.store.store_errors import StoreError
 
@@ -246,16 +247,16 @@ class PartSheet:
     def prompt(self) -> str:
         """What the keys do here."""
         if self.silencing:
-            return tr("TYPE THE REASON   ENTER: SILENCE CHECK, SAVE WITH PROGRAM   ESC: LEAVE CHECK ON")
+            return tr("TYPE THE REASON   ENTER: TURN CHECK OFF   ESC: LEAVE IT ON")
         if self.writing:
             return tr("TYPE THE FILE NAME   ENTER: ACCEPT   ESC: CANCEL")
         if self.section is Section.FINDINGS:
             if self.keys()["F4"].barred:
                 return tr("UP/DOWN: SHOW WHERE EACH FINDING IS   F2: STOCK")
-            return tr("UP/DOWN: SHOW WHERE EACH FINDING IS   F2: STOCK   F4: SILENCE CHECK")
+            return tr("UP/DOWN: SHOW EACH FINDING   F2: STOCK   F4: TURN CHECK OFF")
         if self.marked_field is StockField.KIND:
             return tr("LEFT/RIGHT: CHANGE STOCK TYPE   F6: DELETE STOCK DATA")
-        return tr("TYPE A LENGTH OR EXPRESSION   ENTER: SAVE WITH PROGRAM   0: NOT SPECIFIED")
+        return tr("TYPE A LENGTH OR EXPRESSION   ENTER: SAVE   0: NOT SPECIFIED")
 
     # --- what is said --------------------------------------------------------------------------------
 
@@ -268,11 +269,11 @@ class PartSheet:
     def _locked(self) -> str:
         """Return why nothing may be changed now; empty when it may."""
         if not self.name:
-            return tr("LOAD A PROGRAM FIRST. STOCK IS SAVED WITH IT")
+            return tr("LOAD A PROGRAM FIRST. STOCK DATA IS SAVED WITH THE PROGRAM")
         if self.desk.lathe is not None and self.desk.lathe.kind != "lathe":
-            return tr("ON A MILL, THE PART IS NOT PROVED")
+            return tr("ON A MILL, TURNDESK DOES NOT PROVE THE FINISHED PART")
         if self.desk.snapshot().state in UNDER_WAY:
-            return tr("PROGRAM RUNNING. CHANGE STOCK AND CHECKS BETWEEN CYCLES")
+            return tr("PROGRAM RUNNING. CHANGE STOCK AND CHECKS ONLY BETWEEN CYCLES")
         if self.worker.busy or self.loaded.busy:
             return tr("THE PROGRAM IS BEING PROVED: WAIT A MOMENT")
         return ""
@@ -324,7 +325,9 @@ class PartSheet:
             return str(there)
         path = self.desk.program_folders.find(name) if name else None
         if path is None:
-            raise EntryError(tr("file {name} was not found in the program's folder").format(name=name or "–"))
+            raise EntryError(
+                tr(Message("file {name} was not found in the program's folder", name=name or "–"))
+            )
         return str(path)
 
     def _say(self, entry: StockEntry) -> None:
@@ -339,7 +342,7 @@ class PartSheet:
             return
         kept = replace(self.kept, stock=stock, stick_out=entry.stick_out or None)
         if kept != self.kept:
-            self._keep(kept, tr("SAVED WITH {name}").format(name=self.name))
+            self._keep(kept, tr(Message("STOCK DATA SAVED WITH {name}", name=self.name)))
 
     # --- silenced ------------------------------------------------------------------------------------
 
@@ -347,11 +350,15 @@ class PartSheet:
         """Return why the check of the marked finding cannot be silenced; empty when it can."""
         found = self.finding
         if found is None:
-            return tr("SELECT THE FINDING WHOSE CHECK YOU WANT TO SILENCE")
+            return tr("SELECT THE FINDING WHOSE CHECK YOU WANT TO TURN OFF")
         if found.check not in self.checks:
-            return tr("THIS IS A CHECK OF THE PROGRAM. ONLY PART CHECKS CAN BE SILENCED")
+            return tr("PROGRAM CHECKS CANNOT BE TURNED OFF, ONLY PART CHECKS")
         if found.check in self.of_machine:
-            return tr("{check} IS SILENCED IN THE MACHINE FILE, SECTION [checks]").format(check=found.check)
+            return tr(
+                Message(
+                    "{check} CHECK IS TURNED OFF IN THE MACHINE FILE, SECTION [checks]", check=found.check
+                )
+            )
         return ""
 
     def silence(self) -> None:
@@ -365,7 +372,7 @@ class PartSheet:
             return
         elif found.silenced:
             rest = {check: why for check, why in self.kept.silenced.items() if check != found.check}
-            said = tr("{check} IS CHECKED AGAIN").format(check=found.check)
+            said = tr(Message("{check} CHECK IS ON AGAIN", check=found.check))
             self._keep(replace(self.kept, silenced=rest), said)
         else:
             self.desk.clear()
@@ -373,11 +380,13 @@ class PartSheet:
 
     def _silence(self, check: str, why: str) -> None:
         if not why:
-            self.desk.refuse(tr("enter a reason to silence a check"))
+            self.desk.refuse(tr("enter a reason to turn a check off"))
         elif not self._barred():
             silenced = {**self.kept.silenced, check: why}
             self.drop()
-            self._keep(replace(self.kept, silenced=silenced), tr("{check} SILENCED").format(check=check))
+            self._keep(
+                replace(self.kept, silenced=silenced), tr(Message("{check} CHECK TURNED OFF", check=check))
+            )
 
     # --- the store -----------------------------------------------------------------------------------
 
@@ -387,7 +396,12 @@ class PartSheet:
         if self.desk.refused(Act.STOCK):
             return
         silenced = ", ".join(kept.silenced) or "none"
-        told = f"{name}: stock {kept.stock or 'not specified'}, silenced checks {silenced}"
+        told = Message(
+            "{name}: stock {stock}, checks turned off: {silenced}",
+            name=name,
+            stock=kept.stock or "not specified",
+            silenced=silenced,
+        )
 
         def done(_none: None) -> None:
             self.keep.note_change(told)
@@ -396,7 +410,7 @@ class PartSheet:
         self.worker.queue(
             partial(self.keep.keep_settings, kept.settings(name)),
             done,
-            lambda why: self.desk.say(tr("NOT SAVED: {why}").format(why=why)),
+            lambda why: self.desk.say(tr(Message("NOT SAVED: {why}", why=why))),
         )
 
     def _is_kept(self, name: str, said: str) -> None:

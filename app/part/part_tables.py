@@ -11,6 +11,7 @@ from app.desk.translation import tr
 from app.part.part_sheet import PartSheet, Section
 from app.part.stock_entry import StockField
 from core.language.diagnostics import Diagnostic, Severity
+from core.message import Message, join_messages
 from core.part.stock import Stock
 
 ACROSS = 74  # characters of a note
@@ -28,8 +29,12 @@ def table(page: PartSheet) -> Sheet:
 def _findings_table(page: PartSheet) -> Sheet:
     found = page.findings
     rows = tuple(_finding_row(each) for each in found)
-    title = tr("FINDINGS  ·  {name}").format(name=page.loaded.name or tr("NO PROGRAM"))
-    question = tr("REASON FOR SILENCING {check}?").format(check=page.silencing) if page.silencing else ""
+    title = tr(Message("FINDINGS  ·  {name}", name=page.loaded.name or tr("NO PROGRAM")))
+    question = (
+        tr(Message("REASON FOR TURNING OFF THE {check} CHECK?", check=page.silencing))
+        if page.silencing
+        else ""
+    )
     notes = _notes(page)
     return Sheet(
         title,
@@ -59,17 +64,17 @@ def _nothing(page: PartSheet) -> str:
     part = loaded.part
     if part is None or part.report is None:
         why = tr(part.trouble) if part is not None else ""
-        return why or tr("NO FINDINGS. THIS PROGRAM MAKES NO PART")
+        return why or tr("NO FINDINGS. THIS PROGRAM DOES NOT MAKE A PART")
     return tr("NO FINDINGS")
 
 
 def _at(page: PartSheet, found: Diagnostic) -> str:
     if found.silenced:
         of_machine = found.check in page.of_machine
-        return tr("SILENCED BY THE MACHINE FILE") if of_machine else tr("F4: UNDO")
+        return tr("TURNED OFF IN THE MACHINE FILE") if of_machine else tr("F4: UNDO")
     if not found.n:
         return ""
-    return tr("ELEMENTARY BLOCK {n}").format(n=found.n)
+    return tr(Message("ELEMENTARY BLOCK {number}", number=found.n))
 
 
 # --- stock ---------------------------------------------------------------------------------------
@@ -79,7 +84,9 @@ def _stock_table(page: PartSheet) -> Sheet:
     entry, unit = page.entry, tr("MM") if page.metric else tr("INCH")
     rows = tuple(Row((_word(name), _said(page, name), _assumed(page, name))) for name in entry.fields)
     return Sheet(
-        f"{tr('STOCK  ·  {name}').format(name=page.loaded.name or tr('NO PROGRAM'))}  ·  {unit}",
+        join_messages(
+            "  ·  ", (tr(Message("STOCK  ·  {name}", name=page.loaded.name or tr("NO PROGRAM"))), unit)
+        ),
         ("", "SPECIFIED", "ASSUMED"),
         (0.34, 0.33, 0.33),
         rows,
@@ -117,9 +124,9 @@ def _question(page: PartSheet) -> str:
 def _stock_notes(page: PartSheet) -> tuple[str, ...]:
     lacks = page.entry.lacks
     if lacks is not None:
-        return (tr("{field} IS STILL MISSING: ENTER IT").format(field=_word(lacks)),)
+        return (tr(Message("STILL MISSING: ENTER {field}", field=_word(lacks))),)
     if page.marked_field is StockField.STICK_OUT and not page.holds:
-        return (tr("ONLY USED IF THE MACHINE FILE HAS [clamping]"),)
+        return (tr("THE STICK-OUT IS USED ONLY IF THE MACHINE FILE HAS A [clamping] SECTION"),)
     part = page.loaded.part
     told = part.report.assumed if part is not None and part.report is not None else ()
     said = (f"{tr('ASSUMED')}: {tr(each)}" for each in told[:3])

@@ -50,7 +50,7 @@ _KINDS = {
     StockKind.BAR: "BAR",
     StockKind.TUBE: "TUBE",
     StockKind.PROFILE: "PROFILE",
-    StockKind.AFTER: "PART FROM A PROGRAM",
+    StockKind.AFTER: "PART FROM ANOTHER PROGRAM",
 }
 _STICK_OUTS = (0.0, 40.0 * MM_PER_INCH)
 
@@ -97,7 +97,7 @@ class StockEntry:
         """With a length that was typed, in inches or mm. Raises EntryError for what it cannot be."""
         value = value_of(text) * (1.0 if metric else MM_PER_INCH)
         if value < 0.0:
-            raise EntryError("a stock length cannot be negative; 0 clears it")
+            raise EntryError("a stock length cannot be negative; enter 0 to clear the length")
         low, high = _STICK_OUTS
         if name is StockField.STICK_OUT and not low <= value <= high:
             raise EntryError("the stick-out must be more than 0 and at most 40 in")

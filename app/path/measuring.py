@@ -14,6 +14,7 @@ import numpy as np
 from app.desk import formats
 from app.desk.translation import tr
 from app.path.polyline import SAME, Bounds, Floats, Polyline, Stroke
+from core.message import Message
 
 # --- points -------------------------------------------------------------------------------------------
 
@@ -47,7 +48,7 @@ def kind_words(kind: PointKind) -> str:
 
 def measuring_words() -> str:
     """The prompt line while one measures."""
-    return tr("ARROWS: NEXT POINT   TAB: ALONG THE PATH   ENTER: MEASURE FROM HERE   ESC: BACK")
+    return tr("ARROWS, TAB: MOVE   ENTER: MEASURE FROM HERE   ESC: BACK")
 
 
 MOST_CROSSED = 300  # chords in sight up to which crossings are looked for
@@ -222,7 +223,7 @@ def _straight(right: float, across: float, metric: bool, to: str) -> list[Row]:
     angle = math.degrees(math.atan2(abs(across), abs(right)))
     return [
         (tr("DISTANCE"), formats.length(math.hypot(right, across), metric)),
-        (tr("ANGLE {axis}").format(axis=to), f"{formats.angle(angle)}°"),
+        (tr(Message("ANGLE {axis}", axis=to)), f"{formats.angle(angle)}°"),
     ]
 
 

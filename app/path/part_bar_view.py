@@ -12,6 +12,7 @@ from app.desk.translation import tr
 from app.path.part_player import PartPlayer
 from app.screen.look import CENTRE, LEFT, Look, draw_sign, put
 from app.screen.panel import Press
+from core.message import Message
 
 _KEY = 6.6  # units: width of a key
 _STOCK = 9.0  # the one that opens the stock
@@ -80,7 +81,7 @@ class PartBar:
         shown = player.played
         if shown is not None and shown.instant.line:
             painter.setFont(look.font(1.6))
-            text = tr("LINE {line}").format(line=shown.instant.line)
+            text = tr(Message("LINE {line}", line=shown.instant.line))
             put(painter, words.translated(0, room.height() / 2 - 0.4 * u), LEFT, text)
 
     def _line(self, painter: QPainter) -> None:

@@ -22,6 +22,7 @@ from app.screen.look import CENTRE, LEFT, RIGHT, Look, put
 from app.screen.panel import Press
 from app.screen.window_layout import FINGER
 from core.language.diagnostics import Diagnostic
+from core.message import Message
 from core.proving.part_checks import is_serious
 
 BUTTON = (6.6, 6.6, 0.4)  # units: width, height, between two of them; at least a fingertip
@@ -216,8 +217,12 @@ def apart_words(apart: Apart, in_mm: bool) -> str:
     if not apart.distance:
         return tr("NO CUTTING MOVE HAS CHANGED")
     length = formats.length(apart.distance, in_mm)
-    return tr("LARGEST DIFFERENCE {length} {unit}  ·  MARKED BY THE CIRCLE").format(
-        length=length, unit="mm" if in_mm else "in"
+    return tr(
+        Message(
+            "LARGEST DIFFERENCE {length} {unit}  ·  MARKED BY THE CIRCLE",
+            length=length,
+            unit="mm" if in_mm else "in",
+        )
     )
 
 
@@ -236,11 +241,13 @@ def part_words(pane: Pane) -> str:
         return trouble or tr("PART  ·  CALCULATING …")
     wrong = errors_of(pane)
     if wrong:
-        return tr("LINE {line}: {what}").format(line=wrong[-1].line, what=tr(wrong[-1].message))
+        return tr(Message("LINE {line}: {what}", line=wrong[-1].line, what=tr(wrong[-1].message)))
     if shown.instant.stock is None:
         return tr("PART  ·  NOTHING CUT")
     tool = shown.instant.tool
-    return tr("PART  ·  T{tool}").format(tool=tool.number) if tool is not None else tr("PART  ·  UNCUT STOCK")
+    return (
+        tr(Message("PART  ·  T{tool}", tool=tool.number)) if tool is not None else tr("PART  ·  UNCUT STOCK")
+    )
 
 
 def pane_words(pane: Pane, in_mm: bool) -> str:
@@ -250,7 +257,7 @@ def pane_words(pane: Pane, in_mm: bool) -> str:
     if pane.aspect is Aspect.FACE:
         return tr("FACE  ·  VIEW FROM THE TAILSTOCK")
     diameter = formats.length(pane.polyline.round * 360.0 / math.pi, in_mm)
-    return tr("SIDE  ·  UNROLLED AT Ø {diameter}").format(diameter=diameter)
+    return tr(Message("SIDE  ·  UNROLLED AT Ø {diameter}", diameter=diameter))
 
 
 QUARTERS = (0, 90, 180, 270)

@@ -20,12 +20,13 @@ from app.programs.program_rows import Program
 from app.programs.whole_file import FileError, present, write_whole
 from core.access.access_table import Act
 from core.drawings.drawing_file import is_drawing
+from core.message import Message
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
 
-SAMPLE = "SAMPLES ARE READ-ONLY. F4: COPY IT FIRST"
+SAMPLE = "SAMPLES ARE READ-ONLY. F4: COPY THE SAMPLE FIRST"
 NONE = "SELECT A PROGRAM FIRST"
-BUSY = "STILL WORKING: WAIT UNTIL IT IS DONE"
+BUSY = "STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE"
 COPY, RENAME = "NAME FOR THE COPY?", "NEW NAME?"
 
 
@@ -41,7 +42,7 @@ def checked_name(name: str, like: Path) -> str:
     except StoreError as error:
         raise FileError(str(error)) from error
     if name.startswith("."):
-        raise FileError(f"{name} WOULD BE HIDDEN. USE A NAME WITHOUT A LEADING PERIOD")
+        raise FileError(Message("{name} WOULD BE HIDDEN. USE A NAME WITHOUT A LEADING PERIOD", name=name))
     return name
 
 
@@ -72,16 +73,24 @@ def rename_program(source: Path, name: str, persistence: Persistence) -> str:
     """Another name; versions, count and record go along. Raises FileError."""
     name = checked_name(name, source)
     if name == source.name:
-        raise FileError(f"THE PROGRAM IS ALREADY NAMED {name}")
+        raise FileError(Message("THE PROGRAM IS ALREADY NAMED {name}", name=name))
     if name.lower() != source.name.lower():
         _free(source.parent, name)
     try:
         source.rename(source.with_name(name))
         persistence.renamed(source.name, name)
     except OSError as error:
-        raise FileError(f"{source.name} CANNOT BE RENAMED: {error.strerror}") from error
+        raise FileError(
+            Message("{source} CANNOT BE RENAMED: {cause}", source=source.name, cause=error.strerror)
+        ) from error
     except StoreError as error:
-        raise FileError(f"RENAMED, BUT ITS VERSIONS ARE STILL STORED UNDER {source.name}: {error}") from error
+        raise FileError(
+            Message(
+                "PROGRAM RENAMED, BUT ITS VERSIONS REMAIN UNDER {source}: {error}",
+                source=source.name,
+                error=error,
+            )
+        ) from error
     return name
 
 
@@ -91,21 +100,25 @@ def delete_program(path: Path, persistence: Persistence) -> str:
         persistence.save_version(path.name, _read(path), "deleted")
         path.unlink()
     except StoreError as error:
-        raise FileError(f"NOT DELETED, BECAUSE A VERSION OF IT CANNOT BE SAVED: {error}") from error
+        raise FileError(
+            Message("PROGRAM NOT DELETED. A VERSION CANNOT BE SAVED FIRST: {error}", error=error)
+        ) from error
     except OSError as error:
-        raise FileError(f"{path.name} CANNOT BE DELETED: {error.strerror}") from error
+        raise FileError(
+            Message("{path} CANNOT BE DELETED: {cause}", path=path.name, cause=error.strerror)
+        ) from error
     return path.name
 
 
 def _free(folder: Path, name: str) -> None:
     if other := same_name_in(folder, name):
-        raise FileError(f"{other} ALREADY EXISTS. USE ANOTHER NAME")
+        raise FileError(Message("{other} ALREADY EXISTS. USE ANOTHER NAME", other=other))
 
 
 def _read(path: Path) -> bytes:
     data = present(path)
     if data is None:
-        raise FileError(f"{path.name} NO LONGER EXISTS")
+        raise FileError(Message("{path} NO LONGER EXISTS", path=path.name))
     return data
 
 
@@ -149,10 +162,10 @@ class CopyRenameDelete:
         found = self.desk.snapshot().interrupted
         if found is not None and found.program == program.name:
             words = tr("{name} IS INTERRUPTED. FINISH OR CANCEL IT FIRST")
-            return words.format(name=program.name)
+            return tr(Message(words, name=program.name))
         state = self.desk.snapshot().state
         if state in UNDER_WAY and self.desk.session.now.path == program.path:
-            return tr("{name} IS RUNNING. LET IT END FIRST").format(name=program.name)
+            return tr(Message("{name} IS RUNNING. LET IT FINISH FIRST", name=program.name))
         return ""
 
     def answer(self) -> None:
@@ -175,8 +188,8 @@ class CopyRenameDelete:
             return
         if self.desk.refused(Act.PROGRAMS):
             return
-        asked = tr("PRESS Y TO DELETE {name} (ITS VERSIONS STAY STORED), N TO KEEP IT")
-        self.desk.ask(asked.format(name=here.name), lambda: self._delete(here))
+        asked = tr("Y: DELETE {name} (STORED VERSIONS REMAIN)   N: KEEP IT")
+        self.desk.ask(tr(Message(asked, name=here.name)), lambda: self._delete(here))
 
     def _delete(self, program: Program) -> None:
         if self._fixed(program):  # it was started meanwhile
@@ -184,7 +197,7 @@ class CopyRenameDelete:
             return
         self._change(
             lambda: delete_program(program.path, self.persistence),
-            ("{name} DELETED. ITS VERSIONS STAY STORED"),
+            ("{name} DELETED. ITS STORED VERSIONS REMAIN"),
         )
 
     def _change(self, work: Callable[[], str], words: str) -> None:
@@ -194,8 +207,10 @@ class CopyRenameDelete:
 
         def done(name: str) -> None:
             self.question = ""
-            self.desk.done(tr(words).format(name=name))
-            self.persistence.note_change(f"program {words.format(name=name).lower()}")
+            self.desk.done(tr(Message(words, name=name)))
+            self.persistence.note_change(
+                Message("program {words}", words=tr(Message(words, name=name)).lower())
+            )
             self.changed(name)
 
         self.worker.queue(work, done, self.desk.refuse)

@@ -15,6 +15,7 @@ from app.desk.translation import tr
 from app.screen.entry_panel import dress_line
 from app.screen.look import CENTRE, RIGHT, Look, Painter, put
 from app.screen.panel import Panel
+from core.message import Message
 
 ROW = 6.6  # units: a fingertip
 
@@ -165,10 +166,10 @@ class FilePrompt(Panel):
             self._not_found(painter)
         else:
             self._list(painter)
-        keys = "ENTER: load the selected program   ESC: keep the current one   F2: show the list"
+        keys = "ENTER: load the selected program   ESC: keep the current program   F2: show the list"
         painter.write(foot, keys, 1.6, "soft", bold=False, fit=False)
         count = len(self._entries)
-        put(painter, foot, RIGHT, tr("1 program") if count == 1 else f"{count} programs")
+        put(painter, foot, RIGHT, tr("1 program") if count == 1 else Message("{count} programs", count=count))
 
     def _list(self, painter: Painter) -> None:
         u = self.look.u

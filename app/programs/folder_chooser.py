@@ -13,6 +13,7 @@ from app.desk.translation import tr
 from app.programs.removable_media import Medium, Stick, sticks, why_not
 from app.programs.whole_file import FileError
 from core.drawings.drawing_file import is_drawing
+from core.message import join_messages
 
 UP = ".."
 MOST = 2000
@@ -105,7 +106,7 @@ def chooser_sheet(chooser: FolderChooser, title: str) -> Sheet:
     )
     where = str(chooser.at) if chooser.at else "PLACES"
     return Sheet(
-        f"{title}  ·  {where}",
+        join_messages("  ·  ", (title, where)),
         ("NAME", "", "FREE" if chooser.at is None else "SIZE"),
         (0.64, 0.18, 0.18),
         rows,

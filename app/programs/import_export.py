@@ -25,13 +25,14 @@ from core.access.access_table import Act
 from core.drawings.drawing_file import is_drawing
 from core.input_file import TooLargeError, input_bytes
 from core.language.source import SourceError, load_source
+from core.message import Message
 from core.store.store_errors import StoreError
 
 LARGEST = 50_000_000  # bytes: no program is larger
 
 Told = Callable[[int, int], None]  # so many of so many are done
 Check = Callable[[Path], str]  # the first error that proving finds in a program; empty: none
-PLACE_FIRST = "OPEN A PLACE FIRST   ARROWS: SELECT   ENTER: OPEN"
+PLACE_FIRST = "OPEN A LOCATION FIRST   ARROWS: SELECT   ENTER: OPEN"
 
 
 # --- the files, on a worker --------------------------------------------------------------------------------
@@ -70,7 +71,7 @@ def import_programs(
         _keep_old(target, persistence, text)
         write_whole(target, text)
         if not is_drawing(target.name) and (trouble := check(target)):
-            found.append(f"{target.name}: {trouble}")
+            found.append(Message("{target}: {problem}", target=target.name, problem=trouble))
     return Carried(tuple(texts), (), tuple(found))
 
 
@@ -112,7 +113,8 @@ def _on(medium: Medium, done: int, of: int) -> Iterator[None]:
     except FileError as error:
         cause = error.__cause__
         why = why_not(cause, medium.folder) if isinstance(cause, OSError) else str(error)
-        raise FileError(f"{tr('{done} OF {of} COPIED').format(done=done, of=of)}: {why}") from error
+        copied = Message("{done} OF {total} PROGRAMS COPIED", done=done, total=of)
+        raise FileError(Message("{copied}: {why}", copied=copied, why=why)) from error
 
 
 def _program(path: Path) -> bytes:
@@ -123,7 +125,7 @@ def _program(path: Path) -> bytes:
     try:
         load_source(path)
     except SourceError as error:
-        raise FileError(f"{path.name} IS NOT A PROGRAM: {error}") from error
+        raise FileError(Message("{path} IS NOT A PROGRAM: {error}", path=path.name, error=error)) from error
     return data
 
 
@@ -131,9 +133,17 @@ def _bytes(path: Path) -> bytes:
     try:
         return input_bytes(path, LARGEST)
     except TooLargeError as error:
-        raise FileError(f"{path.name} IS TOO LARGE FOR A PROGRAM (LIMIT {LARGEST // 1000000} MB)") from error
+        raise FileError(
+            Message(
+                "{path} IS TOO LARGE FOR A PROGRAM (LIMIT {largest} MB)",
+                path=path.name,
+                largest=LARGEST // 1000000,
+            )
+        ) from error
     except OSError as error:
-        raise FileError(f"{path.name} CANNOT BE READ: {error.strerror}") from error
+        raise FileError(
+            Message("{path} CANNOT BE READ: {cause}", path=path.name, cause=error.strerror)
+        ) from error
 
 
 def _differing(texts: dict[str, bytes], folder: Path) -> tuple[str, ...]:
@@ -150,10 +160,14 @@ def _keep_old(target: Path, persistence: Persistence, text: bytes) -> None:
     try:
         old = present(target)
         if old is not None and old != text:
-            persistence.save_version(target.name, old, "replaced by an import")
+            persistence.save_version(target.name, old, "program replaced by an import")
     except (StoreError, FileError) as error:
         raise FileError(
-            f"{target.name} NOT REPLACED, BECAUSE ITS PREVIOUS VERSION CANNOT BE SAVED: {error}"
+            Message(
+                "{target} NOT REPLACED. ITS OLD VERSION CANNOT BE SAVED: {error}",
+                target=target.name,
+                error=error,
+            )
         ) from error
 
 
@@ -204,7 +218,7 @@ class ImportExport:
     def sheet(self) -> Sheet:
         """The folder that is looked into."""
         name = self.one.name if self.one else ""
-        return chooser_sheet(self.chooser, f"EXPORT {name}" if self.out else "IMPORT")
+        return chooser_sheet(self.chooser, Message("EXPORT {name}", name=name) if self.out else "IMPORT")
 
     def keys(self) -> Mapping[str, Key]:
         """The function keys: copy one, copy all, look again."""
@@ -312,24 +326,31 @@ class ImportExport:
         self._done_of = (0, 0)
         if carried.differing:
             names = ", ".join(carried.differing[:3]) + (" …" if len(carried.differing) > 3 else "")
-            asked = tr("{names}: EXISTS WITH DIFFERENT CONTENT. PRESS Y TO REPLACE, N TO KEEP")
+            asked = tr("EXISTS WITH DIFFERENT CONTENT: {names}. Y: REPLACE   N: KEEP")
             again = partial(self._carry, self._asked, self._at, replace=True)
-            self.desk.ask(asked.format(names=names), again)
+            self.desk.ask(tr(Message(asked, names=names)), again)
             return
         self._asked = ()
         count = len(carried.done)
         if not self.out:
-            self.persistence.note_change(f"programs imported: {', '.join(carried.done)}")
+            self.persistence.note_change(Message("programs imported: {done}", done=", ".join(carried.done)))
         if self.out:
-            words = tr("{count} COPIED TO DISK AND VERIFIED. YOU CAN REMOVE THE USB STICK").format(
-                count=count
+            words = tr(
+                Message(
+                    ("COPIED AND VERIFIED: {count}. YOU CAN REMOVE THE USB STICK"),
+                    count=count,
+                )
             )
         elif carried.findings:
-            words = tr("{count} IMPORTED, BUT NOT ALL ARE FREE OF ERRORS: {found}").format(
-                count=count, found=carried.findings[0]
+            words = tr(
+                Message(
+                    "PROGRAMS IMPORTED: {count}, BUT NOT ALL ARE ERROR-FREE: {value}",
+                    count=count,
+                    value=carried.findings[0],
+                )
             )
         else:
-            words = tr("{count} IMPORTED AND PROVED, NO ERRORS").format(count=count)
+            words = tr(Message("PROGRAMS IMPORTED AND PROVED WITHOUT ERRORS: {count}", count=count))
         (self.desk.say if carried.findings else self.desk.done)(words)
         self._look()
         self.finished()
@@ -343,8 +364,8 @@ class ImportExport:
         """What the keys do here, for the prompt line."""
         done, of = self._done_of
         if of:
-            words = tr("COPYING {number} OF {of}. DO NOT REMOVE THE USB STICK")
-            return words.format(number=min(done + 1, of), of=of)
+            words = tr("COPYING PROGRAM {number} OF {of}. DO NOT REMOVE THE USB STICK")
+            return tr(Message(words, number=min(done + 1, of), of=of))
         if self.out:
-            return "ENTER: OPEN PLACE OR FOLDER   F4: COPY SELECTED PROGRAM HERE   F5: COPY ALL   ESC: BACK"
-        return "ENTER: OPEN PLACE OR FOLDER, IMPORT PROGRAM   F5: IMPORT ALL   ESC: BACK"
+            return "ENTER: OPEN   F4: COPY ONE HERE   F5: COPY ALL   ESC: BACK"
+        return "ENTER: OPEN FOLDER OR IMPORT   F5: IMPORT ALL   ESC: BACK"

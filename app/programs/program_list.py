@@ -20,6 +20,7 @@ from app.programs.copy_rename_delete import COPY, NONE, RENAME, CopyRenameDelete
 from app.programs.import_export import ImportExport
 from app.programs.preview import Preview
 from app.programs.program_rows import ORDERS, Program, list_programs, minute_of, minute_of_file, sorted_by
+from core.message import Message, join_messages
 
 DRAWING = "{name} IS A DRAWING. F3: MAKE A PROGRAM FROM IT"
 
@@ -166,7 +167,7 @@ class ProgramList:
     def may_load(self) -> bool:
         """Whether the marked program can become that of the desk; why not is said."""
         if self.program is None or self.program.drawing:
-            self.desk.say(NONE if self.program is None else DRAWING.format(name=self.program.name))
+            self.desk.say(NONE if self.program is None else tr(Message(DRAWING, name=self.program.name)))
             return False
         return self.desk.may_choose() and self.desk.program_folders.find(str(self.program.path)) is not None
 
@@ -194,14 +195,14 @@ class ProgramList:
         if self.transfer.open:
             return self.transfer.prompt()
         if self.question:
-            return "TYPE A NAME, OR PRESS BACKSPACE TO EDIT THE ONE SHOWN   ENTER: ACCEPT   ESC: CANCEL"
+            return "TYPE A NAME   BACKSPACE: EDIT   ENTER: ACCEPT   ESC: CANCEL"
         if self.find.text and not self.listed:
             return tr("NO PROGRAM NAME CONTAINS THIS TEXT. F3: NEW PROGRAM")
         if self.desk.snapshot().state in BY_HAND:
             return "TYPE PART OF A NAME   PAUSE: FEED HOLD   ESC: AUTOMATIC"
         if self.desk.snapshot().state in UNDER_WAY:
-            return "TYPE PART OF A NAME   F3: EDIT   PAUSE: FEED HOLD   ESC: AUTOMATIC"
-        return "TYPE PART OF A NAME OR USE THE ARROWS   ENTER: LOAD   ESC: AUTOMATIC"
+            return "TYPE PART OF NAME   F3: EDIT   PAUSE: FEED HOLD   ESC: BACK"
+        return "TYPE PART OF A NAME OR USE ARROWS   ENTER: LOAD   ESC: BACK"
 
     def close(self) -> None:
         """End the workers of the list and of the preview."""
@@ -218,13 +219,17 @@ def sheet_of(model: ProgramList) -> Sheet:
     """The list: name, date, last run, parts, best cycle."""
     rows = tuple(_row(program) for program in model.listed)
     count = (
-        f"{len(model.listed)} OF {len(model.all)} PROGRAMS" if model.find.text else f"{len(rows)} PROGRAMS"
+        Message(
+            "{listed_count} OF {all_count} PROGRAMS", listed_count=len(model.listed), all_count=len(model.all)
+        )
+        if model.find.text
+        else Message("{rows_count} PROGRAMS", rows_count=len(rows))
     )
     question, text = model.question, model.entry.text
     if not question:
         question, text = "NAME TO FIND OR CREATE", model.find.text
     return Sheet(
-        f"PROGRAMS  ·  {count}  ·  SORTED BY {model.order}",
+        Message("PROGRAMS  ·  {count}  ·  SORTED BY {order}", count=count, order=model.order),
         ("NAME", "CHANGED", "LAST RUN", "PARTS", "BEST"),
         (0.32, 0.25, 0.25, 0.09, 0.09),
         rows,
@@ -250,16 +255,21 @@ def details_of(program: Program) -> tuple[Detail, ...]:
     run = program.run
     return (
         ("SIZE", formats.file_size(program.size)),
-        ("PLACE", "DRAWING" if program.drawing else "SAMPLE" if program.sample else "OWN PROGRAM"),
+        ("PLACE", "DRAWING" if program.drawing else "SAMPLE" if program.sample else "USER PROGRAM"),
         ("PARTS", str(run.parts)),
         ("BEST CYCLE", _time(run.best)),
         ("LAST CYCLE", _time(run.latest)),
         ("PLANNED TIME", _time(run.planned)),
         (
             "LAST RUN",
-            f"{minute_of(run.started)}  ·  {run.outcome}" if run.outcome else minute_of(run.started),
+            join_messages("  ·  ", (minute_of(run.started), run.outcome))
+            if run.outcome
+            else minute_of(run.started),
         ),
-        ("LAST PROOF", f"{run.proof}  ·  {minute_of(run.proved)}" if run.proof else "NEVER PROVED"),
+        (
+            "LAST PROOF",
+            join_messages("  ·  ", (run.proof, minute_of(run.proved))) if run.proof else "NEVER PROVED",
+        ),
     )
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from app.desk import formats
 from app.desk.translation import tr
 from app.programs.whole_file import FileError
+from core.message import Message
 
 ROOTS = (Path("/media"), Path("/run/media"), Path("/mnt"))
 MOUNTS = Path("/proc/self/mountinfo")
@@ -143,26 +144,29 @@ class Medium:
         free = _free(self.folder)
         if size > free:
             raise FileError(
-                tr("NOT ENOUGH ROOM ON {place}: {size} NEEDED, {free} FREE. USE ANOTHER USB STICK").format(
-                    place=self.folder.name, size=formats.file_size(size), free=formats.file_size(free)
+                tr(
+                    Message(
+                        "{place}: {size} NEEDED, ONLY {free} FREE. USE ANOTHER USB STICK",
+                        place=self.folder.name,
+                        size=formats.file_size(size),
+                        free=formats.file_size(free),
+                    )
                 )
             )
 
 
 def pulled_out(folder: Path) -> str:
     """A stick that is not there any more."""
-    return tr("{place} IS NOT CONNECTED ANY MORE. PLUG IT IN AGAIN AND PRESS F2").format(place=folder.name)
+    return tr(Message("{place} IS NO LONGER CONNECTED. PLUG IT IN AGAIN AND PRESS F2", place=folder.name))
 
 
 def why_not(error: OSError, folder: Path) -> str:
     """Why nothing can be read from or written to a medium, in the words of who holds it."""
     if error.errno in _FULL:
-        return tr("{place} IS FULL. NO PARTIAL FILE REMAINS ON IT. USE ANOTHER USB STICK").format(
-            place=folder.name
-        )
+        return tr(Message("{place} IS FULL. NO PARTIAL FILE LEFT. USE ANOTHER USB STICK", place=folder.name))
     if error.errno == errno.EROFS:
-        words = tr("{place} IS READ-ONLY. UNLOCK ITS WRITE-PROTECT SWITCH OR USE ANOTHER USB STICK")
-        return words.format(place=folder.name)
+        words = tr("{place} IS WRITE-PROTECTED. UNLOCK IT OR USE ANOTHER USB STICK")
+        return tr(Message(words, place=folder.name))
     if error.errno in _GONE:
         return pulled_out(folder)
-    return tr("{place}: {why}").format(place=folder.name, why=error.strerror or str(error))
+    return tr(Message("{place}: {why}", place=folder.name, why=error.strerror or str(error)))

@@ -10,6 +10,7 @@ from app.desk import prompt_line
 from app.desk.persistence import Persistence
 from app.desk.program_loading import Loaded, Phase
 from core.executor.snapshot import Snapshot, State
+from core.message import Message
 from core.store.store import Store
 from core.store.store_errors import StoreError
 
@@ -73,7 +74,12 @@ class RunHistory:
         errors, name, text = len(loaded.errors), loaded.path.name, loaded.source.text
         if loaded.phase is Phase.REFUSED:
             first = loaded.errors[0].message if errors else ""
-            self.persistence.program_proved(name, f"{max(errors, 1)} ERRORS: {first}", None, text)
+            self.persistence.program_proved(
+                name,
+                Message("{errors_count} ERRORS: {errors}", errors_count=max(errors, 1), errors=first),
+                None,
+                text,
+            )
         else:
             planned = loaded.proof.cycle_time if loaded.proof else None
             self.persistence.program_proved(name, "PROVED", planned, text)
@@ -83,12 +89,12 @@ def _outcome(snapshot: Snapshot) -> str:
     if snapshot.state is State.ESTOP:
         return ESTOP
     if snapshot.state is State.FAULT and snapshot.alarms:
-        return f"ALARM {snapshot.alarms[-1].number}"
+        return Message("ALARM {number}", number=snapshot.alarms[-1].number)
     return GIVEN_UP
 
 
 def note_cut_off_runs(store: Store) -> None:
     """At the start, when nothing runs yet: a run without an end is one that the control did not outlive."""
-    told = store.runs_cut_off(CUT_OFF, ": the control stopped during its last run")
+    told = store.runs_cut_off(CUT_OFF, "{program}: the control stopped during the last run of this program")
     with suppress(StoreError):  # a disk that is full gets it later
         told.result()

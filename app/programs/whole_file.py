@@ -12,6 +12,7 @@ from core.coded_error import CodedError, error_code
 from core.file_placing import all_to_disk, folder_to_disk, make_folder, put_in_place
 from core.input_file import input_bytes
 from core.language.source import LARGEST_FILE, SourceError, load_source
+from core.message import Message
 from core.unfinished import unfinished_folder
 
 
@@ -30,20 +31,26 @@ def write_whole(path: Path, data: bytes) -> None:
             make_folder(target.parent)
             draft = stack.enter_context(_beside(target))
         except OSError as error:
-            raise FileError(f"{target.parent} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
+            raise FileError(
+                Message("{target} CANNOT BE WRITTEN: {cause}", target=target.parent, cause=error.strerror),
+                "cannot-write",
+            ) from error
         try:
             _fill(draft, data)
             if load_source(draft).text.encode("utf-8", "replace") != data:
                 raise FileError(
-                    "NOT SAVED: THE TEXT HAS CHARACTERS THAT A PROGRAM FILE CANNOT STORE", "unstorable-text"
+                    "NOT SAVED: TEXT HAS CHARACTERS A PROGRAM FILE CANNOT STORE", "unstorable-text"
                 )
             if target.exists():
                 shutil.copymode(target, draft)
             put_in_place(draft, target)
         except OSError as error:
-            raise FileError(f"{target.name} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
+            raise FileError(
+                Message("{target} CANNOT BE WRITTEN: {cause}", target=target.name, cause=error.strerror),
+                "cannot-write",
+            ) from error
         except SourceError as error:
-            raise FileError(f"NOT SAVED: {error}", error_code(error)) from error
+            raise FileError(Message("NOT SAVED: {error}", error=error), error_code(error)) from error
 
 
 def write_out(target: Path, data: bytes) -> None:
@@ -53,12 +60,20 @@ def write_out(target: Path, data: bytes) -> None:
             _fill(draft, data)
             if draft.read_bytes() != data:
                 raise FileError(
-                    (f"{target.name} READS BACK DIFFERENT FROM WHAT WAS WRITTEN. USE ANOTHER USB STICK"),
+                    (
+                        Message(
+                            ("VERIFICATION OF {target} FAILED. USE ANOTHER USB STICK"),
+                            target=target.name,
+                        )
+                    ),
                     "read-back-differs",
                 )
             put_in_place(draft, target)
     except OSError as error:
-        raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
+        raise FileError(
+            Message("{target} CANNOT BE WRITTEN: {cause}", target=target, cause=error.strerror),
+            "cannot-write",
+        ) from error
 
 
 def write_new(target: Path, data: bytes) -> None:
@@ -66,16 +81,24 @@ def write_new(target: Path, data: bytes) -> None:
     try:
         make_folder(target.parent)
     except OSError as error:
-        raise FileError(f"{target.parent} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
+        raise FileError(
+            Message("{target} CANNOT BE WRITTEN: {cause}", target=target.parent, cause=error.strerror),
+            "cannot-write",
+        ) from error
     try:
         with _beside(target) as draft:
             _fill(draft, data)
             target.hardlink_to(draft)  # fails where the name is taken
             folder_to_disk(target.parent)
     except FileExistsError as error:
-        raise FileError(f"{target.name} ALREADY EXISTS. USE ANOTHER NAME", "name-in-use") from error
+        raise FileError(
+            Message("{other} ALREADY EXISTS. USE ANOTHER NAME", other=target.name), "name-in-use"
+        ) from error
     except OSError as error:
-        raise FileError(f"{target} CANNOT BE WRITTEN: {error.strerror}", "cannot-write") from error
+        raise FileError(
+            Message("{target} CANNOT BE WRITTEN: {cause}", target=target, cause=error.strerror),
+            "cannot-write",
+        ) from error
 
 
 def settle(folder: Path) -> None:
@@ -83,7 +106,10 @@ def settle(folder: Path) -> None:
     try:
         folder_to_disk(folder)
     except OSError as error:
-        raise FileError(f"{folder} CANNOT BE SAVED TO THE DISK: {error.strerror}", "cannot-write") from error
+        raise FileError(
+            Message("{folder} CANNOT BE SAVED TO THE DISK: {cause}", folder=folder, cause=error.strerror),
+            "cannot-write",
+        ) from error
     all_to_disk()
 
 
@@ -94,7 +120,10 @@ def present(path: Path) -> bytes | None:
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise FileError(f"{path.name} CANNOT BE READ: {error.strerror}", "unreadable") from error
+        raise FileError(
+            Message("{path} CANNOT BE READ: {cause}", path=path.name, cause=error.strerror),
+            "unreadable",
+        ) from error
 
 
 @contextmanager

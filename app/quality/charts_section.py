@@ -14,6 +14,7 @@ from app.quality.parts_watch import PartsWatch
 from app.quality.plots import ChartDrawing, control_plots
 from app.quality.section import QualitySection, mark_of, size
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.quality.capability import capability
 from core.quality.control_charts import charts_of
 from core.quality.drift_rules import findings
@@ -59,8 +60,12 @@ class ChartsSection(QualitySection):
         of = (self.watch.book.loads, self.program, mode)
         if self._rows[0] != of:
             self._rows = of, tuple(self._row(each) for each in self.data.features)
-        heads = ("FEATURE", "READINGS", f"MEAN {mode.name}", "Cp", "Cpk", "DRIFT")
-        title = f"CONTROL CHARTS  ·  {self.program}" if self.program else "CONTROL CHARTS"
+        heads = ("FEATURE", "READINGS", Message("MEAN {mode}", mode=mode.name), "Cp", "Cpk", "DRIFT")
+        title = (
+            Message("CONTROL CHARTS  ·  {program}", program=self.program)
+            if self.program
+            else "CONTROL CHARTS"
+        )
         return Sheet(title, heads, (0.2, 0.08, 0.15, 0.09, 0.09, 0.39), self._rows[1], self.marked,
                      raw=frozenset({0}), figures=frozenset({1}))  # fmt: skip
 
@@ -81,7 +86,12 @@ class ChartsSection(QualitySection):
             )
         cp, cpk = (NOTHING if each is None else fixed(each, 2) for each in (found.cp, found.cpk))
         if not drift and found.at_least is not None:
-            drift = tr("none; Cpk is at least {least} (95 %)").format(least=fixed(found.at_least, 2))
+            drift = tr(
+                Message(
+                    ("no drift; Cpk is at least {minimum} (95 % confidence)"),
+                    minimum=fixed(found.at_least, 2),
+                )
+            )
             return Row((row.name, str(len(values)), mean, cp, cpk, drift), True, Tone.RUN)
         return Row((row.name, str(len(values)), mean, cp, cpk, drift), not drift, _tone(drift))
 

@@ -16,6 +16,7 @@ from app.offsets.part_effect import part_table
 from app.quality.plots import ChartDrawing, correction_plot
 from app.quality.section import signed_size
 from app.quality.wear_correction import Correction
+from core.message import Message
 from core.quality.wear_proposal import Proposal
 from core.store.store_rows import Kind, SecondaryRow, ToolRow
 
@@ -77,7 +78,7 @@ class CorrectionEffect:
             return ""
         if effect.busy:
             return tr("SIMULATING THE PART WITH OLD AND NEW OFFSETS")
-        return tr("THE PART CANNOT BE COMPARED: {why}").format(why=effect.trouble) if effect.trouble else ""
+        return tr(Message("THE PART CANNOT BE COMPARED: {why}", why=effect.trouble)) if effect.trouble else ""
 
     def drawing(self, mode: Mode) -> ChartDrawing:
         """The readings between their limits, their mean, and what the next parts will measure."""
@@ -87,7 +88,7 @@ class CorrectionEffect:
         of = (self.question, self._readings, mode)
         if self._drawn[0] != of:
             change = signed_size(found.expected - found.mean, mode)
-            title = tr("{name}: {change} FROM NEXT PART").format(name=found.feature.name, change=change)
+            title = tr(Message("{name}: {change} FROM NEXT PART", name=found.feature.name, change=change))
             newest = self._readings[-SHOWN:]
             plot = correction_plot(newest, found, title, (tr("NOW"), tr("AFTER")), mode.unit)
             self._drawn = of, ChartDrawing((plot,), of)

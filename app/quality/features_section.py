@@ -16,6 +16,7 @@ from app.quality.parts_watch import PartsWatch
 from app.quality.section import NO_PROGRAM, QualitySection, mark_of, signed_size, size, typed_length
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.quality.measured_feature import (
     NAME_LONGEST,
     CorrectedBy,
@@ -106,7 +107,7 @@ class Draft:
         else:
             value = value_of(text)
             if value != int(value):
-                raise EntryError(f"{value:g} is not a whole number")
+                raise EntryError(Message("{value} is not a whole number", value=f"{value:g}"))
             self.feature = replace(self.feature, **{_WHOLE[field]: int(value)})  # type: ignore[arg-type]
 
 
@@ -139,26 +140,33 @@ class FeaturesSection(QualitySection):
         mode, rows, lathe = self.mode, [], not self.of_mill
         for each in self.data.features:
             tolerance = f"{signed_size(each.high, mode)}  {signed_size(each.low, mode)}"
-            every = tr("every {count} parts").format(count=each.every) if each.every else ""
+            every = tr(Message("every {count} parts", count=each.every)) if each.every else ""
             sample = str(each.sample)
             rows.append(
                 Row((each.name, mark_of(each) + size(each.nominal, mode), tolerance,
                      feature_of(each).corrected_by if lathe else "", every, sample))
             )  # fmt: skip
-        heads = ("NAME", f"NOMINAL {mode.name}", "TOLERANCE", tr("BY") if lathe else "", "MEASURED", "SAMPLE")
+        heads = (
+            "NAME",
+            Message("NOMINAL {mode}", mode=mode.name),
+            "TOLERANCE",
+            tr("BY") if lathe else "",
+            "MEASURED",
+            "SAMPLE",
+        )
         waits = (
             tr("PARTS WAIT UNTIL THE SAMPLE PLAN IS DONE")
             if self.watch.waits
-            else tr("PARTS DO NOT WAIT FOR THE PLAN")
+            else tr("PARTS DO NOT WAIT FOR THE SAMPLE PLAN")
         )
         notes = (
             (
-                "F2 adds a feature, Enter changes the marked one, F5 sets whether parts wait for "
-                "the sample plan."
+                "F2 adds a feature, Enter changes the selected feature, F5 sets whether the "
+                "next part waits until the required parts are measured."
             ),
             waits,
         )
-        title = f"FEATURES  ·  {self.program}" if self.program else "FEATURES"
+        title = Message("FEATURES  ·  {program}", program=self.program) if self.program else "FEATURES"
         shares = (0.24, 0.19, 0.25, 0.1, 0.13, 0.09)
         return Sheet(title, heads, shares, tuple(rows), self.marked, notes=notes, raw=frozenset({0}))
 
@@ -173,7 +181,7 @@ class FeaturesSection(QualitySection):
         )
         return Sheet(
             "FEATURE", ("", mode.name), (0.55, 0.45), rows, draft.at, question, self.entry.text,
-            (tr("PRESS ENTER TO SWITCH"), way) if turned else (way,),
+            (tr("PRESS ENTER TO SWITCH TO THE OTHER VALUE"), way) if turned else (way,),
             raw=frozenset({1}),
         )  # fmt: skip
 
@@ -275,12 +283,12 @@ class FeaturesSection(QualitySection):
         self._write(
             lambda c: measured_parts.save_feature(c, row),
             partial(self._kept, row.name),
-            f"{row.name} entered",
+            Message("{row} entered", row=row.name),
         )
 
     def _kept(self, name: str) -> None:
         self.draft = None
-        self.desk.done(tr("{name} SAVED").format(name=name))
+        self.desk.done(tr(Message("{name} SAVED", name=name)))
 
     def remove(self) -> None:
         """F4: the marked feature is measured no more, after asking."""
@@ -288,17 +296,19 @@ class FeaturesSection(QualitySection):
         if row is None:
             self.desk.say(self.missing())
             return
-        asked = tr("STOP MEASURING {name}? ITS READINGS STAY STORED. Y: STOP   N: KEEP")
-        done = partial(self.desk.say, tr("{name} REMOVED").format(name=row.name))
+        asked = tr("STOP MEASURING {name}? READINGS REMAIN. Y: STOP   N: CONTINUE")
+        done = partial(self.desk.say, tr(Message("{name} REMOVED", name=row.name)))
         self.desk.ask(
-            asked.format(name=row.name),
+            tr(Message(asked, name=row.name)),
             lambda: self._write(
-                lambda c: measured_parts.retire_feature(c, row.id), done, f"{row.name} removed"
+                lambda c: measured_parts.retire_feature(c, row.id),
+                done,
+                Message("{row} removed", row=row.name),
             ),
         )
 
     def _write(self, operation: Callable[..., object], done: Callable[[], None], change: str) -> None:
-        told = f"features of {self.program}: {change}"
+        told = Message("measured features of {program}: {change}", program=self.program, change=change)
         self.watch.book.write(Act.FEATURES, operation, done, self.watch.refuse, told)
 
     def _turn_waits(self) -> None:

@@ -16,7 +16,7 @@ _PLAIN = re.compile(r"([+-]?(?:\d{1,6}(?:[.,]\d{0,7})?|[.,]\d{1,7}))\s*(mm|in|in
 _UNITS = {"mm": "mm", "in": "in", "inch": "in", '"': "in", "": ""}
 # What an interface of Mitutoyo answers instead of a value.
 _ERRORS = {
-    "911": ("gauge not connected or switched off", "no-gauge"),
+    "911": ("gauge is not connected or is switched off", "no-gauge"),
     "912": ("the gauge sent unreadable data", "unreadable"),
 }
 
@@ -107,11 +107,11 @@ class NoGauge:
     @property
     def words(self) -> str:
         """How a gauge would be wired."""
-        return tr("No gauge: enter its serial port under [gauge] in the machine file.")
+        return tr("No gauge is configured: enter its serial port under [gauge] in the machine file.")
 
     def turn(self) -> str:
         """There is none."""
-        return tr("NO GAUGE IN THE MACHINE FILE. ENTER [gauge] port = …")
+        return tr("NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …")
 
     def received(self) -> Sequence[Reading | str]:
         """Nothing ever comes."""

@@ -12,6 +12,7 @@ from app.desk.access import Access
 from app.desk.latest import Latest
 from app.quality.cycle_recorder import COMPLETE
 from core.access.access_table import Act
+from core.message import Message
 from core.quality.measured_feature import CorrectedBy, Feature, FeatureKind
 from core.store import measured_parts, part_cycles, tool_lives
 from core.store.job_queue import JobRow
@@ -23,7 +24,7 @@ from core.store.store_rows import Kind, utc
 from core.store.store_writer import Operation
 from core.store.tool_lives import LifeRow
 
-NONE_KEPT = "MEASURED PARTS ARE NOT STORED HERE"
+NONE_KEPT = "MEASURED PARTS CANNOT BE SAVED: NO DATA STORE"
 _DAYS = timedelta(days=2)
 NEWEST = 1000  # readings, cycles and stops that are looked at
 
@@ -148,7 +149,7 @@ class PartsBook:
         """Why no measured part is kept, in a sentence; empty where they are."""
         if self.store is not None:
             return ""
-        return f"MEASURED PARTS CANNOT BE SAVED: {self.away}" if self.away else NONE_KEPT
+        return Message("MEASURED PARTS CANNOT BE SAVED: {away}", away=self.away) if self.away else NONE_KEPT
 
     def look(self, program: str) -> None:
         """Take up what the worker has read and what is on the disk; read anew what has changed."""

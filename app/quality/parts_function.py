@@ -17,7 +17,7 @@ class MeasuredPartsFunction(PageFunction):
     name = "MEASURED PARTS"
     use = "features, readings, charts, trends"
     page = PAGE
-    way = "Enter opens the page, as does W in the main menu."
+    way = "Press Enter to open the page, or press W in the main menu."
 
     def facts(self) -> tuple[Row, ...]:
         """How many there are, and what is due."""

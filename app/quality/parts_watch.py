@@ -13,6 +13,7 @@ from app.quality.parts_book import PartsBook
 from app.quality.tool_life_watch import ToolLifeWatch
 from core.executor.commands import BarNextPart
 from core.executor.snapshot import Snapshot
+from core.message import Message, join_messages
 from core.store.store_errors import StoreError
 
 
@@ -87,17 +88,21 @@ class PartsWatch:
         self._waits = self.program, on
         persistence = self.desk.counter.persistence
         persistence.save_setting(_key(self.program), on or None)
-        told = "wait to be measured" if on else "no longer wait to be measured"
-        persistence.note_change(f"parts of {self.program} {told}")
+        told = (
+            ("the next part cannot start before the sample plan is complete")
+            if on
+            else ("the next part can start before the required parts are measured")
+        )
+        persistence.note_change(Message("program {program}: {details}", program=self.program, details=told))
 
     def due(self) -> str:
         """What the prompt line tells besides: what to measure, which insert to change; empty: nothing."""
         plan = sample_plan.notice(self._planned(self.desk.counter.count))
-        return " · ".join(each for each in (plan, self.lives.due()) if each)
+        return join_messages(" · ", filter(None, (plan, self.lives.due())))
 
     def refuse(self, why: str) -> None:
         """What was not kept, and why."""
-        self.desk.say(tr("NOT SAVED: {why}").format(why=why))
+        self.desk.say(tr(Message("NOT SAVED: {why}", why=why)))
 
     def close(self) -> None:
         """End the worker; what inserts have cut since it was kept last is handed to the store."""

@@ -24,6 +24,7 @@ from app.quality.section import QualitySection, mark_of, signed_size, size, type
 from app.quality.wear_correction import correction, proposal
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.quality.quality_errors import QualityError
 from core.store import measured_parts
 from core.store.measured_parts import FeatureRow, ReadingRow
@@ -83,16 +84,16 @@ class ReadingsSection(QualitySection):
         rows = tuple(self._row(each) for each in self.data.features)
         question = ""
         if feature is not None:
-            question = tr("{name} OF PART {part}?").format(name=feature.name, part=self.part)
-        heads = ("FEATURE", f"NOMINAL {mode.name}", "PART", "MEASURED", "DEVIATION", "")
+            question = tr(Message("{name} OF PART {part}?", name=feature.name, part=self.part))
+        heads = ("FEATURE", Message("NOMINAL {mode}", mode=mode.name), "PART", "MEASURED", "DEVIATION", "")
         words = self.effect.words() if self.effect.stands else ""
         way = (
             ("Enter the deviation in DL and DR of the tool table (F8 of the main menu).")
             if self.of_mill
-            else "F8 proposes a correction, F4 undoes the last one."
+            else "F8 proposes a correction, F4 undoes the last correction."
         )
         notes = (words or self._gauge_words(), way)
-        title = f"READINGS  ·  {self.program}" if self.program else "READINGS"
+        title = Message("READINGS  ·  {program}", program=self.program) if self.program else "READINGS"
         return Sheet(title, heads, (0.2, 0.19, 0.08, 0.19, 0.16, 0.18), rows, self.marked, question,
                      self.entry.text, notes, raw=frozenset({0}), figures=frozenset({2}))  # fmt: skip
 
@@ -153,11 +154,13 @@ class ReadingsSection(QualitySection):
         """Keep it; what no part of this feature can measure is asked about first."""
         row, feature = taken.feature, feature_of(taken.feature)
         if taken.value <= 0.0:
-            raise EntryError(f"{row.name} must be more than 0; type the measured size, not the deviation")
+            raise EntryError(
+                Message("{row} must be more than 0; type the measured size, not the deviation", row=row.name)
+            )
         if abs(taken.value - feature.middle) > FAR * feature.width:
-            asked = tr("{name} {size} IS FAR OUT OF TOLERANCE. Y: SAVE ANYWAY   N: MEASURE AGAIN")
+            asked = tr("{name} {size} FAR OUT OF TOLERANCE. Y: SAVE   N: MEASURE AGAIN")
             shown = size(taken.value, self.mode)
-            self.desk.ask(asked.format(name=row.name, size=shown), partial(self._keep, taken))
+            self.desk.ask(tr(Message(asked, name=row.name, size=shown)), partial(self._keep, taken))
             return True
         self.desk.clear()
         self._keep(taken)
@@ -172,14 +175,20 @@ class ReadingsSection(QualitySection):
             lambda c: measured_parts.add_reading(c, row),
             partial(self._kept, taken),
             self.watch.refuse,
-            f"{taken.feature.name} of part {taken.part} of {self.data.program} measured: {taken.value:g} mm",
+            Message(
+                "program {program}, part {part}: {feature} measured as {taken} mm",
+                feature=taken.feature.name,
+                part=taken.part,
+                program=self.data.program,
+                taken=f"{taken.value:g}",
+            ),
         )
 
     def _kept(self, taken: NewReading) -> None:
         """It is on the disk: say so, and go on to the next feature."""
-        text = tr("{name} OF PART {part}: {size} SAVED")
+        text = tr("{name}, PART {part}: {size} SAVED")
         self.desk.say(
-            text.format(name=taken.feature.name, part=taken.part, size=size(taken.value, self.mode))
+            tr(Message(text, name=taken.feature.name, part=taken.part, size=size(taken.value, self.mode)))
         )
         if self.feature is not None and self.feature.id == taken.feature.id:
             self.marked = (self.marked + 1) % max(1, self.count)
@@ -192,16 +201,24 @@ class ReadingsSection(QualitySection):
             self.desk.say(self.missing() or tr("FEATURE NOT MEASURED YET"))
             return
         last = taken[-1]
-        asked = tr("PRESS Y TO REMOVE {size} OF PART {part}, N TO KEEP IT")
+        asked = tr("PRESS Y TO REMOVE READING {size} FROM PART {part}, N TO KEEP IT")
         done = partial(self.desk.say, tr("READING REMOVED"))
         self.desk.ask(
-            asked.format(size=size(last.value, self.mode), part=last.part),
+            tr(Message(asked, size=size(last.value, self.mode), part=last.part)),
             lambda: self.watch.book.write(
                 Act.READINGS,
                 lambda c: measured_parts.void_reading(c, last.id),
                 done,
                 self.watch.refuse,
-                (f"{feature.name} of part {last.part} of {self.data.program} removed: {last.value:g} mm"),
+                (
+                    Message(
+                        "program {program}, part {part}: reading of {feature} ({last} mm) removed",
+                        feature=feature.name,
+                        part=last.part,
+                        program=self.data.program,
+                        last=f"{last.value:g}",
+                    )
+                ),
             ),
         )
 
@@ -218,7 +235,7 @@ class ReadingsSection(QualitySection):
         """Once a frame: what the gauge has sent goes to the marked feature, where that is seen."""
         for found in self.gauge.received():
             if isinstance(found, Reading) and not seen:
-                self.desk.say(tr("GAUGE READING IGNORED: READINGS NOT ON SCREEN. MEASURE AGAIN"))
+                self.desk.say(tr("GAUGE READING IGNORED. OPEN READINGS, THEN MEASURE AGAIN"))
             elif isinstance(found, Reading):
                 self._measured(found)
             else:
@@ -261,7 +278,7 @@ class ReadingsSection(QualitySection):
         except (QualityError, EntryError) as error:
             self.desk.refuse(str(error))
             return
-        asked = tr("{words}. Y: APPLY   N: DO NOT APPLY").format(words=change.words)
+        asked = tr(Message("{words}. Y: APPLY   N: DO NOT APPLY", words=change.words))
         self.desk.ask(asked, partial(self._correct, feature))
         taken = tuple((each.part, each.value) for each in self.data.readings_of(feature.id))
         self.effect.show(self.desk.notice, found, change, taken)
@@ -287,7 +304,7 @@ class ReadingsSection(QualitySection):
             self.desk.say(why)
             return
         self._last = change.kind, change.number, change.why
-        self.desk.done(tr("{words}; APPLIES FROM NEXT PART").format(words=change.words))
+        self.desk.done(tr(Message("{words}; APPLIES FROM NEXT PART", words=change.words)))
 
     def undo(self) -> None:
         """F4: ask whether the last accepted correction is taken back, while no other change came after it."""
@@ -302,11 +319,11 @@ class ReadingsSection(QualitySection):
     def _undo_barred(self) -> str:
         """Why nothing is taken back here; empty when it is."""
         if self._last is None:
-            return tr("NO CORRECTION APPLIED HERE. HISTORY: MAIN MENU, F8 OR F9")
+            return tr("NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MENU, F8 OR F9")
         kind, _number, reason = self._last
         last = self.desk.book.history(kind, 1)
         if not last or last[0].why != reason:
-            return tr("CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MAIN MENU, F8 OR F9")
+            return tr("CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MENU, F8 OR F9")
         return refusal(self.desk.snapshot(), correction=True)
 
     # --- file ----------------------------------------------------------------------------------------
@@ -320,4 +337,4 @@ class ReadingsSection(QualitySection):
         self.watch.book.worker.queue(lambda: write_readings(data, folder), self._written, self.watch.refuse)
 
     def _written(self, path: Path) -> None:
-        self.desk.done(tr("SAVED: {path}").format(path=path))
+        self.desk.done(tr(Message("SAVED: {path}", path=path)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.desk.translation import tr
 from app.quality.parts_book import PartsData
+from core.message import Message
 
 
 def due(data: PartsData, made: int) -> dict[str, int]:
@@ -19,13 +20,17 @@ def due(data: PartsData, made: int) -> dict[str, int]:
 def notice(found: dict[str, int]) -> str:
     """What to measure, for the prompt line; empty where nothing is due."""
     part, names = _newest(found)
-    return tr("MEASURE PART {part}: {names}").format(part=part, names=names) if found else ""
+    return tr(Message("MEASURE PART {part}: {names}", part=part, names=names)) if found else ""
 
 
 def bar(found: dict[str, int]) -> str:
     """Why no other part begins where parts wait for the plan; empty where nothing is due."""
     part, names = _newest(found)
-    return f"part {part} must be measured first: {names}" if found else ""
+    return (
+        Message(("part {part} must be measured before the next part starts: {names}"), part=part, names=names)
+        if found
+        else ""
+    )
 
 
 def _newest(found: dict[str, int]) -> tuple[int, str]:

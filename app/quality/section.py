@@ -12,7 +12,7 @@ from app.special.special_functions import FigureFunction
 from core.store.measured_parts import FeatureRow
 
 NO_PROGRAM = "SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES"
-NO_FEATURE = "NO FEATURES YET. ADD ONE IN SECTION 1 WITH F2"
+NO_FEATURE = "NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2"
 
 
 class QualitySection(FigureFunction):

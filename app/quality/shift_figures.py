@@ -16,6 +16,7 @@ from app.desk.translation import tr
 from app.quality.cycle_recorder import COMPLETE
 from app.quality.parts_book import feature_of
 from app.quality.shift_times import Shift
+from core.message import Message
 from core.quality.availability import Availability, Span, availability
 from core.quality.stops import ReasonShare, Stop, pareto
 from core.store import event_log, measured_parts, offset_tables, part_cycles, tool_lives
@@ -163,24 +164,30 @@ def _notes(shift: Shift, until: float, now: float, cycles: Sequence[CycleRow]) -
     if now < shift.start:
         yield tr("The shift has not started.")
     elif until < shift.end:
-        yield tr("The shift is still running: values up to {time}.").format(
-            time=datetime.fromtimestamp(until).astimezone().strftime("%H:%M")
+        yield tr(
+            Message(
+                "The shift is still running; this report covers it up to {time}.",
+                time=datetime.fromtimestamp(until).astimezone().strftime("%H:%M"),
+            )
         )
     moved = shift.clock_moved
     if moved:
         words = tr(
-            "The clock was set forward by {time} during the shift, which made the shift shorter by that time."
+            "The clock was set forward by {time} during the shift, so the shift was shorter by "
+            "the same amount."
         )
         if moved < 0:
             words = tr(
-                "The clock was set back by {time} during the shift, which made the shift longer by that time."
+                "The clock was set back by {time} during the shift, so the shift was longer by the "
+                "same amount."
             )
-        yield words.format(time=duration(abs(moved)))
+        yield tr(Message(words, time=duration(abs(moved))))
     for before, after in pairwise(cycles):
         if stamp(after.started) < stamp(before.started) - _SET_BACK:
             words = tr(
-                "The clock was set back after {time}: times of day overlap there, but durations are correct."
+                "The clock was set back after {time}, so times of day overlap at that point, but "
+                "durations are correct."
             )
-            yield words.format(time=local_time(before.started))
+            yield tr(Message(words, time=local_time(before.started)))
     if not cycles and now >= shift.start:
         yield tr("No part was started in this period.")

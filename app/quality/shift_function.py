@@ -21,6 +21,7 @@ from app.quality.shift_times import SETTING, hours_of, shift_of
 from app.special.backup_and_restore import Place
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.store.store import Store
 
 _OLDEST = 366  # shifts
@@ -65,7 +66,7 @@ class ShiftReport(SpecialFunction):
 
     def _sheet_of_places(self) -> Sheet:
         rows = tuple(Row((place.label, str(place.path))) for place in self.places)
-        notes = ("Enter saves the report there as HTML.",)
+        notes = ("Enter saves the report as HTML in the selected location.",)
         title, heads = "SHIFT REPORT  ·  SAVE TO:", ("PLACE", "FOLDER")
         return Sheet(title, heads, (0.35, 0.65), rows, self.marked, notes=notes, raw=frozenset({0, 1}))
 
@@ -97,7 +98,7 @@ class ShiftReport(SpecialFunction):
     def _go(self, by: int) -> None:
         back = max(0, min(_OLDEST, self.back + by))
         if back == self.back:
-            self.desk.done("NO LATER SHIFT YET" if by < 0 else "NO EARLIER SHIFT AVAILABLE HERE")
+            self.desk.done("THIS IS THE LATEST SHIFT" if by < 0 else "NO EARLIER SHIFT IS AVAILABLE")
         else:
             self.desk.clear()
             self.back, self.found = back, None
@@ -138,13 +139,13 @@ class ShiftReport(SpecialFunction):
         return True
 
     def _done(self, name: str) -> None:
-        self.desk.done(tr("{name} SAVED COMPLETELY. A USB STICK CAN NOW BE REMOVED").format(name=name))
+        self.desk.done(tr(Message("{name} SAVED COMPLETELY. YOU CAN NOW REMOVE THE USB STICK", name=name)))
 
     def prompt(self) -> str:
         """What the keys do."""
         if self.places:
-            return "ENTER: SAVE REPORT TO THE MARKED PLACE   F4: SEARCH AGAIN FOR USB STICKS"
-        return "F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK TO LIST"
+            return "ENTER: SAVE REPORT HERE   F4: RESCAN FOR USB STICKS"
+        return "F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK"
 
 
 def _rows(found: ShiftFigures) -> list[tuple[str, str]]:
@@ -180,7 +181,9 @@ def _write(found: ShiftFigures, machine: str, folder: Path, *, metric: bool) -> 
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise FileError(f"{folder} CANNOT BE WRITTEN: {error.strerror}") from error
+        raise FileError(
+            Message("{target} CANNOT BE WRITTEN: {cause}", target=folder, cause=error.strerror)
+        ) from error
     write_out(
         folder / name, shift_html(found, machine, made, metric=metric).encode("utf-8", "backslashreplace")
     )

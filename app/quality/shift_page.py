@@ -13,6 +13,7 @@ from app.quality.parts_book import feature_of
 from app.quality.shift_figures import ProgramFigures, ShiftFigures, stamp
 from app.quality.tool_life_watch import life_of
 from app.report.html_tables import PAGE_END, figure, page_head, pairs, table, verdict
+from core.message import Message
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow
 
@@ -26,7 +27,7 @@ def title_of(found: ShiftFigures, machine: str) -> str:
     """From when to when, by the clock on the wall."""
     first, last = (datetime.fromtimestamp(each).strftime("%Y-%m-%d %H:%M") for each in found.shift)
     of = f"{machine}: " if machine else ""
-    return of + tr("shift from {first} to {last}").format(first=first, last=last)
+    return of + tr(Message("shift from {first} to {last}", first=first, last=last))
 
 
 def shift_html(found: ShiftFigures, machine: str, made: str, *, metric: bool) -> str:
@@ -42,10 +43,13 @@ def facts(found: ShiftFigures) -> list[tuple[str, str]]:
     rows = [(tr("Parts"), str(found.parts))]
     share = found.availability
     if share is not None:
-        words = tr("{share} %: in cycle {run} of {planned}").format(
-            share=fixed(100.0 * share.share, 1),
-            run=duration(share.producing),
-            planned=duration(share.planned),
+        words = tr(
+            Message(
+                "{share} %: {run} of {planned} in cycle",
+                share=fixed(100.0 * share.share, 1),
+                run=duration(share.producing),
+                planned=duration(share.planned),
+            )
         )
         rows += [
             (tr("Availability"), words),
@@ -53,7 +57,7 @@ def facts(found: ShiftFigures) -> list[tuple[str, str]]:
             (tr("Not recorded"), duration(found.untold)),
         ]
     rows.append((tr("Alarms and E-stops"), str(len(found.alarms))))
-    words = tr("{bad} of {count} readings").format(bad=len(found.bad), count=found.measured)
+    words = tr(Message("{bad} of {count} readings", bad=len(found.bad), count=found.measured))
     rows.append((tr("Out of tolerance"), words))
     return rows
 
@@ -122,7 +126,7 @@ def _sections(found: ShiftFigures, *, metric: bool) -> Iterator[tuple[str, str]]
 def _table(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     if not rows:
         return f"<p>{escape(tr('none'))}</p>"
-    more = tr("and {count} more").format(count=len(rows) - _MOST) if len(rows) > _MOST else ""
+    more = tr(Message("and {count} more", count=len(rows) - _MOST)) if len(rows) > _MOST else ""
     return table(heads, [tuple(map(escape, row)) for row in rows[:_MOST]]) + (f"<p>{escape(more)}</p>")
 
 
@@ -148,7 +152,7 @@ def _lives(found: ShiftFigures) -> str:
             (
                 local_time(r.at),
                 f"T{r.number}",
-                tr("{parts} parts, {time}").format(parts=r.parts, time=duration(r.seconds)),
+                tr(Message("{parts} parts, {time}", parts=r.parts, time=duration(r.seconds))),
                 r.why,
             )
             for r in found.inserts
@@ -191,7 +195,7 @@ def _reading(feature: FeatureRow, row: ReadingRow, *, metric: bool) -> tuple[str
 
 
 def _size(mm: float, *, metric: bool) -> str:
-    return f"{fixed(mm, 3)} mm" if metric else f"{fixed(mm / _MM_PER_INCH, 5)} {tr('in')}"
+    return Message("{unit} mm", unit=fixed(mm, 3)) if metric else f"{fixed(mm / _MM_PER_INCH, 5)} {tr('in')}"
 
 
 def _time_line(found: ShiftFigures) -> str:

@@ -16,6 +16,7 @@ from app.quality.parts_watch import PartsWatch
 from app.quality.section import QualitySection
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.quality.quality_errors import QualityError
 from core.quality.tool_life import LifeState, ToolLife, check_life
 from core.store import tool_lives
@@ -64,7 +65,7 @@ class ToolLifeSection(QualitySection):
         self.settle()
         rows = tuple(self._row(each) for each in self.tools())
         tool = self.tool
-        question = tr("T{number} {limit}?").format(number=tool.number, limit=tr(self.limit)) if tool else ""
+        question = tr(Message("T{number} {limit}?", number=tool.number, limit=tr(self.limit))) if tool else ""
         heads = ("T", "PARTS", "MINUTES", "STOPS", "LEFT", "USED")
         notes = (
             (
@@ -79,7 +80,7 @@ class ToolLifeSection(QualitySection):
         parts = str(life.limit_parts) if life.limit_parts else NOTHING
         minutes = f"{life.limit_seconds / 60.0:g}" if life.limit_seconds else NOTHING
         left = life.parts_left
-        words = NOTHING if left is None else tr("{count} parts").format(count=left)
+        words = NOTHING if left is None else tr(Message("{count} parts", count=left))
         stops = tr("STOP") if life.stops else NOTHING
         tone = TONES[life.state]
         cells = (f"T{life.number}", parts, minutes, stops, words, life.words)
@@ -102,11 +103,13 @@ class ToolLifeSection(QualitySection):
         """A limit of the marked tool. Raises EntryError."""
         tool = self.tool
         if tool is None:
-            self.desk.say(tr("NO TOOL IS SET YET"))
+            self.desk.say(tr("NO TOOL HAS OFFSETS YET"))
             return False
         value = value_of(text)
         if self.limit == "PARTS" and value != int(value):
-            raise EntryError(f"{value:g} is not a number of parts; type a whole number")
+            raise EntryError(
+                Message("{value} is not a valid number of parts; type a whole number", value=f"{value:g}")
+            )
         wanted = {
             "PARTS": lambda: replace(tool, limit_parts=int(value)),
             "MINUTES": lambda: replace(tool, limit_seconds=60.0 * value),
@@ -120,15 +123,21 @@ class ToolLifeSection(QualitySection):
         except QualityError as error:
             raise EntryError(str(error)) from error
         row = LifeRow(wanted.number, wanted.limit_parts, wanted.limit_seconds, wanted.warn, wanted.stops)
-        done = partial(self.desk.say, tr("T{number} SAVED").format(number=wanted.number))
-        minutes = f"{row.limit_seconds / 60.0:g} min"
-        told = f"life of T{row.number}: {row.limit_parts} parts, {minutes}, warn at {row.warn:.0%}"
+        done = partial(self.desk.say, tr(Message("T{number} SAVED", number=wanted.number)))
+        minutes = Message("{limit_seconds} min", limit_seconds=f"{row.limit_seconds / 60.0:g}")
+        told = Message(
+            "T{number} tool life: {limit_parts} parts, {minutes}, warn at {warn}",
+            number=row.number,
+            limit_parts=row.limit_parts,
+            minutes=minutes,
+            warn=f"{row.warn:.0%}",
+        )
         self.watch.book.write(
             Act.LIVES,
             lambda c: tool_lives.set_limits(c, row),
             done,
             self.watch.refuse,
-            f"{told}, {'stops' if row.stops else 'no stop at end of life'}",
+            f"{told}, {'stops' if row.stops else 'no stop at end of tool life'}",
         )
         return True
 
@@ -146,12 +155,10 @@ class ToolLifeSection(QualitySection):
             return
         asked = tr("NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO")
         self.desk.ask(
-            asked.format(number=tool.number, words=tool.words),
+            tr(Message(asked, number=tool.number, words=tool.words)),
             lambda: self.watch.lives.change_insert(tool.number, tool.words, self.desk.say),
         )
 
     def prompt(self) -> str:
         """What can be done here."""
-        return self.watch.book.locked or (
-            "TYPE THE LIMIT AND PRESS ENTER. F2: OTHER LIMIT   F4: INSERT CHANGED"
-        )
+        return self.watch.book.locked or ("ENTER THE LIMIT. F2: OTHER LIMIT   F4: INSERT CHANGED")

@@ -10,6 +10,7 @@ from app.desk.translation import tr
 from app.quality.parts_book import PartsBook
 from core.access.access_table import Act
 from core.executor.snapshot import CYCLE, Snapshot
+from core.message import Message
 from core.quality.tool_life import LifeState, ToolLife
 from core.store import tool_lives
 from core.store.store_rows import Kind
@@ -134,7 +135,7 @@ class ToolLifeWatch:
             words = tr("T{number}: NEW INSERT, TOOL LIFE STARTS AT ZERO")
             if self.book.tools is Kind.MILL_TOOL:
                 words = tr("T{number}: NEW TOOL, TOOL LIFE STARTS AT ZERO")
-            said(words.format(number=number))
+            said(tr(Message(words, number=number)))
 
         self.book.write(Act.INSERTS, operation, done, said)
 
@@ -149,14 +150,18 @@ class ToolLifeWatch:
         def done() -> None:
             self.counted[number], self._kept[number] = (parts, seconds), seconds
             self._changes += 1
-            said(tr("T{number} SAVED").format(number=number))
+            said(tr(Message("T{number} SAVED", number=number)))
 
         self.book.write(
             Act.INSERTS,
             lambda connection: tool_lives.set_use(connection, number, parts, seconds, self.book.tools),
             done,
             said,
-            f"T{number} has cut for {seconds / 60.0:.1f} min",
+            Message(
+                ("cutting time of T{number} set to {seconds} min"),
+                number=number,
+                seconds=f"{seconds / 60.0:.1f}",
+            ),
         )
 
     def forget(self) -> None:
@@ -192,15 +197,22 @@ _WORTH_TELLING = frozenset({LifeState.WARNED, LifeState.SPENT})
 def notice(life: ToolLife) -> str:
     """What the operator reads of a life that ends."""
     if life.state is LifeState.SPENT:
-        return tr("TOOL {number} LIFE USED UP: {words}").format(number=life.number, words=tr(life.words))
-    return tr("TOOL {number} LIFE: {words} USED").format(number=life.number, words=tr(life.words))
+        return tr(Message("TOOL {number} LIFE USED UP: {words}", number=life.number, words=tr(life.words)))
+    return tr(Message("TOOL {number} LIFE: {words} USED", number=life.number, words=tr(life.words)))
 
 
 def spent(life: ToolLife, tools: Kind) -> str:
     """Why no part begins with it."""
     if tools is Kind.MILL_TOOL:
         how = "fit a new tool and set its CUR.TIME to 0 in the tool table (F8)"
-        return f"the life of T{life.number} is used up, {life.words}: {how}"
-    return (
-        f"the life of T{life.number} is used up, {life.words}: change the insert and confirm it in TOOL LIFE"
+        return Message(
+            "T{number} tool life is used up ({life}): {method}",
+            number=life.number,
+            life=life.words,
+            method=how,
+        )
+    return Message(
+        "T{number} tool life is used up ({life}): change the insert and confirm the change in TOOL LIFE",
+        number=life.number,
+        life=life.words,
     )

@@ -20,6 +20,7 @@ from app.quality.shift_figures import spans_of, stops_of
 from app.quality.shift_times import SETTING, hours_of, shift_of
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.quality.availability import Availability, Span, availability
 from core.quality.stops import pareto, times_between
 from core.store.store_errors import StoreError
@@ -78,7 +79,7 @@ class TrendsSection(QualitySection):
         if self._rows[0] != of:
             self._rows = of, tuple(Row((kind, self._figure(kind))) for kind in self.kinds)
         question = tr("SHIFT HOURS, FOR EXAMPLE 6-14?") if self.kind == "AVAILABILITY" else ""
-        title = f"TRENDS  ·  {self.program}" if self.program else "TRENDS"
+        title = Message("TRENDS  ·  {program}", program=self.program) if self.program else "TRENDS"
         return Sheet(title, ("", ""), (0.25, 0.75), self._rows[1], self.marked, question, self.entry.text,
                      raw=frozenset({1}))  # fmt: skip
 
@@ -97,24 +98,27 @@ class TrendsSection(QualitySection):
         times = [row.seconds for row in self.data.whole_cycles]
         if not times:
             return tr("no part made yet")
-        text = tr("last {last}, shortest {best}, mean {mean} of {count} parts")
+        text = tr("last cycle {last}, shortest {best}, mean {mean} of {count} parts")
         figures = (fixed(each, 1) + " s" for each in (times[-1], min(times), sum(times) / len(times)))
         last, best, mean = figures
-        return text.format(last=last, best=best, mean=mean, count=len(times))
+        return tr(Message(text, last=last, best=best, mean=mean, count=len(times)))
 
     def _wear_words(self) -> str:
         rows = self.data.corrections
         if not rows:
-            return tr("no correction yet")
+            return tr("no wear correction yet")
         last, metric = rows[-1], self.mode.metric
         letter, factor = ("T", 2.0) if last.kind == "tool" else ("D", 1.0)
-        text = tr("{count} corrections; last {offset}: X {x} Z {z} after part {part}")
-        return text.format(
-            count=len(rows),
-            offset=f"{letter}{last.number}",
-            x=signed(factor * last.x, metric),
-            z=signed(last.z, metric),
-            part=last.part,
+        text = tr("{count} corrections; last correction: {offset} by X {x} Z {z} after part {part}")
+        return tr(
+            Message(
+                text,
+                count=len(rows),
+                offset=f"{letter}{last.number}",
+                x=signed(factor * last.x, metric),
+                z=signed(last.z, metric),
+                part=last.part,
+            )
         )
 
     def _stop_words(self) -> str:
@@ -125,30 +129,39 @@ class TrendsSection(QualitySection):
         between = times_between(stops)
         mean = duration(sum(between) / len(between)) if between else NOTHING
         text = tr("{count} stops, on average {mean} apart; {reason}: {time}")
-        return text.format(
-            count=len(stops), mean=mean, reason=tr(rows[0].reason), time=duration(rows[0].seconds)
+        return tr(
+            Message(
+                text, count=len(stops), mean=mean, reason=tr(rows[0].reason), time=duration(rows[0].seconds)
+            )
         )
 
     def _load_words(self) -> str:
         loads = [row.load for row in self.data.cycles if row.load is not None]
         if not loads:
             return tr("no drive on this machine reports its load")
-        return tr("last {last} %, highest {most} %").format(
-            last=fixed(loads[-1], 0), most=fixed(max(loads), 0)
+        return tr(
+            Message(
+                ("last load {last} %, highest load {maximum} %"),
+                last=fixed(loads[-1], 0),
+                maximum=fixed(max(loads), 0),
+            )
         )
 
     def _availability_words(self) -> str:
         first, last = self.shift
         found = self.of_shift()
         if found is None:
-            return tr("{first}–{last}: the shift has not started").format(first=first, last=last)
+            return tr(Message("{first}–{last}: the shift has not started", first=first, last=last))
         text = tr("{first}–{last}: {share} %, {run} of {planned} in cycle")
-        return text.format(
-            first=first,
-            last=last,
-            share=fixed(100.0 * found.share, 0),
-            run=duration(found.producing),
-            planned=duration(found.planned),
+        return tr(
+            Message(
+                text,
+                first=first,
+                last=last,
+                share=fixed(100.0 * found.share, 0),
+                run=duration(found.producing),
+                planned=duration(found.planned),
+            )
         )
 
     def of_shift(self) -> Availability | None:
@@ -213,7 +226,7 @@ class TrendsSection(QualitySection):
             (f"{tr(row.reason)}  {row.times} ×  {fixed(100 * row.together, 0)} %", row.seconds / 60.0)
             for row in rows
         )
-        return (Plot(tr("MINUTES BY REASON, WITH CUMULATIVE SHARE"), bars=bars),)
+        return (Plot(tr("MINUTES BY REASON, WITH CUMULATIVE PERCENTAGE"), bars=bars),)
 
     def _load_plots(self) -> tuple[Plot, ...]:
         rows = [row for row in self.data.cycles if row.load is not None]
@@ -256,12 +269,14 @@ class TrendsSection(QualitySection):
         """First and last hour. Raises EntryError."""
         first, _, last = text.partition("-")
         if not (first.isdigit() and last.isdigit() and int(first) < 24 and int(last) <= 24):
-            raise EntryError(tr("enter the shift as two hours of the day, such as 6-14"))
+            raise EntryError(tr("enter the start and end hour of the shift, such as 6-14"))
         if self.desk.refused(Act.FEATURES):
             return False
         self._shift = int(first), int(last)
         hours = list(self._shift)
-        self.desk.counter.persistence.note_change(f"shift hours: {first} to {last}")
+        self.desk.counter.persistence.note_change(
+            Message("shift hours: {first} to {last}", first=first, last=last)
+        )
         self.desk.keep(lambda: self.desk.counter.persistence.save_setting(SETTING, hours))
         return True
 

@@ -12,6 +12,7 @@ from app.offsets.offset_history import refusal
 from app.offsets.offset_values import Mode, added, out_of_range, signed, value_added
 from app.quality.parts_book import PartsData, feature_of
 from app.quality.section import size
+from core.message import Message
 from core.quality.measured_feature import CorrectedBy
 from core.quality.quality_errors import QualityError
 from core.quality.wear_proposal import Proposal, propose
@@ -28,7 +29,11 @@ def proposal(data: PartsData, row: FeatureRow, mode: Mode) -> Proposal:
     if not sizes and data.readings_of(row.id):
         name = feature.corrected_by
         raise QualityError(
-            f"{row.name}: no part started since the last change of {name} has been measured yet"
+            Message(
+                "{row}: no part started after the last change of {name} has been measured yet",
+                row=row.name,
+                name=name,
+            )
         )
     return propose(feature, sizes, RESOLUTION[mode.metric])
 
@@ -52,20 +57,29 @@ def correction(found: Proposal, desk: Desk, mode: Mode) -> Correction:
         raise EntryError(why_not)
     kind = Kind.TOOL if feature.by is CorrectedBy.TOOL else Kind.SECONDARY
     change = signed(found.change, mode.metric)
-    why = tr("measured {name}: mean {mean} of {count}, {change}").format(
-        name=feature.name, mean=size(found.mean, mode), count=found.count, change=change
+    why = tr(
+        Message(
+            "{name} measured: the mean of {count} readings is {mean}, offset change {change}",
+            name=feature.name,
+            mean=size(found.mean, mode),
+            count=found.count,
+            change=change,
+        )
     )
     name = f"wear_{feature.axis}" if kind is Kind.TOOL else feature.axis
     row = book.of(kind).get(feature.number)
     value = _tool_value(name, row, found, mode, feature.number) if kind is Kind.TOOL else _secondary_value(
         name, row, found, mode
     )  # fmt: skip
-    words = tr("{offset} {change}: {feature} {old} → {new}").format(
-        offset=feature.corrected_by,
-        change=change,
-        feature=feature.name,
-        old=size(found.mean, mode),
-        new=size(found.expected, mode),
+    words = tr(
+        Message(
+            "{offset} {change}: {feature} {old} → {new}",
+            offset=feature.corrected_by,
+            change=change,
+            feature=feature.name,
+            old=size(found.mean, mode),
+            new=size(found.expected, mode),
+        )
     )
     return Correction(kind, feature.number, {name: value}, why, words)
 
@@ -73,7 +87,7 @@ def correction(found: Proposal, desk: Desk, mode: Mode) -> Correction:
 def _tool_value(name: str, row: object, found: Proposal, mode: Mode, number: int) -> Value:
     """As F2 of the tool table adds what is typed."""
     if not isinstance(row, ToolRow):
-        raise EntryError(tr("T{number} IS NOT SET").format(number=number))
+        raise EntryError(tr(Message("T{number} IS NOT SET", number=number)))
     return value_added(name, row, fixed(found.change / mode.unit, 10), mode)
 
 

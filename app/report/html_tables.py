@@ -8,6 +8,7 @@ from html import escape
 
 from app.report.page_style import STYLE
 from core.language.source import Source
+from core.message import Message
 
 _NOTHING_LOADED = "default-src 'none'; style-src 'unsafe-inline'"
 PAGE_END = "</body></html>\n"
@@ -54,7 +55,11 @@ def table(head: Iterable[str], rows: Iterable[Sequence[str]]) -> str:
 def clock(seconds: float) -> str:
     """Minutes and seconds."""
     minutes, rest = divmod(seconds, 60.0)
-    return f"{minutes:.0f} min {rest:04.1f} s" if minutes else f"{rest:.1f} s"
+    return (
+        Message("{minutes} min {rest} s", minutes=f"{minutes:.0f}", rest=f"{rest:04.1f}")
+        if minutes
+        else f"{rest:.1f} s"
+    )
 
 
 def text_hash(source: Source) -> str:

@@ -45,7 +45,7 @@ def path(
     drawing.axis()
     for points, look in _ways(moves):
         drawing.polyline(points, look)
-    return drawing.svg("Path of the tools")
+    return drawing.svg("Tool paths")
 
 
 def place(move: TipMove, metal: Piece, tool: ToolShape | None, clamping: Clamping | None) -> str:
@@ -63,7 +63,7 @@ def place(move: TipMove, metal: Piece, tool: ToolShape | None, clamping: Clampin
                 drawing.polygon([(z + dz, r + dr) for dz, dr in polygon.tolist()], look)
     drawing.polyline(move.points, "wrong")
     drawing.dot(move.points[-1], "wrong-end")
-    return drawing.svg("Place of the finding")
+    return drawing.svg("Location of the finding")
 
 
 def tool_picture(shape: ToolShape | None) -> str:
@@ -78,7 +78,7 @@ def tool_picture(shape: ToolShape | None) -> str:
         for polygon in polygons:
             drawing.polygon([(z, r) for z, r in polygon.tolist()], look)
     drawing.dot((0.0, 0.0), "control")
-    return drawing.svg("Outline of the tool")
+    return drawing.svg("Tool outline")
 
 
 def _outline(shape: ToolShape | None) -> ToolOutline | None:

@@ -9,6 +9,8 @@ from enum import StrEnum
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from core.message import Message
+
 _LONGEST = 120.0  # s
 
 
@@ -30,8 +32,17 @@ def pdf_of(html: str, title: str, paper: Paper) -> bytes:
                 command, input=html.encode(), capture_output=True, timeout=_LONGEST, check=False, env=around
             )
         except subprocess.TimeoutExpired as error:
-            raise OSError(0, f"no PDF after {_LONGEST:.0f} s") from error
+            raise OSError(
+                0, Message("no PDF was created within {longest} s", longest=f"{_LONGEST:.0f}")
+            ) from error
         if done.returncode:
             lines = done.stderr.decode(errors="replace").strip().splitlines()
-            raise OSError(0, lines[-1] if lines else f"the PDF was not made ({done.returncode})")
+            raise OSError(
+                0,
+                lines[-1]
+                if lines
+                else Message(
+                    ("the PDF was not created (return code {returncode})"), returncode=done.returncode
+                ),
+            )
         return path.read_bytes()

@@ -15,6 +15,7 @@ from app.report.html_tables import clock, figure, pairs, table, text_hash, verdi
 from app.report.run_record import RunRecord
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
+from core.message import Message
 from core.part.tool_shape import ToolShape
 from core.tool_edges import edge_name
 
@@ -51,7 +52,11 @@ class ProgramReport:
     # --- figures
 
     def _length(self, mm: float) -> str:
-        return f"{mm:.3f} mm" if self._metric else f"{mm / _MM_PER_INCH:.4f} in"
+        return (
+            Message("{unit} mm", unit=f"{mm:.3f}")
+            if self._metric
+            else Message("{mm} in", mm=f"{mm / _MM_PER_INCH:.4f}")
+        )
 
     def _volume(self, mm3: float) -> str:
         return f"{mm3:.1f} mm³" if self._metric else f"{mm3 / _MM_PER_INCH**3:.4f} in³"
@@ -61,16 +66,37 @@ class ProgramReport:
     def _head(self) -> str:
         report, times = self._report, self._report.times
         errors, warnings = len(report.errors), self._count(Severity.WARNING)
-        words = _many(errors, "error") + ": will not run" if errors else "Proved"
-        words += f", {_many(warnings, 'warning')}" if warnings else ""
+        words = (
+            Message("{errors}; the program will not run", errors=_many(errors, "error"))
+            if errors
+            else "Proved"
+        )
+        words += f"; {_many(warnings, 'warning')}" if warnings else ""
         rows = [
             ("Machine", f"{self._machine.name} ({self._machine.source})"),
-            ("Program", f"{report.blocks} blocks, {report.elementary} elementary, {report.dialect}"),
+            (
+                "Program",
+                Message(
+                    "{blocks} blocks, {elementary} elementary blocks, {dialect}",
+                    blocks=report.blocks,
+                    elementary=report.elementary,
+                    dialect=report.dialect,
+                ),
+            ),
             ("Text (SHA-256)", text_hash(self._source)),
-            ("Cycle", f"{clock(times.cycle)}: cutting {times.cutting:.1f} s, rapid {times.rapid:.1f} s, "
-             f"dwell {times.dwell:.1f} s, waiting {times.wait:.1f} s"),
+            (
+                "Cycle",
+                Message(
+                    "{cycle}: cutting {cutting} s, rapid {rapid} s, dwell {dwell} s, waiting {wait} s",
+                    cycle=clock(times.cycle),
+                    cutting=f"{times.cutting:.1f}",
+                    rapid=f"{times.rapid:.1f}",
+                    dwell=f"{times.dwell:.1f}",
+                    wait=f"{times.wait:.1f}",
+                ),
+            ),
             *self._stock_rows(),
-        ]  # fmt: skip
+        ]
         look = "bad" if errors else "doubt" if warnings else "good"
         return verdict(look, words) + pairs(rows)
 
@@ -82,8 +108,14 @@ class ProgramReport:
         if part is None or part.stock is None:
             return []
         stock = part.stock
-        bore = f", bore {self._length(2 * stock.bore[0][1])}" if stock.bore else ""
-        taken = f"taken as a bar of Ø {self._length(2 * stock.radius)}{bore}, as nobody has said it"
+        bore = (
+            Message(", bore diameter {bore}", bore=self._length(2 * stock.bore[0][1])) if stock.bore else ""
+        )
+        taken = Message(
+            "stock not specified; a bar of Ø {radius}{bore} is assumed",
+            radius=self._length(2 * stock.radius),
+            bore=bore,
+        )
         name = stock.given or taken
         rows = [
             ("Stock", f"{name}; {self._volume(part.volume)}"),
@@ -103,21 +135,25 @@ class ProgramReport:
     def _drawings(self) -> str:
         part, record = self._part, self._record
         if part is None or part.stock is None:
-            return "<p>Nothing is turned here that a section would show.</p>"
+            return "<p>No section view is shown because the program does not turn a part.</p>"
         clamping = record.setting.clamping
-        short = f"; the first {len(record.moves):,} moves" if record.cut_short else ""
-        milled = "; what live tools mill is not in it" if part.milled else ""
+        short = (
+            Message("; only the first {moves_count} moves are shown", moves_count=f"{len(record.moves):,}")
+            if record.cut_short
+            else ""
+        )
+        milled = "; milling with live tools is not shown" if part.milled else ""
         if part.sides is not None:
-            milled = "; milled, with C at 0"
+            milled = "; milling is shown with C at 0"
         cut_open = figure(
             part_drawings.section(part.stock, part.last, clamping, part.sides),
-            f"Section: stock light, finished part dark{milled}",
+            Message("Section (light: stock, dark: finished part){milled}", milled=milled),
         )
         if not record.moves:
             return cut_open
         return cut_open + figure(
             part_drawings.path(part.stock, part.last, clamping, record.moves, part.sides),
-            f"Path of the tools: cuts full, rapids dashed, threads thick{short}",
+            Message("Tool paths (solid: cuts, dashed: rapids, thick: threads){short}", short=short),
         )
 
     # --- findings
@@ -132,7 +168,7 @@ class ProgramReport:
     def _finding(self, each: Diagnostic, picture: str) -> str:
         lines = self._source.lines
         text = lines[each.line - 1] if 0 < each.line <= len(lines) else ""
-        where = f"Line {each.line}" if each.line else "Program"
+        where = Message("Line {line}", line=each.line) if each.line else "Program"
         code = f"<pre>{escape(text)}</pre>" if text.strip() else ""
         hint = f'<p class="hint">{escape(each.hint)}</p>' if each.hint else ""
         return (
@@ -159,8 +195,9 @@ class ProgramReport:
         shapes = self._part.shapes if self._part is not None else {}
         numbers = sorted({*self._report.tools, *(n for n, time in self._record.times.items() if time.total)})
         rows = [self._tool(n, shapes.get(n)) for n in numbers]
-        return "<h3>Tools, and their times</h3>" + table(
-            ("Tool", "Outline", "Shape", "Cutting s", "Rapid s", "At rest s"), rows
+        return (
+            "<h3>Tools and times</h3>"
+            f"{table(('Tool', 'Outline', 'Shape', 'Cutting s', 'Rapid s', 'Time at rest, s'), rows)}"
         )
 
     def _tool(self, number: int, shape: ToolShape | None) -> tuple[str, ...]:
@@ -182,7 +219,7 @@ class ProgramReport:
         words = [str(shape.kind), shape.insert, shape.holder and f"in {shape.holder}"]
         words += [f"{name} {self._length(mm)}" for name, mm in sizes if mm]
         words += [f"point {shape.point:g}°"] if shape.point else []
-        words += [f"tip quadrant {shape.tip}"] if shape.tip else []
+        words += [Message("tip quadrant {tip}", tip=shape.tip)] if shape.tip else []
         return ", ".join(filter(None, words))
 
     def _stops(self) -> str:
@@ -190,17 +227,25 @@ class ProgramReport:
             (f"M0{int(stop.optional)}", str(stop.line), clock(stop.at), escape(stop.message))
             for stop in self._record.stops
         ]
-        head = ("Stop", "Line", "After", "What the operator reads")
+        head = ("Stop", "Line", "After", "Message to the operator")
         return "<h3>Stops</h3>" + (table(head, rows) if rows else "<p>None.</p>")
 
     def _offsets(self) -> str:
         setup, length = self._setup, self._length
         rows = [
-            (edge_name(n), length(row.x), length(row.z), f"nose radius {length(row.nose_radius)}")
+            (
+                edge_name(n),
+                length(row.x),
+                length(row.z),
+                f"nose radius {length(row.nose_radius)}",
+            )
             for n in self._report.tools
             if (row := setup.tools.get(n)) is not None
         ]
-        rows += [(edge_name(n), "not set", "not set", "taken as 0") for n in self._report.missing_tools]
+        rows += [
+            (edge_name(n), "not set", "not set", "X and Z are assumed to be 0")
+            for n in self._report.missing_tools
+        ]
         rows += [
             (f"D{n}", length(d.x), length(d.z), f"radius {length(d.r)}")
             for n in sorted(self._record.secondary)
@@ -229,7 +274,7 @@ def not_proved(why: str) -> str:
 
 def compared_part(lines: str) -> str:
     """What other offsets change, as it is told on the command line."""
-    return f"<h3>With other offsets</h3><pre>{escape(lines)}</pre>"
+    return f"<h3>With different offsets</h3><pre>{escape(lines)}</pre>"
 
 
 def _many(count: int, what: str) -> str:

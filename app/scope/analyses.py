@@ -33,6 +33,7 @@ from app.scope.drive_test_figures import (
 from app.scope.scope_model import Scope
 from app.scope.spindle_response import SpindleResponse, last_run_up, spindle_drawing, spindle_sheet
 from core.machine.machine_model import Axis, SpindleModel
+from core.message import Message
 from core.records.ball_bar import BallBar, arcs_in, ball_bar
 from core.records.path_error import PathError, WorstPlace, of_samples, worst_places
 from core.records.record import Record
@@ -203,10 +204,12 @@ class Analyses:
         if found.why:
             return found.why
         if found.thread is not None:
-            return tr("passes overlaid by spindle angle: deviation from the thread, and speed")
+            return tr("thread passes overlaid by spindle angle: deviation from the thread, and spindle speed")
         if found.kind in {Kind.RESPONSE, Kind.SPINDLE}:
             return _response_words(found, self.scope.metric)
-        return tr("error drawn {times} times larger; Z changes the scale").format(times=f"{self.magnified:g}")
+        return tr(
+            Message("error magnified {times}x; press Z to change the scale", times=f"{self.magnified:g}")
+        )
 
 
 def last_run(record: Record) -> Record:
@@ -242,10 +245,12 @@ def _analysed(kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis]) 
     columns = record.columns
     letters = [each.name[0] for each in record.channels if each.name[1:] == " demand" and each.unit == "mm"]
     if len(letters) < 2 or not len(record.times):
-        raise AnalysisError(tr("the record has fewer than two linear axes, so it has no path"), "no-path")
+        raise AnalysisError(
+            tr("the record has fewer than two linear axes, so the record does not contain a path"), "no-path"
+        )
     slides = ("Z", "X") if set(letters) == {"X", "Z"} else tuple(sorted(letters))
-    demand = np.column_stack([columns[f"{each} demand"] for each in slides])
-    actual = np.column_stack([columns[f"{each} actual"] for each in slides])
+    demand = np.column_stack([columns[Message("{item} demand", item=each)] for each in slides])
+    actual = np.column_stack([columns[Message("{item} actual", item=each)] for each in slides])
     lines = columns.get("line", np.zeros(len(record.times)))
     axes = _drawn(slides, demand)
     if kind is Kind.PATH:
@@ -272,7 +277,11 @@ def _ball_bar_found(
     ]
     if not arcs:
         raise AnalysisError(
-            tr("no arc of 60 degrees or more in this time; record while one is cut"), "no-arc"
+            tr(
+                "this time range does not contain an arc of 60 degrees or more; cut an arc of "
+                "this size while recording"
+            ),
+            "no-arc",
         )
     arcs.sort(key=itemgetter(0))
     number = arc % len(arcs)
@@ -306,7 +315,7 @@ def _path_drawing(found: Found, factor: float, marked: int) -> Drawing:
     if marked < len(found.worst):
         worst = found.worst[marked]
         place = path.magnified(factor)[worst.sample][seen]
-        marks = ((float(place[0]), float(place[1]), tr("line {line}").format(line=worst.line)),)
+        marks = ((float(place[0]), float(place[1]), tr(Message("line {line}", line=worst.line))),)
     soft, curve = _thinned(path.foot[:, seen]), _thinned(path.magnified(factor)[:, seen])
     return Drawing(soft, (curve,), (), marks, names=_axis_names(found))
 
@@ -324,7 +333,7 @@ def _thread_drawing(found: Found) -> Drawing:
         for each, speed in zip(found.thread.passes[:8], found.speeds, strict=False)
         if np.isfinite(speed).all()
     )
-    names = tr("THREAD DEVIATION") + "  {unit}", tr("SPINDLE") + "  rpm", tr("turns")
+    names = tr("THREAD DEVIATION") + "  {unit}", Message("{title}  rpm", title=tr("SPINDLE")), tr("turns")
     return Drawing(curves=curves, below=below, equal=False, names=names)
 
 
@@ -360,7 +369,7 @@ def _path_sheet(title: str, found: Found, metric: bool, marked: int) -> Sheet:
     )
     lathe = len(found.slides) == 2
     notes = (
-        tr("Largest error: {far}").format(far=_length(path.greatest, metric)),
+        tr(Message("Largest error: {distance}", distance=_length(path.greatest, metric))),
         *((tr("Positive values are to the left of the direction of travel."),) if lathe else ()),
         tr("The table shows the worst point of each line."),
         tr("Axis positions are from home, X as a radius.") if lathe else tr("Axis positions are from home."),
@@ -386,10 +395,14 @@ def _thread_sheet(title: str, thread: Thread, vmax: float, metric: bool, marked:
     )
     limit = fastest(thread.lead, vmax) if vmax else math.inf
     notes = (
-        tr("Lead: {lead} per revolution").format(lead=_length(abs(thread.lead), metric)),
-        tr("Entry angles agree within {angle}°").format(angle=formats.fixed(thread.entry_spread, 2)),
+        tr(Message("Lead: {lead} per revolution", lead=_length(abs(thread.lead), metric))),
+        tr(
+            Message(
+                ("The thread entry angles agree within {angle}°"), angle=formats.fixed(thread.entry_spread, 2)
+            )
+        ),
         tr("Flank infeed shifts the entry angle with the depth."),
-        tr("The axis can follow this lead up to {rpm} rpm").format(rpm=formats.rpm(limit)),
+        tr(Message("The axis can follow this lead up to {rpm} rpm", rpm=formats.rpm(limit))),
     )
     heads = (tr("PASS"), tr("ADDED DEPTH"), tr("ENTRY"), tr("LEAD ERROR"), tr("RPM DROP"))
     shares = (0.12, 0.24, 0.2, 0.24, 0.2)
@@ -411,40 +424,47 @@ def _response_words(found: Found, metric: bool) -> str:
     if found.test is not None:
         return shown_words(found.test.path, metric)
     if found.spindle is not None:
-        return tr("last run-up: commanded and actual speed over time in seconds")
-    return tr("last move: commanded, actual and following error over time in seconds")
+        return tr("last spindle speed change: commanded and actual speed over time in seconds")
+    return tr("last move: commanded position, actual position and following error over time in seconds")
 
 
 def _ball_sheet(title: str, ball: BallBar, found: Found, metric: bool) -> Sheet:
     u, v = found.axes
 
     def lean(value: float) -> str:
-        return f"{formats.fixed(value, 3)} mm/m" if math.isfinite(value) else formats.NOTHING
+        return (
+            Message("{fixed} mm/m", fixed=formats.fixed(value, 3))
+            if math.isfinite(value)
+            else formats.NOTHING
+        )
 
     def told(value: float) -> str:
         return _length(value, metric) if math.isfinite(value) else formats.NOTHING
 
     rows = (
         Row((tr("ROUNDNESS"), told(ball.roundness))),
-        Row((tr("BACKLASH {axis}").format(axis=u), told(ball.backlash[0]))),
-        Row((tr("BACKLASH {axis}").format(axis=v), told(ball.backlash[1]))),
-        Row((tr("REVERSAL SPIKE {axis}").format(axis=u), told(ball.spike[0]))),
-        Row((tr("REVERSAL SPIKE {axis}").format(axis=v), told(ball.spike[1]))),
+        Row((tr(Message("BACKLASH {axis}", axis=u)), told(ball.backlash[0]))),
+        Row((tr(Message("BACKLASH {axis}", axis=v)), told(ball.backlash[1]))),
+        Row((tr(Message("REVERSAL SPIKE {axis}", axis=u)), told(ball.spike[0]))),
+        Row((tr(Message("REVERSAL SPIKE {axis}", axis=v)), told(ball.spike[1]))),
         Row((tr("OUT OF SQUARE"), lean(ball.squareness))),
-        Row((tr("SCALE {u} TO {v}").format(u=u, v=v), lean(ball.scale))),
+        Row((tr(Message("SCALE OF {value} RELATIVE TO {v}", value=u, v=v)), lean(ball.scale))),
         Row((tr("RADIUS ERROR"), told(ball.size))),
     )
     number, count, line = found.arc
     notes = (
-        tr("Line {line}, arc {number} of {count}: radius {radius}, {angle}°").format(
-            line=line,
-            number=number + 1,
-            count=count,
-            radius=_length(ball.radius, metric),
-            angle=formats.fixed(ball.covered, 0),
+        tr(
+            Message(
+                "Line {line}, arc {number} of {count}: radius {radius}, {angle}°",
+                line=line,
+                number=number + 1,
+                count=count,
+                radius=_length(ball.radius, metric),
+                angle=formats.fixed(ball.covered, 0),
+            )
         ),
         tr("A dash means that the arc is too short for a result."),
-        tr("The encoder cannot measure play between itself and the tool."),
+        tr("The encoder cannot measure play between the encoder and the tool."),
     )
     return Sheet(title, ("", ""), (0.52, 0.48), rows, notes=notes, figures=frozenset({1}))
 

@@ -149,7 +149,7 @@ class _Keys:
 
     def prompt(self) -> str:
         """What keys do now."""
-        return tr("ARROWS: SELECT ROW   Z, WHEEL: MAGNIFY   SAME KEY AGAIN: NEW SAMPLES")
+        return tr("ARROWS: ROW   Z: MAGNIFY   SAME F-KEY AGAIN: NEW SAMPLES")
 
     def leave(self) -> None:
         """Nothing stays open."""

@@ -18,6 +18,7 @@ from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.scope.drawing import Drawing
 from core.machine.machine_model import Axis
+from core.message import Message
 from core.records.derived_figures import velocity
 from core.records.record import Record
 from core.records.record_errors import AnalysisError
@@ -74,7 +75,10 @@ class AxisResponse(Moved):
 def moved(letter: str, axis: Axis, record: Record, cut: slice, zero: float) -> Moved:
     """What an axis was asked and did in a part of a record; times count from ``zero`` of its clock."""
     times = record.times[cut] - zero
-    demand, actual = record.columns[f"{letter} demand"][cut], record.columns[f"{letter} actual"][cut]
+    demand, actual = (
+        record.columns[Message("{item} demand", item=letter)][cut],
+        record.columns[Message("{item} actual", item=letter)][cut],
+    )
     speeds = np.nan_to_num(velocity(times, demand))
     speed = float(np.abs(speeds).max(initial=0.0))
     return Moved(letter, times, demand, actual, speed, lag_of(speeds, demand - actual), axis)
@@ -84,7 +88,7 @@ def last_move(record: Record, drives: Mapping[str, Axis]) -> AxisResponse:
     """The last move from rest to rest of one axis. Raises AnalysisError."""
     found: tuple[int, int, str] | None = None
     for letter in drives:
-        demand = record.columns.get(f"{letter} demand")
+        demand = record.columns.get(Message("{item} demand", item=letter))
         if drives[letter].rotary or demand is None or not np.isfinite(demand).all():
             continue
         spans = stretches(record.times, demand)
@@ -92,7 +96,7 @@ def last_move(record: Record, drives: Mapping[str, Axis]) -> AxisResponse:
             found = (*spans[-1], letter)
     if found is None:
         raise AnalysisError(
-            tr("no axis moved from rest to rest in this time: make a step on the Jog page"), "no-step"
+            tr("no axis moved from rest to rest in this time range; jog one step on the Jog page"), "no-step"
         )
     first, last, letter = found
     times = record.times
@@ -156,7 +160,11 @@ class Units:
 
     def ms(self, seconds: float) -> str:
         """A short time."""
-        return f"{formats.fixed(1000.0 * seconds, 1)} ms" if math.isfinite(seconds) else formats.NOTHING
+        return (
+            Message("{seconds} ms", seconds=formats.fixed(1000.0 * seconds, 1))
+            if math.isfinite(seconds)
+            else formats.NOTHING
+        )
 
 
 def step_rows(steps: Sequence[StepResponse], units: Units) -> list[tuple[str, ...]]:
@@ -164,7 +172,7 @@ def step_rows(steps: Sequence[StepResponse], units: Units) -> list[tuple[str, ..
     return [
         (tr("RISE, 10 TO 90 %"), *(units.ms(each.rise) for each in steps)),
         (tr("OVERSHOOT"), *(units.share(each.overshoot) for each in steps)),
-        (tr("IN POSITION AFTER"), *(units.ms(each.settling) for each in steps)),
+        (tr("TIME UNTIL IN POSITION"), *(units.ms(each.settling) for each in steps)),
     ]
 
 
@@ -174,7 +182,7 @@ def window_rows(found: Moved, units: Units) -> list[tuple[str, str, str]]:
 
     def trips(error: FloatArray, window: float) -> str:
         at = would_trip(times, error, window, axis.following_time)
-        return tr("no trip") if at is None else tr("trips at {at}").format(at=units.ms(at))
+        return tr("no trip") if at is None else tr(Message("trips at {position}", position=units.ms(at)))
 
     limit, greatest = axis.following_limit(found.speed), float(np.abs(error).max())
     least = narrowest_window(times, error, axis.following_time)
@@ -186,14 +194,18 @@ def window_rows(found: Moved, units: Units) -> list[tuple[str, str, str]]:
         (tr("SMALLEST LIMIT WITHOUT A TRIP"), "", units.way(least)),
     ]
     for share in WINDOWS:
-        name = tr("WITH {share} OF THE LIMIT").format(share=formats.percent(share))
+        name = tr(Message("LIMIT REDUCED TO {share}", share=formats.percent(share)))
         rows.append((name, trips(error, share * limit), units.way(share * limit)))
     for factor in FACTORS:
         faster = found.faster(factor)
-        name = tr("AT {share} SPEED").format(share=formats.percent(factor))
+        name = tr(Message("AT {share} SPEED", share=formats.percent(factor)))
         verdict = trips(faster, axis.following_limit(factor * found.speed))
         rows.append((name, verdict, units.way(float(np.abs(faster).max()))))
-    at = units.speed(reached) if reached is not None else tr("not within its speed range")
+    at = (
+        units.speed(reached)
+        if reached is not None
+        else tr("the limit is not reached in the axis speed range")
+    )
     rows.append((tr("SPEED WHERE LAG EQUALS LIMIT"), "", at))
     return rows
 
@@ -208,7 +220,11 @@ def response_sheet(title: str, found: AxisResponse, metric: bool) -> Sheet:
         *map(Row, window_rows(found, units)),
     ]
     notes = (
-        tr("Last move of {axis}. Calculated only, nothing was changed.").format(axis=found.letter),
-        tr("A single step on the Jog page gives a good result; F9 has drive tests."),
+        tr(
+            Message(
+                "Last move of {axis}. The values are only calculated; nothing was changed.", axis=found.letter
+            )
+        ),
+        tr("A single step on the Jog page gives a good result; F9 opens the drive tests."),
     )
     return Sheet(title, ("", "", ""), SHARES, tuple(rows), notes=notes, figures=frozenset({1, 2}))

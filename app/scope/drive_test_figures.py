@@ -20,6 +20,7 @@ from app.desk.translation import tr
 from app.scope.axis_response import SHARES, Moved, Units, moved, step_rows, stretches, window_rows
 from core.executor.drive_test_path import PAUSE, DriveTestPath, Shape
 from core.machine.machine_model import Axis
+from core.message import Message
 from core.records.record import Record
 from core.records.record_errors import AnalysisError
 from core.records.step_response import (
@@ -69,14 +70,14 @@ class DriveTestFigures:
 
 def drive_test_figures(record: Record, path: DriveTestPath, drives: Mapping[str, Axis]) -> DriveTestFigures:
     """Worked out of the record of a whole test. Raises AnalysisError."""
-    name, axis = f"{path.axis} demand", drives.get(path.axis)
+    name, axis = Message("{item} demand", item=path.axis), drives.get(path.axis)
     if axis is None or name not in record.columns:
-        raise AnalysisError(tr("this machine has no axis {axis}").format(axis=path.axis), "no-axis")
+        raise AnalysisError(tr(Message("this machine has no {axis} axis", axis=path.axis)), "no-axis")
     found = stretches(record.times, record.columns[name])
     ways = len(path.frequencies) if path.shape is Shape.SINE else 2
     if len(found) < ways:
         raise AnalysisError(
-            tr("the key was released before the test ended; hold it until the axis is back"),
+            tr("the key was released before the test ended; hold the key until the axis has returned"),
             "test-broken-off",
         )
     found = found[-ways:]
@@ -125,7 +126,9 @@ def shown_words(path: DriveTestPath, metric: bool) -> str:
     if path.shape is Shape.RAMP:
         return f"{words}, {units.speed(path.speed)}"
     if path.shape is Shape.SINE:
-        return f"{words}, {', '.join(f'{each:g}' for each in path.frequencies)} Hz"
+        return Message(
+            "{words}, {item} Hz", words=words, item=", ".join(f"{each:g}" for each in path.frequencies)
+        )
     return words
 
 
@@ -169,7 +172,7 @@ def _gain(ramp: RampResponse) -> str:
 def _sine_rows(found: DriveTestFigures) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [
         (
-            f"{each.frequency:g} Hz",
+            Message("{item} Hz", item=f"{each.frequency:g}"),
             f"{formats.fixed(100.0 * each.gain, 1)} %",
             f"{formats.fixed(each.lag, 1)}°",
         )
@@ -179,13 +182,19 @@ def _sine_rows(found: DriveTestFigures) -> list[tuple[str, ...]]:
 
     def at(hertz: float | None) -> str:
         return (
-            f"{formats.fixed(hertz, 1)} Hz"
+            Message("{item} Hz", item=formats.fixed(hertz, 1))
             if hertz is not None
-            else tr("not reached up to {most} Hz").format(most=f"{most:g}")
+            else tr(Message("−3 dB is not reached at frequencies up to {maximum} Hz", maximum=f"{most:g}"))
         )
 
     if len(found.sines) > 1:
         rows += [(tr("BANDWIDTH, −3 dB"), "", at(seen.down)), (tr("90° PHASE LAG"), "", at(seen.quarter))]
     late = found.sines[0].late
-    rows.append((tr("DELAY"), "", f"{formats.fixed(1000.0 * late, 2)} ms" if math.isfinite(late) else ""))
+    rows.append(
+        (
+            tr("DELAY"),
+            "",
+            Message("{seconds} ms", seconds=formats.fixed(1000.0 * late, 2)) if math.isfinite(late) else "",
+        )
+    )
     return rows

@@ -17,6 +17,7 @@ from typing import NamedTuple, TypeVar
 from app.desk.formats import file_size
 from core.coded_error import CodedError
 from core.file_placing import put_in_place
+from core.message import Message
 from core.records.record import Record
 from core.records.record_file import ENDING
 
@@ -129,7 +130,10 @@ class RecordShelf:
         def carefully() -> None:
             self.folder.mkdir(parents=True, exist_ok=True)
             if shutil.disk_usage(self.folder).free < _ROOM:
-                raise ShelfError(f"{path.name} NOT SAVED: DISK FULL. DELETE RECORDS OR PROGRAMS", "disk-full")
+                raise ShelfError(
+                    Message("{path} NOT SAVED: DISK FULL. DELETE RECORDS OR PROGRAMS", path=path.name),
+                    "disk-full",
+                )
             write()
 
         self._told(path, carefully)
@@ -141,7 +145,9 @@ class RecordShelf:
         except ShelfError:
             raise
         except OSError as error:
-            raise ShelfError(f"{path.name}: {error.strerror or error}", "unusable") from error
+            raise ShelfError(
+                Message("{path}: {cause}", path=path.name, cause=error.strerror or error), "unusable"
+            ) from error
 
 
 def _draft(path: Path) -> _Draft:

@@ -6,6 +6,7 @@ from app.desk.sheet import Row
 from app.desk.translation import tr
 from app.scope.scope_model import Scope
 from app.special.special_functions import PageFunction
+from core.message import Message
 
 PAGE = "SCOPE"  # its name in app.screen.page_table
 
@@ -16,7 +17,9 @@ class ScopeFunction(PageFunction):
     name = "SCOPE"
     use = "axis and spindle curves"
     page = PAGE
-    way = "Enter opens the page. Shift+F10 opens it from any page and returns."
+    way = (
+        "Press Enter to open the page. Shift+F10 opens the page from any other page and returns to that page."
+    )
 
     def facts(self) -> tuple[Row, ...]:
         """How long and how many channels."""
@@ -25,7 +28,7 @@ class ScopeFunction(PageFunction):
         if live is None:
             return (Row((tr("RECORDED"), tr("NOTHING RECORDED ON THIS MACHINE"))),)
         return (
-            Row((tr("STORED"), tr("THE LAST {minutes} MINUTES").format(minutes=f"{live.lasts / 60.0:g}"))),
+            Row((tr("STORED"), tr(Message("THE LAST {minutes} MINUTES", minutes=f"{live.lasts / 60.0:g}")))),
             Row((tr("CHANNELS"), str(len(live.channels)))),
         )
 

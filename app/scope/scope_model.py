@@ -22,6 +22,7 @@ from app.scope.signals import Quantity, Signal, first_chosen, signals_of
 from app.scope.time_window import PAN, Cursors, Window
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.records.record import Record
 
 MOST_SHOWN = 8  # curves; inputs and outputs come beside them
@@ -29,7 +30,7 @@ MOST_LOGIC = 12
 FROZEN = 60.0  # s that are taken when the curves are frozen, or three windows
 LEVEL_FOR = 1.0  # s after which level lines are looked at again where nothing seems to have happened
 ZOOM = 1.5  # a step of a lane's range
-FORGOTTEN = tr("CURVES ARE LIVE. PRESS F2 TO FREEZE THEM FIRST")
+FORGOTTEN = tr("CURVES ARE LIVE. F2: FREEZE THEM FIRST")
 NO_SAMPLES = tr("NOTHING IS RECORDED ON THIS MACHINE. F9: OPEN A RECORD")
 
 
@@ -220,7 +221,7 @@ class Scope:
     def show_record(self, record: Record, name: str, window: tuple[float, float] | None = None) -> None:
         """Look at a record from now on; ``window`` in seconds of its instant 0, else all of it."""
         if not len(record.times):
-            self.desk.say(tr("RECORD IS EMPTY: NO SAMPLES IN THAT TIME"))
+            self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME"))
             return
         zero = instant_of(record)
         self.frozen, self.name, self._drawn = RecordCurves(record, zero), name, None
@@ -252,8 +253,8 @@ class Scope:
         alike = [each for each in self.shown if (each.quantity is Quantity.LOGIC) is logic]
         most = MOST_LOGIC if logic else MOST_SHOWN
         if len(alike) >= most:
-            text = tr("{most} CURVES IS THE MAXIMUM. REMOVE ONE FIRST")
-            self.desk.say(text.format(most=most))
+            text = tr("{most} CURVES IS THE MAXIMUM. REMOVE A CURVE FIRST")
+            self.desk.say(tr(Message(text, most=most)))
             return
         self.chosen = (*self.chosen, signal.key)
 
@@ -368,7 +369,7 @@ class Scope:
         begin, end = frozen.zero + self.window.begin, frozen.zero + self.window.end
         cut = frozen.record.between(begin, end)
         if not len(cut.times):
-            self.desk.say(tr("RECORD IS EMPTY: NO SAMPLES IN THAT TIME"))
+            self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME"))
             return None
         told = {**cut.about, INSTANT: f"{frozen.zero - float(cut.times[0]):.6f}"}
         return replace(cut, about=told)
@@ -386,7 +387,7 @@ class Scope:
             self.filing.queue(lambda: self.shelf.write_csv(record), self._written, self.desk.refuse)
 
     def _written(self, path: object) -> None:
-        self.desk.say(tr("SAVED: {path}").format(path=path))
+        self.desk.say(tr(Message("SAVED: {path}", path=path)))
         self.list_files()
 
     def list_files(self) -> None:
@@ -439,14 +440,14 @@ class Scope:
             return
 
         def gone(_nothing: object) -> None:
-            self.desk.access.persistence.note_change(f"record {kept.path.name} deleted")
-            self.desk.say(tr("DELETED: {path}").format(path=kept.path.name))
+            self.desk.access.persistence.note_change(Message("record {path} deleted", path=kept.path.name))
+            self.desk.say(tr(Message("DELETED: {path}", path=kept.path.name)))
             self.list_files()
 
         def yes() -> None:
             self.filing.queue(lambda: self.shelf.delete(kept.path), gone, self.desk.refuse)
 
-        question = tr("PRESS Y TO DELETE {path}, N TO KEEP IT").format(path=kept.path.name)
+        question = tr(Message("PRESS Y TO DELETE {path}, N TO KEEP IT", path=kept.path.name))
         self.desk.ask(question, yes)
 
     def write_picture(self, png: Callable[[], bytes]) -> None:

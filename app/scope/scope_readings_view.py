@@ -18,6 +18,7 @@ from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
 from app.screen.theme import CURVES
 from app.screen.window_layout import FINGER
+from core.message import Message
 
 _ROW = 5.6  # units at most
 _READ = 0.1  # s that a live figure stands
@@ -95,9 +96,15 @@ class Readings(Panel):
     def _between(self, painter: Painter, room: QRectF) -> QRectF:
         """What lies between the cursors; the room below."""
         u, apart = self.look.u, self.scope.cursors.apart
-        hertz = f"{1.0 / abs(apart):.4g} Hz" if apart else formats.NOTHING
+        hertz = Message("{item} Hz", item=f"{1.0 / abs(apart):.4g}") if apart else formats.NOTHING
         row = QRectF(room.x(), room.y(), room.width(), 2.6 * u)
-        painter.write(row, f"B − A   {formats.fixed(1000.0 * apart, 2)} ms", 1.8, "accent", raw=True)
+        painter.write(
+            row,
+            Message("B − A   {apart} ms", apart=formats.fixed(1000.0 * apart, 2)),
+            1.8,
+            "accent",
+            raw=True,
+        )
         row.translate(0.0, 2.6 * u)
         painter.write(row, f"1 / (B − A)   {hertz}", 1.8, "soft", raw=True)
         return room.adjusted(0, 5.8 * u, 0, 0)

@@ -61,7 +61,7 @@ class ScopeSheets:
         rows = tuple(
             Row((each.title, each.quantity.unit(metric)), each.key in scope.chosen) for each in scope.signals
         )
-        notes = (tr("Velocities and ripple are calculated over the time shown next to them."),)
+        notes = (tr("Velocities and ripple are calculated over the time shown next to their names."),)
         return Sheet(tr("CURVES"), ("", ""), (0.78, 0.22), rows, self.at, notes=notes, raw=frozenset({0}))
 
     def _trigger(self) -> Sheet:
@@ -89,7 +89,7 @@ class ScopeSheets:
             self.at,
             question=("LINE?" if trigger.when is When.LINE else "LEVEL?") if asked else "",
             text=self.entry.text,
-            notes=("The trigger freezes the curves once.",),
+            notes=("The trigger freezes the curves only once.",),
             raw=frozenset({1}),
         )
 
@@ -209,7 +209,7 @@ class ScopeSheets:
             line = line_of(self.entry.text)
             if line is None:
                 self.entry.text = refused(self.entry.text)
-                scope.desk.refuse(tr("enter the program line as a whole number, 1 or more"))
+                scope.desk.refuse(tr("enter the number of the program line as a whole number, 1 or more"))
                 return
             scope.set_trigger(replace(trigger, line=line))
             self.entry.text = ""
@@ -243,12 +243,12 @@ class ScopeSheets:
         """What keys do now."""
         if self.scope.side is Side.READINGS:
             if self.scope.cursors.shown:
-                return tr("ARROWS: MOVE CURSOR   TAB: OTHER CURSOR   Z: ZOOM   CTRL+ARROWS: PAN, STRETCH")
+                return tr("ARROWS: MOVE CURSOR   TAB: OTHER CURSOR   CTRL+ARROWS: PAN")
             if not self.scope.has_samples:
                 return NO_SAMPLES
-            return tr("UP/DOWN: SELECT CURVE   Z: ZOOM   CTRL+ARROWS: PAN, STRETCH   F2: FREEZE")
+            return tr("UP/DOWN: SELECT CURVE   Z: ZOOM   CTRL+ARROWS: PAN, STRETCH")
         if self.scope.side is Side.CURVES:
             return tr("ENTER: SHOW OR HIDE CURVE   ESC: BACK TO CURVES")
         if self.scope.side is Side.TRIGGER:
-            return tr("ENTER: NEXT CHOICE   LEVEL: TYPE IT   ESC: BACK TO CURVES")
+            return tr("ENTER: NEXT CHOICE   LEVEL: TYPE A NUMBER   ESC: BACK")
         return tr("F2: SAVE THE VIEW   ENTER: OPEN RECORD   ESC: BACK TO CURVES")

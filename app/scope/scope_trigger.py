@@ -16,9 +16,9 @@ FloatArray = npt.NDArray[np.float64]
 class When(Enum):
     """What releases it."""
 
-    OFF = tr("OFF: CURVES KEEP RUNNING")
-    RISES = tr("SIGNAL RISES THROUGH LEVEL")
-    FALLS = tr("SIGNAL FALLS THROUGH LEVEL")
+    OFF = tr("OFF: CURVES KEEP UPDATING")
+    RISES = tr("SIGNAL RISES ABOVE LEVEL")
+    FALLS = tr("SIGNAL FALLS BELOW LEVEL")
     BEYOND = tr("SIGNAL EXCEEDS ± LEVEL")
     ALARM = tr("ALARM OR E-STOP")
     LINE = tr("A PROGRAM LINE STARTS")

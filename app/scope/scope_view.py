@@ -27,6 +27,7 @@ from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel, Shown
 from app.screen.sheet_panel import ListPage, SheetPanel
 from core.executor.snapshot import Snapshot
+from core.message import Message, join_messages
 
 if TYPE_CHECKING:
     from app.scope.scope_chart_view import ScopeChart
@@ -214,7 +215,7 @@ class ScopePage(ListPage):
             "F4": Key("CURVES", partial(open_, Side.CURVES)),
             "F5": Key("CURSORS", scope.cursors_key, barred=scope.is_live),
             "F6": Key("FIT", scope.fit),
-            "F8": Key("ANALYSE", self._analyse),
+            "F8": Key("ANALYZE", self._analyse),
             "F9": Key("RECORDS", partial(open_, Side.FILES)),
         }
 
@@ -279,11 +280,11 @@ class ScopePage(ListPage):
             return NO_SAMPLES, "", True
         if self.curves.chart is None:
             return tr("OPENING …"), "", False
-        rate = tr("{rate} samples per second").format(rate=f"{sight.rate:g}")
-        span = tr("window {span}").format(span=span_words(scope.window.span))
+        rate = tr(Message("{rate} samples per second", rate=f"{sight.rate:g}"))
+        span = tr(Message("window {span}", span=span_words(scope.window.span)))
         what = tr("LIVE") if scope.is_live else scope.name or tr("FROZEN")
-        over = "  ·  " + tr("overlay: {name}").format(name=scope.over_name) if scope.over_name else ""
-        return f"{what}  ·  {rate}  ·  {span}{over}", scope.trigger_words, scope.armed
+        over = "  ·  " + tr(Message("overlay: {name}", name=scope.over_name)) if scope.over_name else ""
+        return join_messages("  ·  ", (what, rate, span, over)), scope.trigger_words, scope.armed
 
     def dress(self) -> None:
         """Other colours are in force."""
@@ -373,7 +374,7 @@ def _seen(sight: Sight) -> object:
 def span_words(seconds: float) -> str:
     """A span of time in the unit that suits it."""
     if seconds < 1.0:
-        return f"{formats.fixed(1000.0 * seconds, 0 if seconds >= 0.01 else 1)} ms"
+        return Message("{seconds} ms", seconds=formats.fixed(1000.0 * seconds, 0 if seconds >= 0.01 else 1))
     return f"{formats.fixed(seconds, 0 if math.isclose(seconds, round(seconds)) else 1)} s"
 
 

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from app.desk.formats import MM_PER_INCH
 from app.desk.translation import tr
+from core.message import Message
 from core.records import derived_figures
 from core.records.record import Channel
 
@@ -126,7 +127,7 @@ class Signal:
     @property
     def note(self) -> str:
         """Over what time it is taken; empty where it stands as it was sampled."""
-        return tr("over {ms} ms").format(ms=f"{1000.0 * self.span:g}") if self.span else ""
+        return tr(Message("{ms} ms window", ms=f"{1000.0 * self.span:g}")) if self.span else ""
 
     def values(self, times: FloatArray, column: FloatArray) -> FloatArray:
         """Its figures at these times, of the channel's; units inside."""
@@ -144,16 +145,24 @@ def _of_axis(letter: str, rotary: bool) -> list[Signal]:
         if rotary
         else (Quantity.POSITION, Quantity.ERROR, Quantity.VELOCITY, Quantity.ACCELERATION)
     )
-    demand, actual = f"{letter} demand", f"{letter} actual"
+    demand, actual = Message("{item} demand", item=letter), Message("{item} actual", item=letter)
     span = derived_figures.ACCELERATION_SPAN
     return [
         Signal(demand, tr("commanded position"), place, demand, letter),
         Signal(actual, tr("measured position"), place, actual, letter),
-        Signal(f"{letter} following error", tr("following error"), off, f"{letter} following error", letter),
-        _speed(f"{letter} demand velocity", tr("commanded velocity"), letter, demand, fast),
-        _speed(f"{letter} velocity", tr("velocity"), letter, actual, fast),
         Signal(
-            f"{letter} acceleration",
+            Message("{letter} following error", letter=letter),
+            tr("following error"),
+            off,
+            Message("{letter} following error", letter=letter),
+            letter,
+        ),
+        _speed(
+            Message("{letter} demand velocity", letter=letter), tr("commanded velocity"), letter, demand, fast
+        ),
+        _speed(Message("{letter} velocity", letter=letter), tr("velocity"), letter, actual, fast),
+        Signal(
+            Message("{letter} acceleration", letter=letter),
             tr("acceleration"),
             faster,
             actual,
@@ -161,7 +170,13 @@ def _of_axis(letter: str, rotary: bool) -> list[Signal]:
             derived_figures.acceleration,
             span,
         ),
-        Signal(f"{letter} load", tr("load"), Quantity.LOAD, f"{letter} load", letter),
+        Signal(
+            Message("{letter} load", letter=letter),
+            tr("load"),
+            Quantity.LOAD,
+            Message("{letter} load", letter=letter),
+            letter,
+        ),
     ]
 
 
@@ -209,8 +224,7 @@ def first_chosen(signals: Sequence[Signal]) -> tuple[str, ...]:
     As many as the list of figures shows on the smallest screen.
     """
     slides = [each.letter for each in signals if each.quantity is Quantity.ERROR][:3]
-    wanted = [f"{letter} following error" for letter in slides]
-    wanted += [f"{letter} velocity" for letter in slides]
+    wanted = [f"{letter} {name}" for name in ("following error", "velocity") for letter in slides]
     wanted += ["spindle command"] if len(slides) < 3 else []
     wanted += ["spindle speed"]
     there = {each.key for each in signals}

@@ -16,6 +16,7 @@ from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.scope.drawing import Drawing
 from core.machine.machine_model import SpindleModel
+from core.message import Message
 from core.records.record import Record
 from core.records.record_errors import AnalysisError
 from core.records.step_response import StepResponse, step_response
@@ -56,9 +57,13 @@ def last_run_up(record: Record, model: SpindleModel | None) -> SpindleResponse:
     if model is None:
         raise AnalysisError(tr("this machine has no spindle"), "no-spindle")
     nothing = np.full(len(record.times), np.nan)
-    asked, turned = (record.columns.get(f"spindle {name}", nothing) for name in ("command", "speed"))
+    asked, turned = (
+        record.columns.get(Message("spindle {name}", name=name), nothing) for name in ("command", "speed")
+    )
     if not np.isfinite(turned).any():
-        raise AnalysisError(tr("no device reports the measured spindle speed here"), "no-measured-speed")
+        raise AnalysisError(
+            tr("no device on this machine reports the measured spindle speed"), "no-measured-speed"
+        )
     known = np.isfinite(asked) & np.isfinite(turned)
     times, asked, turned = record.times[known], asked[known], turned[known]
     changes = np.flatnonzero(np.abs(np.diff(asked)) > _CHANGE)
@@ -71,7 +76,7 @@ def last_run_up(record: Record, model: SpindleModel | None) -> SpindleResponse:
         end = float(times[groups[number + 1][0]]) if number + 1 < len(groups) else np.inf
         return _response(times, asked, turned, first, last, min(end, times[last] + _MOST), model)
     raise AnalysisError(
-        tr("the spindle speed did not change in this time; start the spindle by program or in MDI"),
+        tr("the spindle speed did not change in this time range; start the spindle from a program or in MDI"),
         "no-step",
     )
 
@@ -112,7 +117,7 @@ def _stayed(step: StepResponse, times: FloatArray, model: SpindleModel) -> StepR
 def spindle_drawing(found: SpindleResponse) -> Drawing:
     """Asked and turned over seconds."""
     asked, turned = (np.column_stack([found.times, each]) for each in (found.asked, found.turned))
-    names = tr("SPINDLE") + "  rpm", "", "s"
+    names = Message("{title}  rpm", title=tr("SPINDLE")), "", "s"
     return Drawing(asked, (turned,), equal=False, lengths=False, names=names)
 
 
@@ -121,26 +126,44 @@ def spindle_sheet(title: str, found: SpindleResponse) -> Sheet:
     step, model = found.steps[0], found.model
     target = float(found.asked[-1])
     rows = (
-        (tr("SPEED"), f"{formats.fixed(target - step.way, 0)} → {formats.fixed(target, 0)} rpm"),
+        (
+            tr("SPEED"),
+            Message(
+                "{target} → {target2} rpm",
+                target=formats.fixed(target - step.way, 0),
+                target2=formats.fixed(target, 0),
+            ),
+        ),
         (tr("RISE, 10 TO 90 %"), _seconds(step.rise)),
-        (tr("ACCELERATION"), f"{formats.fixed(found.acceleration, 0)} rpm/s"),
+        (
+            tr("ACCELERATION"),
+            Message("{acceleration} rpm/s", acceleration=formats.fixed(found.acceleration, 0)),
+        ),
         (tr("OVERSHOOT"), f"{formats.fixed(100.0 * step.overshoot, 2)} %"),
         *(
-            (tr("WITHIN {share} AFTER").format(share=formats.percent(share)), _seconds(each.settling))
+            (
+                tr(Message("TIME TO SETTLE WITHIN {share}", share=formats.percent(share))),
+                _seconds(each.settling),
+            )
             for share, each in zip(_shares(model), found.steps, strict=True)
         ),
-        (tr("MEAN SPEED ERROR"), f"{formats.fixed(found.off, 1)} rpm"),
-        (tr("SPEED VARIATION"), f"{formats.fixed(found.swing, 1)} rpm"),
+        (tr("MEAN SPEED ERROR"), Message("{speed} rpm", speed=formats.fixed(found.off, 1))),
+        (tr("SPEED VARIATION"), Message("{speed} rpm", speed=formats.fixed(found.swing, 1))),
     )
     notes = (
         tr(
-            "The machine file assumes {accel} rpm/s; a speed within {share} of the target counts as reached."
-        ).format(accel=formats.fixed(model.accel, 0), share=formats.percent(model.at_speed)),
-        tr(
-            "Mean error and variation are from the last second. A dash: the speed did not stay "
-            "within the band."
+            Message(
+                "The machine file assumes {accel} rpm/s; a speed within {share} of the target "
+                "counts as reached.",
+                accel=formats.fixed(model.accel, 0),
+                share=formats.percent(model.at_speed),
+            )
         ),
-        tr("Last run-up. Calculated only, nothing was changed."),
+        tr(
+            "Mean error and variation are calculated from the last second. A dash means that the "
+            "speed did not stay within the band."
+        ),
+        tr("Last run-up. The values are only calculated; nothing was changed."),
     )
     return Sheet(title, ("", ""), _SHARES, tuple(map(Row, rows)), notes=notes, figures=frozenset({1}))
 

@@ -17,6 +17,7 @@ from app.screen.look import Look, Painter, draw_sign
 from app.screen.panel import Panel, Shown
 from core.alarms import CATALOGUE, Reaction
 from core.executor.snapshot import Alarm
+from core.message import Message, join_messages
 
 WRAP = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 WORDS = int(Qt.TextFlag.TextWordWrap.value)
@@ -65,8 +66,11 @@ class Notice(Panel):
 
     def _draw_alarm(self, painter: Painter, alarm: Alarm, *more: Alarm) -> None:
         """What came first is the cause of what came behind it more often than not."""
-        parts = [f"ALARM {alarm.number}: {alarm.text}", *([f"LINE {alarm.line}"] if alarm.line else [])]
-        room = self._head(painter, Tone.ALARM, "  ·  ".join(parts))
+        parts = [
+            Message("ALARM {number}: {alarms}", number=alarm.number, alarms=alarm.text),
+            *([Message("LINE {line}", line=alarm.line)] if alarm.line else []),
+        ]
+        room = self._head(painter, Tone.ALARM, join_messages("  ·  ", parts))
         if more:
             room = self._draw_more(painter, room, more)
         high = room.height()
@@ -82,7 +86,9 @@ class Notice(Panel):
         """The others in one line at the foot; the room that is left."""
         u = self.look.u
         foot = QRectF(room.x(), room.bottom() - 2.6 * u, room.width(), 2.6 * u)
-        text = "ALSO: " + "  ·  ".join(f"{each.number} {tr(each.text)}" for each in more)
+        text = Message(
+            "ALSO: {number}", number="  ·  ".join(f"{each.number} {tr(each.text)}" for each in more)
+        )
         painter.write(foot, text, 1.9, "alarm")
         return room.adjusted(0, 0, 0, -3.0 * u)
 
@@ -107,7 +113,7 @@ class Notice(Panel):
 class AlarmList(Panel):
     """Every alarm, E-stop and stop, newest on top: when, what, why, what to do."""
 
-    title = "ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SCOPE RECORD"
+    title = "ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD"
     _top, _marked = Shown(0), Shown(0)
 
     def __init__(self, look: Look, open_record: Callable[[str], None], parent: QWidget | None = None) -> None:
@@ -178,8 +184,8 @@ class AlarmList(Panel):
         painter.write(when, entry.at, 1.8, "soft", bold=False, raw=True, margin=1.0)
         if alarm.line:
             place = QRectF(row.x(), row.y() + 2.3 * u, _WHEN * u, 2.1 * u)
-            painter.write(place, f"line {alarm.line}", 1.8, "soft", bold=False)
-        what = f"{alarm.number}  ·  {alarm.text}"
+            painter.write(place, Message("line {line}", line=alarm.line), 1.8, "soft", bold=False)
+        what = Message("{number}  ·  {alarm}", number=alarm.number, alarm=alarm.text)
         painter.write(QRectF(left, row.y(), wide, 2.4 * u), what, 2.0, ink, fit=False)
         for y, ink, text in ((2.3, "text", exactly(alarm)), (4.3, "soft", alarm.remedy)):
             painter.write(QRectF(left, row.y() + y * u, wide, 2.1 * u), text, 1.8, ink, bold=False)

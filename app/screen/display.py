@@ -15,6 +15,8 @@ import sys
 import time
 from pathlib import Path
 
+from core.message import Message
+
 _PATIENCE = 15.0  # s for a display that does not answer
 _CHUNK = 1 << 14
 
@@ -78,17 +80,28 @@ def _why(said: str) -> str:
     """Of what Qt says, what a person can act on."""
     platform = os.environ.get("QT_QPA_PLATFORM", "")
     if "Could not find the Qt platform plugin" in said:
-        return f"Qt knows no platform QT_QPA_PLATFORM={platform}; take that variable away"
+        return Message(
+            "Qt does not have the platform plugin that QT_QPA_PLATFORM={platform} names; remove "
+            "this variable",
+            platform=platform,
+        )
     missing = _missing_library()
     if missing and (platform.startswith("xcb") or os.environ.get("DISPLAY")):
-        return f"{missing}; install the system packages that README.md names"
+        return Message("{missing}; install the system packages listed in README.md", missing=missing)
     tried = [f"{name}={os.environ[name]}" for name in ("WAYLAND_DISPLAY", "DISPLAY") if os.environ.get(name)]
     if not tried:
-        return "neither DISPLAY nor WAYLAND_DISPLAY is set; start it from a desktop, or set DISPLAY"
+        return "neither DISPLAY nor WAYLAND_DISPLAY is set; start turndesk from a desktop, or set DISPLAY"
     if "uthorization" in said:
-        return f"{' and '.join(tried)} does not let this user in; start it as the user of the desktop"
-    verb = "answers in time" if said.endswith("no answer") else "answers"
-    return f"no display {verb} at {' or '.join(tried)}; start X server or compositor, or correct that"
+        return Message(
+            ("{tried} does not accept this user; start turndesk as the user who is logged in to the desktop"),
+            tried=" and ".join(tried),
+        )
+    verb = "responds in time" if said.endswith("no answer") else "answers"
+    return Message(
+        "no display {verb} at {tried}; start the X server or compositor, or correct this setting",
+        verb=verb,
+        tried=" or ".join(tried),
+    )
 
 
 def _missing_library() -> str:

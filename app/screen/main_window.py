@@ -44,6 +44,7 @@ from app.screen.panel import FingerPanel
 from app.screen.theme import PALETTES
 from app.screen.window_frame import Frame
 from app.screen.window_layout import LEAST
+from core.message import Message
 
 FRAME_MS = 16  # at most 60 pictures a second
 SOON_MS = 48  # the same at rest, once nobody has touched anything of late, and something new was to be shown
@@ -173,7 +174,7 @@ class MainWindow(QWidget):
             action()
             self.refresh()
         elif frame is not None and key.startswith("F") and key[1:].isdecimal():
-            frame.desk.say(tr("{key} HAS NO FUNCTION ON THIS PAGE").format(key=key))
+            frame.desk.say(tr(Message("{key} HAS NO FUNCTION ON THIS PAGE", key=key)))
             self.refresh()
 
     def _table(self, desk: Desk) -> dict[str, Callable[[], None]]:
@@ -293,8 +294,8 @@ class MainWindow(QWidget):
     def forgotten(self, seconds: float) -> None:
         """Show that what was pressed while the screen stood still does nothing."""
         if self.frame is not None:
-            text = tr("SCREEN FROZE {seconds} S. KEYS IGNORED. WAIT A SECOND, THEN PRESS AGAIN")
-            self.frame.desk.warn(text.format(seconds=f"{seconds:.1f}"))
+            text = tr("SCREEN FROZE {seconds} S. KEYS IGNORED. WAIT 1 S, PRESS AGAIN")
+            self.frame.desk.warn(tr(Message(text, seconds=f"{seconds:.1f}")))
 
     def stops_at(self, event: QInputEvent) -> bool:
         """Whether a press is on something that stops the machine."""
@@ -341,7 +342,7 @@ class MainWindow(QWidget):
         """Return whether a key that changes how a cycle runs is typed on another page; say so."""
         if name not in OF_AUTOMATIC or frame.page is frame.automatic or name in frame.page.key_actions():
             return False
-        frame.desk.say(tr("{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2").format(key=name))
+        frame.desk.say(tr(Message("{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2", key=name)))
         self.refresh()
         return True
 
@@ -365,7 +366,7 @@ class MainWindow(QWidget):
         if not text.isprintable() or not text or not frame.has_field():
             return frame.has_field() and name_of(key_of(event), event.modifiers()) in STOP_LETTERS
         if not event.isAutoRepeat():
-            self._untaken = tr("{key} CANNOT BE ENTERED IN THIS FIELD").format(key=text)
+            self._untaken = tr(Message("{key} CANNOT BE ENTERED IN THIS FIELD", key=text))
             frame.desk.say(self._untaken)
             self.refresh()
         return True
@@ -436,7 +437,7 @@ class MainWindow(QWidget):
         """Not while a program is under way."""
         frame = self.frame
         if self.kiosk and frame is not None and not self._meant:
-            frame.desk.say(tr("KIOSK MODE: TURNDESK CLOSES WHEN THE COMPUTER SHUTS DOWN OR ON SIGTERM"))
+            frame.desk.say(tr("KIOSK MODE: SHUT DOWN THE COMPUTER TO CLOSE TURNDESK"))
             self.refresh()
             event.ignore()
             return

@@ -72,7 +72,12 @@ PAGES = (
         "write and prove programs",
     ),
     PageEntry(
-        MDI, "app.mdi.mdi_view.MdiPage", "app.mdi.mdi_model.MdiModel", "F4", "MDI", "one line at a time"
+        MDI,
+        "app.mdi.mdi_view.MdiPage",
+        "app.mdi.mdi_model.MdiModel",
+        "F4",
+        "MDI",
+        ("enter and run one line at a time"),
     ),
     PageEntry(JOG, "app.jog.jog_view.JogPage", "", "F5", "JOG", "jog: axes, steps, homing"),
     PageEntry(
@@ -98,7 +103,7 @@ PAGES = (
         "",
         "F8",
         "TOOLS",
-        "L, R, R2, oversizes, teeth, tool life; touch off length",
+        "L, R, R2, oversizes, teeth, tool life; touch off the tool length",
         _MILLS,
     ),
     PageEntry(
@@ -142,7 +147,7 @@ PAGES = (
         "app.part.part_sheet.PartSheet",
         "B",
         "PART",
-        "program findings, stock, silenced checks",
+        "program findings, stock, checks turned off",
         _LATHES,
     ),
     PageEntry(
@@ -169,7 +174,7 @@ PAGES = (
         "app.jobs.jobs_model.JobsModel",
         "J",
         "JOBS",
-        "which job is next, how many parts, what it needs",
+        "next job, number of parts, setup requirements",
     ),
     PageEntry(
         SHARED,
@@ -177,7 +182,7 @@ PAGES = (
         "app.sharing.sharing_model.SharingModel",
         "X",
         "SHARED",
-        "programs from other TurnDesks: newer versions, copied on request",
+        "programs from other TurnDesk controls: newer versions, copied on request",
     ),
     PageEntry(
         ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses", later=_ANALYSIS

@@ -12,6 +12,7 @@ from PySide6.QtGui import QWheelEvent
 from app.desk.translation import tr
 from app.screen.look import RIGHT, Painter
 from app.screen.panel import Panel, Shown
+from core.message import Message
 
 _LETTER = 1.1  # units: one of a sentence, about
 ROW, MM = 2.9, 7.0  # units from line to line, and at most so many millimetres
@@ -92,8 +93,8 @@ class Listing(Panel):
     def draw(self, painter: Painter) -> None:
         u = self.look.u
         count = len(self._lines)
-        title = f"PROGRAM  ·  {count} LINES" if count else "PROGRAM"
-        self.frame(painter, title if self.follows else f"{title}  ·  HOME: FOLLOW")
+        title = Message("PROGRAM  ·  {count} LINES", count=count) if count else "PROGRAM"
+        self.frame(painter, title if self.follows else Message("{title}  ·  HOME: FOLLOW", title=title))
         row = QRectF(0.3 * u, 2.5 * u, self.width() - 0.6 * u, self._high)
         number = self.top + 1
         for _ in range(self.rows):

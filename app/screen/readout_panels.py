@@ -14,6 +14,7 @@ from app.desk.readouts import UNKNOWN, AxisFigures, FeedFigures, PositionFigures
 from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, draw_sign, put
 from app.screen.panel import Panel, Shown
+from core.message import Message, join_messages
 
 LATHE_ROWS = 3
 ROOMY = 6.3  # units of height that figures of the full size need
@@ -35,7 +36,7 @@ class PositionPanel(Panel):
             self.frame(painter, "POSITION")
             return
         u = self.look.u
-        self.frame(painter, f"{view.readout.value}  ·  {view.unit}  ·  {view.x_words}")
+        self.frame(painter, join_messages("  ·  ", (view.readout.value, view.unit, view.x_words)))
         self._heading(painter, view)
         room = QRectF(0, 3.0 * u, self.width(), self.height() - 3.6 * u)
         high = min(room.height() / len(view.axes), 10.5 * u)
@@ -243,7 +244,7 @@ class HeadLine(Panel):
         if view is None:
             return
         position = view.position
-        self.frame(painter, f"{position.readout.value}  ·  {position.unit}  ·  {position.x_words}")
+        self.frame(painter, join_messages("  ·  ", (position.readout.value, position.unit, position.x_words)))
         u = self.look.u
         room = self.area().adjusted(1.2 * u, 2.2 * u, -1.2 * u, -0.6 * u)
         columns = max(LATHE_COLUMNS, len(position.axes))
@@ -270,12 +271,12 @@ class HeadLine(Panel):
         feed, spindle = view.feed, view.spindle
         cells = (
             (
-                f"FEED {percent(feed.override)}",
+                Message("FEED {override}", override=percent(feed.override)),
                 f"{feed.prefix} {feed.actual} {tr(feed.actual_unit)}".strip(),
                 0.36,
             ),
             (
-                f"SPINDLE {percent(spindle.override)}",
+                Message("SPINDLE {override}", override=percent(spindle.override)),
                 f"{tr(spindle.direction)} {spindle.rpm}/{spindle.actual}",
                 0.44,
             ),
@@ -357,9 +358,13 @@ def stop_words(view: MachineStatus) -> str:
     first = view.alarms[0] if view.alarms else view.stop
     if first is None:
         return ""
-    parts = [f"ALARM {first.number}: {first.text}" if view.alarms else f"STOP {first.number}: {first.text}"]
+    parts = [
+        Message("ALARM {number}: {alarms}", number=first.number, alarms=first.text)
+        if view.alarms
+        else Message("STOP {number}: {first}", number=first.number, first=first.text)
+    ]
     if first.line:
-        parts.append(f"LINE {first.line}")
+        parts.append(Message("LINE {line}", line=first.line))
     if len(view.alarms) > 1:
-        parts.append(f"AND {len(view.alarms) - 1} MORE")
-    return "  ·  ".join(parts)
+        parts.append(Message("AND {alarms_count} MORE", alarms_count=len(view.alarms) - 1))
+    return join_messages("  ·  ", parts)

@@ -15,6 +15,7 @@ from app.desk.desk import Desk
 from app.screen.look import Look, dress, load_fonts
 from app.screen.main_window import MainWindow
 from app.screen.theme import PALETTES
+from core.message import Message
 
 BuildDesk = Callable[[], Desk]
 _log = logging.getLogger(__name__)
@@ -79,7 +80,9 @@ class _Start:
         """A mistake of the screen, raised into Qt's loop: to the log whole, to the operator in a sentence."""
         _log.error("the screen has failed", exc_info=(kind, error, trace))
         if self._desk is not None:
-            self._desk.say(f"SCREEN FAULT (MACHINE OK): {kind.__name__}: {error}")
+            self._desk.say(
+                Message("SCREEN FAULT (MACHINE OK): {name}: {error}", name=kind.__name__, error=error)
+            )
 
     def close(self) -> None:
         """Stop the machine, end the threads, tell what went wrong."""

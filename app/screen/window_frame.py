@@ -39,6 +39,7 @@ from app.screen.station_dock import StationDock
 from app.screen.window_bars import FunctionKeys, LampStrip, NoticeRows, PromptLine, TitleLine
 from app.screen.window_layout import Places, Rect, low_places, places, unit, work_of
 from core.executor.snapshot import Snapshot, State
+from core.message import Message
 
 _SEARCHTO, _FROM_LINE_1 = ("F6", "SEARCHTO"), ("Y", "FROM LINE 1")
 GAP = 4  # pixels under the rows that stand
@@ -166,7 +167,7 @@ class Frame(QWidget):
         if name:
             self.open_record(name)
         else:
-            self.desk.say(tr("NO SCOPE RECORD FOR THIS ENTRY: ONLY ALARMS AND E-STOPS HAVE ONE"))
+            self.desk.say(tr("NO SCOPE RECORD: ONLY ALARMS AND E-STOPS HAVE ONE"))
 
     def toggle_log(self) -> None:
         """The log of alarms over the page, or away again."""
@@ -282,7 +283,7 @@ class Frame(QWidget):
         self.strip.mute = frozenset(lamp.key for lamp in lamps if self._is_dead(lamp.key))
         if self.page is self.automatic:
             self._show_readouts(snapshot, view, loaded)
-            go_on = tr("{start} TO CONTINUE").format(start=tr(self.desk.start_words))
+            go_on = tr(Message("{start} TO CONTINUE", start=tr(self.desk.start_words)))
             self.notice.show_notice(view.message, go_on, view.alarms)
         else:
             self.head.show_view(view)
@@ -374,8 +375,12 @@ class Frame(QWidget):
             rows.append(offered_job)
         if desk.not_kept():
             held = desk.waiting()
-            waits = tr("IN MEMORY ONLY, LOST IF TURNDESK EXITS NOW: {what}").format(what=held) if held else ""
-            rows.append(NoticeRow(tr("NOT SAVED: {why}").format(why=desk.not_kept()), waits))
+            waits = (
+                tr(Message("IN MEMORY ONLY; WILL BE LOST IF TURNDESK EXITS NOW: {what}", what=held))
+                if held
+                else ""
+            )
+            rows.append(NoticeRow(tr(Message("NOT SAVED: {why}", why=desk.not_kept())), waits))
         return tuple(rows)
 
     def _keys_of(self, snapshot: Snapshot, loaded: Loaded) -> tuple[tuple[str, str], ...]:

@@ -21,6 +21,7 @@ from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_approach import Choices
 from core.interpreter.restart.restart_point import NoRestart, RestartPoint
 from core.language.source import Source
+from core.message import Message
 
 if TYPE_CHECKING:
     from app.searchto.searchto_finder import Search
@@ -140,7 +141,7 @@ class SearchtoModel:
     def turn_pass(self, by: int) -> None:
         """To a later or an earlier pass of a line that is run more than once."""
         if self.count < 2:
-            self.say(tr("PRESS ENTER FIRST. ONLY LINES IN LOOPS OR SUBROUTINES HAVE PASSES"))
+            self.say(tr("PRESS ENTER FIRST. ONLY LOOP OR SUBROUTINE LINES REPEAT"))
             return
         number = max(1, min(self.number + by, self.count))
         if number != self.number:
@@ -202,9 +203,9 @@ class SearchtoModel:
         self._forget()
         self.clear()
         if not self._has_text:
-            self.say(tr("TYPE A TEXT FIRST. TO FIND A NUMBER AS TEXT, TYPE A QUOTATION MARK BEFORE IT"))
+            self.say(tr('TYPE A TEXT FIRST. TO FIND A NUMBER, TYPE " BEFORE IT'))
         elif not self.cursor.find(way):
-            self.say(tr("{text} NOT FOUND IN ANY LINE").format(text=self.cursor.wanted))
+            self.say(tr(Message("{text} NOT FOUND IN ANY LINE", text=self.cursor.wanted)))
 
     def search(self) -> None:
         """Rebuild the state of the cursor's line."""
@@ -229,9 +230,7 @@ class SearchtoModel:
         self._forget()
         self.clear()
         if self._out_by_hand:
-            self.say(
-                tr("ON A MILL, EVERY RESTART FIRST RETRACTS THE TOOL ALONG ITS AXIS. YOU CAN ALSO JOG IT OUT")
-            )
+            self.say(tr("RESTART FIRST RETRACTS TOOL ALONG ITS AXIS. OR JOG IT OUT"))
         elif (job := self.session.now.job) is not None:
             self.stage, self._of = SearchtoStage.SEARCHING, job
             self.finder.cut(job)
@@ -335,7 +334,7 @@ class SearchtoModel:
 
     def _not_searched(self, why: str) -> None:
         self.stage = SearchtoStage.CHOOSE
-        self.say(tr("SEARCH FAILED: {why}").format(why=why))
+        self.say(tr(Message("SEARCH FAILED: {why}", why=why)))
 
     def _found(self, answer: Answer) -> None:
         if isinstance(answer, RestartPoint):
@@ -362,7 +361,7 @@ class SearchtoModel:
         self.proved = proved
         if proved.proof.errors:
             self.stage = SearchtoStage.SHOWN
-            self.say(tr("WILL NOT START: {why}").format(why=proved.proof.errors[0]))
+            self.say(tr(Message("WILL NOT START: {why}", why=proved.proof.errors[0])))
             return
         self.stage, self._job, self._accepted = SearchtoStage.READY, job, False
         starts = Starts.RESTART if self.leaving is None else Starts.WAY_OUT
@@ -377,21 +376,19 @@ def searchto_prompt(
     if out and stage is SearchtoStage.SHOWN and not trouble:
         return tr("CHECK THE RETRACT PATH. F10: CONFIRM")
     if out and stage is SearchtoStage.READY:
-        return tr("RETRACT THE TOOL FROM THE PART: {start}. ESC: CANCEL").format(start=start)
+        return tr(Message("RETRACT THE TOOL FROM THE PART: {start}. ESC: CANCEL", start=start))
     words = {
         SearchtoStage.SEARCHING: tr("SEARCHING THE PROGRAM. ESC: CANCEL"),
         SearchtoStage.PROVING: tr("PROVING THE RESTART. ESC: CANCEL"),
         SearchtoStage.SHOWN: trouble or tr("CHECK STATE, PATH AND STARTS. F10: CONFIRM"),
         SearchtoStage.REFUSED: tr("CANNOT START FROM THIS LINE. F8, F9: NEAREST VALID LINE"),
-        SearchtoStage.READY: tr("RESUME AT THIS LINE: {start}. ESC: CANCEL").format(start=start),
+        SearchtoStage.READY: tr(Message("RESUME AT THIS LINE: {start}. ESC: CANCEL", start=start)),
     }
     return words.get(stage) or _choose(snapshot)
 
 
 def _choose(snapshot: Snapshot) -> str:
     if not snapshot.interrupted_line:
-        return tr("TYPE A LINE NUMBER OR TEXT, OR USE THE ARROWS   ENTER: REBUILD STATE")
-    words = tr(
-        "LINE {line} WAS RUNNING WHEN THE PROGRAM STOPPED. ENTER: REBUILD ITS STATE   F4: RETRACT ONLY"
-    )
-    return words.format(line=snapshot.interrupted_line)
+        return tr("TYPE A NUMBER OR TEXT, OR USE ARROWS   ENTER: REBUILD STATE")
+    words = tr("STOPPED IN LINE {line}. ENTER: REBUILD STATE   F4: RETRACT")
+    return tr(Message(words, line=snapshot.interrupted_line))

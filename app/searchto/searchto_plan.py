@@ -30,6 +30,7 @@ from core.interpreter.restart.restart_approach import (
 )
 from core.interpreter.restart.restart_point import Called, Interruption, LoopPass, RestartPoint
 from core.interpreter.restart.restart_retract import Retract, ToolPlace
+from core.message import Message
 
 # --- the way out of the part --------------------------------------------------------------------------
 
@@ -51,10 +52,14 @@ def way_out_of(cut: CutRecord, snapshot: Snapshot, job: Job, choices: Choices) -
     steps = way_out(cut, now, choices) if found.known else ()
     begin = Begin(Checkpoint(snapshot.modal), single=True, approach=steps)
     metric = snapshot.modal.metric
-    feed = f"{formats.feed(choices.modest, metric, False)} {formats.feed_unit(metric, False)}"
+    feed = Message(
+        "{modest} {metric}",
+        modest=formats.feed(choices.modest, metric, False),
+        metric=formats.feed_unit(metric, False),
+    )
     trouble = jog_words(found, tool)
     if not trouble and not steps:
-        trouble = tr("T{tool} IS ALREADY CLEAR OF THE PART").format(tool=tool)
+        trouble = tr(Message("T{tool} IS ALREADY CLEAR OF THE PART", tool=tool))
     return WayOut(begin, drawn(steps, snapshot, cut.offsets.get(tool, (0.0, 0.0))), feed, trouble)
 
 
@@ -91,25 +96,28 @@ def jog_words(found: Retract, tool: int) -> str:
         return ""
     if found.tool_place is ToolPlace.TAP:
         words = tr(
-            "T{tool} IS A TAP IN ITS THREAD: BACK IT OUT BY TURNING THE SPINDLE BY HAND, WITH Z FOLLOWING"
+            "T{tool} IS A TAP IN ITS THREAD: TURN THE SPINDLE BY HAND TO BACK IT OUT, AND LET Z FOLLOW"
         )
     elif found.tool_place is ToolPlace.THREAD:
-        words = tr("T{tool} IS IN A THREAD: JOG X OUT OF THE THREAD FIRST, NOT Z")
+        words = tr("T{tool} IS IN A THREAD: JOG X FIRST, NOT Z, UNTIL IT IS CLEAR")
     elif found.tool_place is ToolPlace.TURNED:
-        words = tr("C HAS TURNED SINCE T{tool} WENT IN: TURN THE SPINDLE FREE BY HAND, THEN JOG T{tool} OUT")
+        words = tr(
+            "C HAS TURNED SINCE T{tool} ENTERED THE PART: TURN THE SPINDLE BY HAND UNTIL THE "
+            "TOOL IS FREE, THEN JOG T{tool} OUT"
+        )
     else:
         words = _towards(*found.away)
-    return words.format(tool=tool, x="X+" if found.away[0] > 0 else "X-")
+    return tr(Message(words, tool=tool, x="X+" if found.away[0] > 0 else "X-"))
 
 
 def _towards(x: int, z: int) -> str:
     if x and z:
         return tr("T{tool} IS IN THE PART: JOG IT BACK OUT ALONG ITS ENTRY PATH, {x} AND Z+ TOGETHER")
     if x:
-        return tr("T{tool} IS IN THE PART: JOG {x} UNTIL CLEAR FIRST, NOT Z")
+        return tr("T{tool} IN THE PART: JOG {x} FIRST, NOT Z, UNTIL IT IS CLEAR")
     if z:
-        return tr("T{tool} IS IN THE PART: JOG Z+ UNTIL CLEAR FIRST, NOT X")
-    return tr("HOW T{tool} ENTERED THE PART IS UNKNOWN: JOG IT BACK OUT THE SAME PATH")
+        return tr("T{tool} IN THE PART: JOG Z+ FIRST, NOT X, UNTIL IT IS CLEAR")
+    return tr("TURNDESK DOES NOT KNOW HOW T{tool} ENTERED THE PART. JOG THE TOOL OUT ALONG ITS ENTRY PATH")
 
 
 TURNED = 0.01  # degrees
@@ -172,10 +180,10 @@ def _on_mill(
     begin = begin_on_mill(found, now, choices, machine)
     goal = goal_of(found, now, machine)
     places = tuple(
-        StateRow(tr("MACHINE {axis}").format(axis=name), _place(name, goal[name]), _place(name, at))
+        StateRow(tr(Message("MACHINE {axis}", axis=name)), _place(name, goal[name]), _place(name, at))
         for name, at in zip(machine.names, now.at, strict=True)
     )
-    no_way = tr("NO SAFE PATH: THE AXES OF THIS MACHINE HAVE NO LIMITS. START FROM THE FIRST LINE")
+    no_way = tr("NO SAFE PATH: AXES HAVE NO LIMITS. START FROM THE FIRST LINE")
     return Plan(
         found=found,
         begin=begin,
@@ -196,8 +204,12 @@ def _turned(found: RestartPoint, now: MachineNow, machine: Kinematics) -> str:
     names = {axis.name for axis in machine.rotaries}
     for name, wanted, at in zip(machine.names, found.axes, now.at, strict=True):
         if name in names and wanted is None and abs(at) > TURNED:
-            return tr("CHECK {axis}: IT IS AT {at} AND NO EARLIER LINE POSITIONED IT. IT STAYS THERE").format(
-                axis=name, at=formats.angle(at)
+            return tr(
+                Message(
+                    "CHECK {axis}: NO EARLIER LINE POSITIONED IT. IT STAYS AT {position}",
+                    axis=name,
+                    position=formats.angle(at),
+                )
             )
     return ""
 
@@ -220,20 +232,20 @@ def _pass(wanted: LoopPass | Called, was: LoopPass | Called | None) -> StateRow:
         label = tr("CALLED FROM LINE")
         now = str(was.line) if isinstance(was, Called) else NONE
         return StateRow(label, str(wanted.line), now)
-    label = tr("PASS OF LINES {first}-{last}").format(first=wanted.first, last=wanted.last)
+    label = tr(Message("REPETITION OF LINES {first}-{last}", first=wanted.first, last=wanted.last))
     same = isinstance(was, LoopPass) and was.first == wanted.first
     return StateRow(label, _of(wanted), _of(was) if same and isinstance(was, LoopPass) else NONE)
 
 
 def _of(loop: LoopPass) -> str:
-    return tr("{number} OF {count}").format(number=loop.number, count=loop.of)
+    return tr(Message("{number} OF {count}", number=loop.number, count=loop.of))
 
 
 def _left_out(found: RestartPoint) -> str:
     first, last = found.left_out
     if not first:
         return ""
-    return tr("LINES {first} TO {last} SKIPPED. MATERIAL REMAINS").format(first=first, last=last)
+    return tr(Message("LINES {first} TO {last} SKIPPED. MATERIAL REMAINS", first=first, last=last))
 
 
 def _rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tuple[StateRow, ...]:
@@ -270,15 +282,15 @@ def _words(step: ApproachStep, point: Checkpoint, language: str) -> str:
         case SpindleRun():
             way = tr("SPINDLE FORWARD") if modal.spindle > 0 else tr("SPINDLE REVERSE")
             speed = next(row.value for row in rows_of(point, language) if row.key == "speed")
-            return f"{way} {speed}"
+            return Message("{details} {speed}", details=way, speed=speed)
         case SpindleLock():
-            return tr("SPINDLE LOCKED AS C AXIS, TURNED TO ITS ANGLE")
+            return tr("SPINDLE LOCKED AS C AXIS AND TURNED TO ITS ANGLE")
         case SpindleOrient(angle=angle):
-            return tr("SPINDLE ORIENTED AT {angle}").format(angle=formats.angle(angle))
+            return tr(Message("SPINDLE ORIENTED AT {angle}", angle=formats.angle(angle)))
         case Coolant():
             return tr("COOLANT")
         case Output(name=name):
-            return tr("{name} ON").format(name=name.upper())
+            return tr(Message("{name} ON", name=name.upper()))
         case _:
             return ""
 
@@ -288,5 +300,5 @@ def _collet(point: Checkpoint, snapshot: Snapshot) -> str:
     if wanted == now:
         return ""
     if wanted:
-        return tr("COLLET IS OPEN BUT MUST BE CLOSED AT THIS LINE: RUN M12 IN MDI")
-    return tr("COLLET IS CLOSED BUT MUST BE OPEN AT THIS LINE: RUN M13 IN MDI")
+        return tr("COLLET OPEN BUT MUST BE CLOSED AT THIS LINE: RUN M12 IN MDI")
+    return tr("COLLET CLOSED BUT MUST BE OPEN AT THIS LINE: RUN M13 IN MDI")

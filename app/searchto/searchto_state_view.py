@@ -14,9 +14,10 @@ from app.screen.look import CENTRE, LEFT, Look, Painter
 from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER
 from app.searchto.searchto_plan import StateRow
+from core.message import Message
 
 DIFFERS = "≠"
-PASS_BEFORE, PASS_AFTER = "Pass before", "Pass after"
+PASS_BEFORE, PASS_AFTER = "Previous pass", "Next pass"
 FOLD = "Fold"
 _FOLD, _LARGE, _PLAIN, _LETTERS = 4.4, 4.0, 2.7, 2.6  # units
 _PASSES = 4.4  # units: what a finger hits
@@ -82,7 +83,7 @@ class StatePanel(Panel):
         other = tuple(row for row in shown.rows if row.differs)
         equal = tuple(row for row in shown.rows if not row.differs)
         fold = _FOLD * u if equal else 0.0
-        rows = (StateRow("", tr("AT THE LINE"), tr("NOW")), *other)
+        rows = (StateRow("", tr("AT THIS LINE"), tr("NOW")), *other)
         least = room.height() / (len(shown.rows) + 2) if shown.whole else 0.0
         high = min(_LARGE * u, (room.height() - fold) / len(rows)) if not least else min(_PLAIN * u, least)
         for number, row in enumerate(rows):
@@ -102,11 +103,17 @@ class StatePanel(Panel):
         """The row of what is equal, by name; a finger opens and closes it."""
         u = self.look.u
         painter.fill(box.adjusted(0, 0.2 * u, 0, -0.2 * u), "key")
-        words = tr("{count} IDENTICAL").format(count=len(equal))
+        words = tr(Message("{count} IDENTICAL", count=len(equal)))
         sign = "▲" if self.shown.whole else "▼"
-        painter.write(box.adjusted(u, 0, 0, 0), f"{sign}  Tab  {words}", 1.7, "accent", raw=True)
+        painter.write(
+            box.adjusted(u, 0, 0, 0),
+            Message("{sign}  Tab  {words}", sign=sign, words=words),
+            1.7,
+            "accent",
+            raw=True,
+        )
         names = ", ".join(tr(row.label) for row in equal)
-        painter.write(box.adjusted(19 * u, 0, -u, 0), names, 1.6, "soft", bold=False, raw=True, fit=False)
+        painter.write(box.adjusted(24 * u, 0, -u, 0), names, 1.6, "soft", bold=False, raw=True, fit=False)
         short = max(0.0, FINGER - box.height())
         self.place(box.adjusted(0, -short, 0, 0), partial(self._press, FOLD))
 

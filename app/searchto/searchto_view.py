@@ -38,6 +38,7 @@ from app.searchto.searchto_state_view import (
 from app.working_plane.plane_instant import at_line, plane_words
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
+from core.message import Message, join_messages
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
@@ -287,7 +288,7 @@ class SearchtoPage(ModelPage):
         model, line = self.model, self.model.cursor.line
         answer, plan = model.answer, model.plan
         if answer is not None:
-            title = tr("CANNOT START FROM LINE {line}").format(line=answer.line)
+            title = tr(Message("CANNOT START FROM LINE {line}", line=answer.line))
             near = (("F8", tr("PREVIOUS VALID"), answer.before), ("F9", tr("NEXT VALID"), answer.after))
             return StateShown(title, (), answer.why, tuple(self._near(*each) for each in near))
         if plan is not None:
@@ -295,21 +296,21 @@ class SearchtoPage(ModelPage):
         if model.leaving is not None:
             return StateShown(tr("RETRACT PATH"), (), model.leaving.trouble)
         if model.stage is SearchtoStage.SEARCHING:
-            words = tr("SEARCHING UP TO LINE {line}").format(line=line)
-            return StateShown(f"{words}  ·  {model.finder.worker.reached}")
-        return StateShown(tr("ENTER OR TAP: REBUILD STATE OF LINE {line}").format(line=line))
+            words = tr(Message("SEARCHING UP TO LINE {line}", line=line))
+            return StateShown(join_messages("  ·  ", (words, str(model.finder.worker.reached))))
+        return StateShown(tr(Message("ENTER OR TAP: REBUILD STATE OF LINE {line}", line=line)))
 
     def _state(self, plan: Plan) -> StateShown:
-        title, visit = tr("STATE AT LINE {line}").format(line=plan.found.line), plan.found.visit
+        title, visit = tr(Message("STATE AT LINE {line}", line=plan.found.line)), plan.found.visit
         if visit.of < 2:
             return StateShown(title, plan.rows, whole=self._whole)
-        words = tr("PASS {number} OF {count}").format(number=visit.number, count=visit.of)
+        words = tr(Message("EXECUTION {number} OF {count}", number=visit.number, count=visit.of))
         return StateShown(f"{title}, {words}", plan.rows, passes=words, whole=self._whole)
 
     def _near(self, key: str, label: str, line: int) -> NearestGood:
         if not line:
-            return NearestGood(key, tr("{which}: NONE").format(which=label), 0, "")
-        words = tr("{which}: LINE {line}").format(which=label, line=line)
+            return NearestGood(key, tr(Message("{which}: NONE", which=label)), 0, "")
+        words = tr(Message("{which}: LINE {line}", which=label, line=line))
         return NearestGood(key, words, line, self.model.cursor.lines[line - 1].strip())
 
     def _show_plan(self) -> None:
@@ -330,7 +331,7 @@ class SearchtoPage(ModelPage):
                 else tr("COOLANT WILL NOT START. F5: CHANGE")
             )
         if plan.way:
-            choices.append(tr("PATH: {legs}").format(legs=", ".join(plan.way)))
+            choices.append(tr(Message("PATH: {legs}", legs=", ".join(plan.way))))
         trouble = plan.trouble or plan.warning
         starts = plan.starts or (tr("AXES ONLY"),)
         self.starts.show_starts(starts, choices, trouble, confirmed=model.stage is SearchtoStage.READY)
@@ -348,7 +349,7 @@ class SearchtoPage(ModelPage):
 
     def _show_leaving(self, leaving: WayOut) -> None:
         self.path.show_approach(leaving.legs)
-        told = tr("RETRACT FROM PART AT {feed}").format(feed=leaving.feed)
+        told = tr(Message("RETRACT FROM PART AT {feed}", feed=leaving.feed))
         choices = () if leaving.trouble else (told, tr("H: FEED HOLD DURING RETRACT"))
         ready = self.model.stage is SearchtoStage.READY
         only = () if leaving.trouble else (tr("AXES ONLY"),)

@@ -14,6 +14,7 @@ from core.drawings.drawing_view import Front, Side, Zero
 from core.drawings.part_against_drawing import Comparison
 from core.drawings.profile_words import in_words
 from core.drawings.unit_check import UNITS
+from core.message import Message
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import MATERIALS
 from core.shapes.shape import Filled, Shape
@@ -58,7 +59,7 @@ def _written(filled: Filled, _setting: Setting, code: Code) -> None:
 
 PROFILE = Shape(
     "DRAWING",
-    "a profile from a DXF or SVG drawing: faced, roughed, finished, grooved",
+    "facing, roughing, finishing and grooving of a profile from a DXF or SVG drawing",
     (
         Field("FILE", "DRAWING", Kind.CHOICE),
         Field("DUNIT", "DRAWING UNIT", Kind.CHOICE),
@@ -75,7 +76,7 @@ PROFILE = Shape(
         Field("STOCK", "STOCK ON THE FACE", Kind.LENGTH, zero=True, only=_outside),
         Field("T", "TOOL", Kind.TOOL, most=32),
         Field("ROUGH", "ROUGHING DEPTH OF CUT", Kind.LENGTH, zero=True),
-        Field("COMP", "NOSE COMPENSATION D", Kind.OFFSET, zero=True, most=32),
+        Field("COMP", "NOSE COMPENSATION: D NUMBER", Kind.OFFSET, zero=True, most=32),
         Field("BLADE", "GROOVING TOOL", Kind.TOOL, 0.0, zero=True, most=32),
     ),
     _written,
@@ -226,7 +227,11 @@ class DrawingForm(ShapeForm):
         there = [p for p in plan.placed if (p.number and len(p.points) == 2 if by_line else p.net)]
         nearest = min(there, key=lambda p: _distance(point, p.points), default=None)
         if nearest is not None:
-            word, said = ("AXIS", f"LINE {nearest.number}") if by_line else ("CONTOUR", str(nearest.net))
+            word, said = (
+                ("AXIS", Message("LINE {line}", line=nearest.number))
+                if by_line
+                else ("CONTOUR", str(nearest.net))
+            )
             self._set(word, said)
 
 

@@ -29,6 +29,7 @@ from core.drawings.profile_program import ProfileProgram, profile_program
 from core.drawings.unit_check import UNITS, wrong_unit
 from core.drawings.work_limit import limited_work
 from core.geometry.lines_and_arcs import Arc, Element, Line
+from core.message import Message
 from core.shapes.shape_fields import Value, Values
 from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Dim, Outline, Sketch
@@ -98,7 +99,8 @@ class Planner:
             changed = path.stat().st_mtime
         except OSError as error:
             raise DrawingError(
-                f"{path.name} cannot be read: {error.strerror or error}.", "unreadable"
+                Message("{path} cannot be read: {cause}.", path=path.name, cause=error.strerror or error),
+                "unreadable",
             ) from error
         if self._known is None or self._known[:2] != (path, changed):
             self.reading = True
@@ -164,7 +166,14 @@ class _Making:
         self.choices["LAYER"] = (ALL, *(layer for layer in self.drawing.layers if layer and layer != ALL))
         layer = self.word("LAYER", ALL)
         if layer not in self.choices["LAYER"]:
-            raise DrawingError(f"{self.drawing.name} has no layer {layer}: choose another layer.", "no-layer")
+            raise DrawingError(
+                Message(
+                    "{drawing} has no layer {layer}: choose another layer.",
+                    drawing=self.drawing.name,
+                    layer=layer,
+                ),
+                "no-layer",
+            )
         return "" if layer == ALL else layer
 
     def _unit(self) -> float:
@@ -176,7 +185,8 @@ class _Making:
         said = self.word("DUNIT", own)
         if not said:
             raise DrawingError(
-                f"{self.drawing.name} does not specify its unit: choose MM or INCH.", "no-unit"
+                Message("{drawing} does not specify its unit: choose MM or INCH.", drawing=self.drawing.name),
+                "no-unit",
             )
         return UNITS.get(said, self.drawing.unit)
 
@@ -194,14 +204,24 @@ class _Making:
 
     def _net(self, layer: str) -> Net:
         if not self.nets or self.view is None:
-            where = f"on layer {layer}" if layer else "next to this axis"
+            where = Message("on layer {layer}", layer=layer) if layer else "for the selected axis"
             raise DrawingError(
-                f"{self.drawing.name} has no contour {where}: choose another layer or axis.", "no-contour"
+                Message(
+                    "{drawing} has no contour {place}: choose another layer or axis.",
+                    drawing=self.drawing.name,
+                    place=where,
+                ),
+                "no-contour",
             )
         number = self.word("CONTOUR", "1")
         if number not in self.choices["CONTOUR"]:
             raise DrawingError(
-                f"{self.drawing.name} has {len(self.nets)} contours: choose 1 to {len(self.nets)}.",
+                Message(
+                    "{drawing} has {nets_count} contours: choose 1 to {nets_count2}.",
+                    drawing=self.drawing.name,
+                    nets_count=len(self.nets),
+                    nets_count2=len(self.nets),
+                ),
                 "no-contour-number",
             )
         return self.nets[int(number) - 1]
@@ -212,7 +232,16 @@ class _Making:
         if "DUNIT" in self.asked.values:
             return
         if (wrong := wrong_unit(net, self.view.unit, self.asked.setting.shop.travel)) is not None:
-            words = f"{self.drawing.name} is {wrong[0]}, but would fit in {wrong[1]}: choose {wrong[1]}."
+            words = Message(
+                (
+                    "{drawing} is {wrong}, which is too large for this machine. With {wrong2} as "
+                    "its unit, the drawing fits: choose {wrong3}."
+                ),
+                drawing=self.drawing.name,
+                wrong=wrong[0],
+                wrong2=wrong[1],
+                wrong3=wrong[1],
+            )
             raise DrawingError(words, "wrong-unit")
 
     def _chosen(self, net: Net) -> Profile:
@@ -281,7 +310,7 @@ def pictured(plan: Plan, number: int, comparison: Comparison | None = None) -> S
     axis = Outline(((min(ends) - room, 0.0), (max(ends) + room, 0.0)), "axis")
     tops = [
         Dim(
-            f"CONTOUR {each}",
+            Message("CONTOUR {item}", item=each),
             max((p for o in plan.placed if o.net == each for p in o.points), key=lambda p: p[1]),
         )
         for each in range(1, len(plan.choices.get("CONTOUR", ())) + 1)

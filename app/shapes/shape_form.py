@@ -94,7 +94,7 @@ class ShapeForm:
         self.one = filled(self.shape, values, self.setting, rows)
         if not self.troubles:
             for refused in self._refusals():
-                self.troubles.setdefault(refused.word, self._with_own_label(refused))
+                self.troubles.setdefault(refused.word, refused.text)
         self.lines = [] if self.troubles else self.one.lines(self.setting)
         self.words = () if self.troubles else self.shape.says(self.one, self.setting)
 
@@ -103,14 +103,11 @@ class ShapeForm:
             return self.one.refusals(self.setting)
         except ArithmeticError:
             word = self.fields[min(self.marked, len(self.fields) - 1)].word
-            return [Refusal(word, ("These values do not make a shape: check the last one that you entered."))]
-
-    def _with_own_label(self, refused: Refusal) -> str:
-        """A sentence that begins with the field's label calls it as the form does, in its language."""
-        known = self.shape.field(refused.word)
-        if known is None or not refused.text.startswith(f"{known.label} "):
-            return refused.text
-        return tr(known.label) + refused.text.removeprefix(known.label)
+            return [
+                Refusal(
+                    word, ("These values do not make a valid shape: check the last value that you entered.")
+                )
+            ]
 
     def _value(self, word: str) -> Value | None:
         known, said = self.shape.field(word), self.typed[word]

@@ -15,6 +15,7 @@ from app.shapes.shape_form import ShapeForm
 from core.drawings.drawing_process import read_in_process
 from core.drawings.part_against_drawing import Comparison
 from core.language.source import Dialect, dialect_of
+from core.message import Message
 from core.shapes.pieces import (
     Piece,
     begins_subroutine,
@@ -100,7 +101,7 @@ class Shapes:
         ``table``: the forms of the list; of calculators and templates no piece of the text is opened.
         """
         if not written_in(name):
-            return tr("SHAPES NEED OMNITURN OR SINUMERIK: THIS PROGRAM IS IN ANOTHER LANGUAGE")
+            return tr("SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS")
         dialect = dialect_of(name)
         table = (HELPERS_OF if table is HELPERS else FORMS_OF)[dialect]
         self.new = replace(self.new, dialect=dialect)
@@ -121,10 +122,8 @@ class Shapes:
         found = unreadable(self.lines, line, self.new.dialect) if self.of_shapes else None
         if found is not None and line < len(self.lines):
             at, shape = found
-            text = tr(
-                "LINE {line}: THE COMMENT OF THIS {shape} WAS EDITED AND IS NOT READABLE. UNDO THE EDIT"
-            )
-            self.notice = text.format(line=at + 1, shape=tr(shape.name))
+            text = tr("LINE {line}: EDITED {shape} COMMENT CANNOT BE READ. UNDO THE EDIT")
+            self.notice = tr(Message(text, line=at + 1, shape=tr(shape.name)))
 
     @property
     def of_shapes(self) -> bool:
@@ -157,7 +156,7 @@ class Shapes:
             self._preview()
 
     def _no_shop(self, why: str) -> None:
-        self.notice = tr("TOOL DATA CANNOT BE READ: {why}").format(why=why)
+        self.notice = tr(Message("TOOL DATA CANNOT BE READ: {why}", why=why))
 
     def piece_at(self, line: int) -> Piece | None:
         """The piece that this line, from 0, belongs to."""
@@ -210,7 +209,7 @@ class Shapes:
         elif shape is PROFILE and not self.lines:
             self.at = 0  # it writes a head of its own
         elif not begun(self.lines, self.new.dialect):
-            self.notice = tr("THE PROGRAM NEEDS A HEAD FIRST. PRESS N AND WRITE THE HEAD")
+            self.notice = tr("WRITE THE PROGRAM HEAD FIRST. PRESS N AND FILL IN THE HEAD")
             return
         setting = setting_at(self.lines, self.at, self.shop, self.new)
         if shape is PROFILE:
@@ -235,14 +234,12 @@ class Shapes:
         self.notice, self.asked = "", None
         if piece.taken:
             words = ", ".join(each.label for each in piece.filled.fields if each.word in piece.taken)
-            self.notice = tr("EDITED BY HAND IN THE TEXT, NOW USED IN THE FORM: {fields}").format(
-                fields=words
+            self.notice = tr(
+                Message("THE FORM USES THESE VALUES EDITED BY HAND IN THE TEXT: {fields}", fields=words)
             )
         elif piece.foreign >= 0:
-            text = tr(
-                "LINE {line} WAS EDITED BY HAND. THE FORM SHOWS THE VALUES OF THE COMMENT. F2 ASKS FIRST"
-            )
-            self.notice = text.format(line=piece.foreign + 1)
+            text = tr("LINE {line} EDITED BY HAND. FORM SHOWS VALUES STORED IN COMMENT")
+            self.notice = tr(Message(text, line=piece.foreign + 1))
         self.form = ShapeForm(piece.filled.shape, piece.setting, piece)
         self._preview()
 
@@ -365,8 +362,8 @@ class Shapes:
             self._to_trouble(form)
         elif form.instead is not None and form.instead.foreign >= 0 and self.asked is None:
             count = form.instead.count
-            text = tr("F6: REPLACE {count} LINES EDITED BY HAND, FROM LINE {line}   ESC: KEEP THEM")
-            self.notice = text.format(count=count, line=form.instead.first + 1)
+            text = tr("F6: REPLACE {count} EDITED LINES FROM LINE {line}   ESC: KEEP")
+            self.notice = tr(Message(text, count=count, line=form.instead.first + 1))
             self.asked = self._write
         else:
             self._write()
@@ -391,9 +388,9 @@ class Shapes:
             moved = [_moved(each, grown) for each in self.pieces if each.filled.shape is not form.shape]
             text, stay = renewed(text, self.shop, moved)
             if stay == 1:
-                said = tr("1 SHAPE WAS EDITED BY HAND AND IS NOT CHANGED")
+                said = tr("1 SHAPE EDITED BY HAND WAS NOT CHANGED")
             elif stay:
-                said = tr("{count} SHAPES WERE EDITED BY HAND AND ARE NOT CHANGED").format(count=stay)
+                said = tr(Message("{count} SHAPES EDITED BY HAND WERE NOT CHANGED", count=stay))
         self.form, self.notice, self.asked = None, said, None
         self._take("\n".join(text) + "\n")
         self.at = behind
@@ -405,8 +402,11 @@ class Shapes:
         form = self.form
         if form is None or form.instead is None:
             return
-        self.notice = tr("F6: DELETE THE {count} LINES OF THIS SHAPE FROM THE TEXT   ESC: KEEP THEM").format(
-            count=form.instead.count
+        self.notice = tr(
+            Message(
+                "F6: DELETE THE {count} LINES OF THIS SHAPE   ESC: KEEP THEM",
+                count=form.instead.count,
+            )
         )
         self.asked = self._delete
 
@@ -470,7 +470,7 @@ class Shapes:
         self.planning.ask(lambda watch: self.planner.plan(asked, watch), planned, self._no_plan)
 
     def _no_plan(self, why: str) -> None:
-        self.notice = tr("THE DRAWING CANNOT BE PROCESSED: {why}").format(why=why)
+        self.notice = tr(Message("THE DRAWING CANNOT BE PROCESSED: {why}", why=why))
 
     def _try(self, form: DrawingForm, plan: Plan) -> None:
         if not form.lines:
@@ -493,24 +493,24 @@ class Shapes:
         if self.notice:
             return self.notice
         if self.form is None and not self.of_shapes:
-            return tr("PRESS A LETTER: OPEN CALCULATOR OR TEMPLATE   F10: TO THE TEXT")
+            return tr("LETTER: OPEN CALCULATOR OR TEMPLATE   F10: GO TO TEXT")
         if self.form is None:
-            return tr("PRESS A LETTER: OPEN SHAPE   RIGHT: SHAPES OF THIS PROGRAM   F10: TO THE TEXT")
+            return tr("LETTER: OPEN SHAPE   RIGHT: SHAPES IN PROGRAM   F10: TEXT")
         return self._waiting() if self.form.waits else tr(self.form.trouble or _keys_of(self.form))
 
     def _waiting(self) -> str:
         if not self.planner.reading:
             return tr("CALCULATING THE CONTOUR. PRESS F6 TO CANCEL")
         words = tr("READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL")
-        return words.format(seconds=self.planning.reached)
+        return tr(Message(words, seconds=self.planning.reached))
 
 
 def _keys_of(form: ShapeForm) -> str:
     if form.shape is PROFILE:
-        return tr("LEFT/RIGHT: CHANGE   TAP THE DRAWING: PICK CONTOUR OR AXIS   F2: WRITE TO PROGRAM")
+        return tr("LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS")
     if form.point >= 0:
-        return tr("X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE TO PROGRAM")
-    return tr("TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE TO PROGRAM")
+        return tr("X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE")
+    return tr("TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE")
 
 
 def _moved(piece: Piece, by: int) -> Piece:

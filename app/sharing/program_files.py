@@ -10,6 +10,7 @@ from pathlib import Path
 
 from app.desk.program_folder import ENDINGS
 from core.input_file import input_bytes
+from core.message import Message
 from core.sharing.version_record import MOST_BYTES
 from core.store.program_records import check_name
 from core.store.shared_versions import key_of
@@ -85,9 +86,12 @@ def _program_files(folder: Path) -> list[Path]:
 
 def _why_not(name: str, size: int, *, twice: bool) -> str:
     if twice:
-        return "another program here has the same name except for upper and lower case: rename one"
+        return (
+            "the name of another program on this control differs from the name of this "
+            "program only in upper and lower case: rename one of the programs"
+        )
     if size > MOST_BYTES:
-        return f"it is larger than {MOST_BYTES // 2**20} MB"
+        return Message("the file is larger than {most_bytes} MB", most_bytes=MOST_BYTES // 2**20)
     try:
         check_name(name)
     except StoreError as error:

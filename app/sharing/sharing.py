@@ -17,6 +17,7 @@ from app.programs.whole_file import FileError, write_new, write_whole
 from app.sharing.program_files import FilesOfMachine, SharedFile
 from core.coded_error import CodedError, error_code
 from core.input_file import input_bytes
+from core.message import Message
 from core.sharing.shared_place import Found, Published, SharedPlace
 from core.sharing.sharing_errors import Cause, SharingError
 from core.sharing.version_record import MOST_BYTES, DeskState, new_version
@@ -229,12 +230,15 @@ class Sharing:
             self._note(store, settled=False)
             family = _family(store, version.key)
             if version.id == family.here:
-                raise TakeError(f"{version.program} is already that version", "already-current")
+                raise TakeError(
+                    Message("{program} is already the selected version", program=version.program),
+                    "already-current",
+                )
             name = self._free_name(version)
             taken = version
             if not family.newer(version):
                 follows = (family.here, version.id)
-                why = f"copied from {version.desk}"
+                why = Message("copied from {machine}", machine=version.desk)
                 taken = new_version(name, text, follows, self.desk, utc_now(), why)
             store.write(partial(_keep, name, taken, text)).result()
             try:
@@ -257,14 +261,19 @@ class Sharing:
             here, others = family.versions.get(family.here), [each.id for each in family.elsewhere]
             if here is None or not others:
                 raise TakeError(
-                    "nothing to decide: no other control has changed this program", "nothing-to-settle"
+                    ("no decision is needed, because no other control has changed this program"),
+                    "nothing-to-settle",
                 )
             follows = (here.id, *others)
             with store.read() as connection:
                 text = shared_versions.text_of(connection, here.text)
             if text is None:
                 raise TakeError(
-                    f"the text of {here.program} differs from what was saved; save it again", "damaged-text"
+                    Message(
+                        "the text of {program} differs from the saved version; save the program again",
+                        program=here.program,
+                    ),
+                    "damaged-text",
                 )
             kept = new_version(here.program, text, follows, self.desk, utc_now(), "kept")
             store.write(partial(_kept, kept)).result()
@@ -274,7 +283,10 @@ class Sharing:
         """Of the file here that has the name in any letters; else that of the version. Raises TakeError."""
         names = [each for each in self._files.refused if key_of(each) == version.key]
         if names:
-            raise TakeError(f"{names[0]}: {self._files.refused[names[0]]}", "refused-name")
+            raise TakeError(
+                Message("{names}: {refused}", names=names[0], refused=self._files.refused[names[0]]),
+                "refused-name",
+            )
         file = self._files.look(settled=False).get(version.key)
         return file.name if file is not None else version.program
 
@@ -293,7 +305,7 @@ def _family(store: Store, key: str) -> Family:
 
 
 def _keep(name: str, version: SharedVersion, text: bytes, connection: sqlite3.Connection) -> None:
-    program_records.save(connection, name, text, f"shared by {version.desk}")
+    program_records.save(connection, name, text, Message("shared by {machine}", machine=version.desk))
     shared_versions.add(connection, [version])
 
 

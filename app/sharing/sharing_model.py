@@ -17,15 +17,17 @@ from app.desk.translation import tr
 from app.editor.versions import NoArchive, VersionHistory, lines_of
 from app.sharing.sharing import Shared, Sharing
 from core.access.access_table import Act
+from core.message import Message, join_messages
 from core.store.shared_versions import Family, SharedVersion, key_of
 from core.store.store_rows import VersionRow
 
 NO_PLACE = (
-    "NO SHARING PLACE IS SET. NAME A FOLDER, GIT REMOTE OR DATABASE UNDER [sharing] IN THE MACHINE FILE"
+    "NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER, GIT REMOTE OR "
+    "DATABASE UNDER [sharing] IN THE MACHINE FILE"
 )
-NOTHING_YET = "NO PROGRAM IS SHARED YET. PROGRAMS IN THE PROGRAM FOLDER ARE PUBLISHED AT THE NEXT CHECK"
+NOTHING_YET = "NOTHING SHARED YET. NEXT CHECK SHARES THE PROGRAM FOLDER"
 MARK_ONE = "SELECT A PROGRAM FIRST"
-BUSY = "STILL WORKING: WAIT UNTIL IT IS DONE"
+BUSY = "STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE"
 _STATES = {
     "new": ("NOT ON THIS CONTROL", Tone.READY),
     "newer": ("NEWER ON ANOTHER CONTROL", Tone.PAUSE),
@@ -84,7 +86,11 @@ class NewestElsewhere:
 
     def _row(self, number: int, version: SharedVersion) -> VersionRow:
         on = ", ".join(self.sharing.now.who_has(version.id))
-        who = f"{version.desk}  ·  {tr('ON {desks}').format(desks=on)}" if on else version.desk
+        who = (
+            join_messages("  ·  ", (version.desk, tr(Message("ON {desks}", desks=on))))
+            if on
+            else version.desk
+        )
         return VersionRow(number, version.text, version.saved, who, version.size)
 
 
@@ -166,12 +172,12 @@ class SharingModel:
             notes = [NO_PLACE]
         elif not rows and not notes:
             notes = [NOTHING_YET]
-        waiting = tr("{count} WAITING").format(count=self.shared.waiting) if self.shared.waiting else ""
+        waiting = tr(Message("{count} WAITING", count=self.shared.waiting)) if self.shared.waiting else ""
         where = self.sharing.place.name if self.sharing is not None else ""
-        title = "  ·  ".join(filter(None, (tr("SHARED PROGRAMS"), where, waiting)))
+        title = join_messages("  ·  ", filter(None, (tr("SHARED PROGRAMS"), where, waiting)))
         return Sheet(
             title,
-            ("PROGRAM", "STATE", "BY", "SAVED", "CONTROLS THAT HAVE IT"),
+            ("PROGRAM", "STATE", "BY", "SAVED", "AVAILABLE ON"),
             (0.24, 0.26, 0.14, 0.16, 0.2),
             rows,
             self.marked if rows else -1,
@@ -184,10 +190,8 @@ class SharingModel:
         seconds = self.silent_for()
         if self.sharing is None or seconds < _PATIENCE:
             return ""
-        words = tr(
-            "{name} HAS NOT RESPONDED FOR {seconds} S. PROGRAMS ARE SAVED LOCALLY AND SHARED WHEN IT RESPONDS"
-        )
-        return words.format(name=self.sharing.place.name, seconds=f"{seconds:.0f}")
+        words = tr("{name}: NO RESPONSE FOR {seconds} S. PROGRAMS STAY LOCAL FOR NOW")
+        return tr(Message(words, name=self.sharing.place.name, seconds=f"{seconds:.0f}"))
 
     def _row(self, key: str, family: Family) -> Row:
         state = self.shared.states[key]
@@ -208,7 +212,7 @@ class SharingModel:
             return "UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC"
         if not self._both:
             return "F2: USE SELECTED VERSION (ASKS FIRST)   ESC: AUTOMATIC"
-        return "F2: USE SELECTED VERSION   F3: KEEP LOCAL VERSION   BOTH ASK FIRST   ESC: AUTOMATIC"
+        return "F2: USE SELECTED VERSION   F3: KEEP LOCAL ONE   ESC: BACK"
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -231,10 +235,10 @@ class SharingModel:
         elif why := self._silence() or self._in_use(version.key):
             self.desk.say(why)
         elif here[1].here:
-            words = tr(
-                "PRESS Y TO USE {name} FROM {desk} (THE LOCAL TEXT STAYS STORED AS A VERSION), N TO CANCEL"
+            words = tr("Y: USE {name} FROM {desk} (LOCAL ONE STAYS STORED)   N: CANCEL")
+            self.desk.ask(
+                tr(Message(words, name=version.program, desk=version.desk)), lambda: self._take(version)
             )
-            self.desk.ask(words.format(name=version.program, desk=version.desk), lambda: self._take(version))
         else:
             self._take(version)
 
@@ -245,8 +249,14 @@ class SharingModel:
             self.desk.say(why)
             return
         sharing = self.sharing
-        done = tr("{name} IS NOW THE VERSION FROM {desk}").format(name=version.program, desk=version.desk)
-        change = f"program {version.program}: version from {version.desk} now in use"
+        done = tr(
+            Message("{name} IS NOW THE VERSION FROM {machine}", name=version.program, machine=version.desk)
+        )
+        change = Message(
+            "program {program}: version from {machine} now in use",
+            program=version.program,
+            machine=version.desk,
+        )
         self._work(lambda: sharing.take(version), done, change)
 
     @property
@@ -264,14 +274,16 @@ class SharingModel:
         if self.desk.refused(Act.PROGRAMS):
             return
         key, name = here[0], here[1].versions[here[1].here].program
-        words = tr("PRESS Y TO KEEP THE LOCAL {name} (OTHERS STAY STORED AS VERSIONS), N TO CANCEL")
-        self.desk.ask(words.format(name=name), lambda: self._keep(key, name))
+        words = tr("Y: KEEP LOCAL {name}, STORE OTHER VERSIONS   N: CANCEL")
+        self.desk.ask(tr(Message(words, name=name)), lambda: self._keep(key, name))
 
     def _keep(self, key: str, name: str) -> None:
         if self.sharing is not None and not self.desk.refused(Act.PROGRAMS):
             sharing = self.sharing
-            said = tr("{name}: LOCAL VERSION RETAINED").format(name=name)
-            self._work(lambda: sharing.keep(key), said, f"program {name}: local version retained")
+            said = tr(Message("{name}: LOCAL VERSION RETAINED", name=name))
+            self._work(
+                lambda: sharing.keep(key), said, Message("program {name}: local version retained", name=name)
+            )
 
     def _work(self, work: Callable[[], object], words: str, change: str) -> None:
         if self.worker.busy or self._silence():
@@ -292,13 +304,13 @@ class SharingModel:
         snapshot, loaded = self.desk.snapshot(), self.desk.session.now
         if snapshot.interrupted is not None and key_of(snapshot.interrupted.program) == key:
             words = tr("{name} IS INTERRUPTED. FINISH OR CANCEL IT FIRST")
-            return words.format(name=snapshot.interrupted.program)
+            return tr(Message(words, name=snapshot.interrupted.program))
         names = [Path(snapshot.program).name, loaded.name]
         if loaded.source is not None:
             names += [each.name for each in loaded.source.subprograms]
         used = next((name for name in names if key_of(name) == key), "")
         if used and snapshot.state in UNDER_WAY:
-            return tr("{name} IS RUNNING. LET IT END FIRST").format(name=used)
+            return tr(Message("{name} IS RUNNING. LET IT FINISH FIRST", name=used))
         return ""
 
     def next_version(self) -> None:

@@ -45,7 +45,7 @@ def streams_answer(data: bytes) -> Answer:
         raise ValueError("no DeviceStream")
     machine = {"machine": device.get("name") or ""}
     if next(_values(device, "Availability"), "AVAILABLE") == _UNAVAILABLE:
-        return Answer(None, tr("the agent reports the machine as unavailable"))
+        return Answer(None, tr("the MTConnect agent reports that the machine is unavailable"))
     faults = ". ".join(
         filter(None, (" ".join((each.text or "").split()) for each in _named(device, "Fault")))
     )

@@ -32,7 +32,14 @@ def alarm_drawing(record: Record) -> bytes:
     if alarm is not None:
         x = _LEFT + (float(alarm) - float(record.times[0])) / lasts * (WIDE - 2 * _LEFT)
         parts.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{_TOP}" y2="{HIGH - _FOOT}" stroke="#b3261e"/>')
-    parts.append(_text(WIDE - 220, HIGH - 6, f"±{most:.4f} mm, {lasts:.1f} s", "#5b626b"))
+    parts.append(
+        _text(
+            WIDE - 220,
+            HIGH - 6,
+            f"±{most:.4f} mm, {lasts:.1f} s",
+            "#5b626b",
+        )
+    )
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDE} {HIGH}" width="{WIDE}" height="{HIGH}">'
         f'<rect width="{WIDE}" height="{HIGH}" fill="#fbfcfd"/>{"".join(parts)}</svg>'

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 from app.desk.repeating_thread import RepeatingThread
 from app.shopfloor.status_file import Status
+from core.message import Message
 
 LOOK = 0.5  # s
 HELD = 100  # announcements that wait for somebody who does not answer; of more the oldest go
@@ -35,7 +36,13 @@ def happened(before: Mapping[str, Any], now: Status) -> Iterator[Announcement]:
     if was is None:
         return
     if _more(before.get("parts"), now.get("parts")):
-        yield Announcement("part", f"part {now.get('made')} of {now.get('program')} is done", now)
+        yield Announcement(
+            "part",
+            Message(
+                "part {number} of {program} is finished", number=now.get("made"), program=now.get("program")
+            ),
+            now,
+        )
     if now.get("next_barred") and not before.get("next_barred"):
         yield Announcement("tool-life", str(now["next_barred"]), now)
     if state != was:
@@ -49,7 +56,7 @@ def _more(before: object, now: object) -> bool:
 
 def _changed(was: str, state: str, now: Status) -> Iterator[Announcement]:
     why = str(now.get("stop") or now.get("waiting_for") or "")
-    text = f"{state}: {why}" if why else state
+    text = Message("{state}: {why}", state=state, why=why) if why else state
     if state in _FAULTS:
         yield Announcement("alarm", text, now)
     elif state in _STANDS - {"WAITING"}:

@@ -12,6 +12,7 @@ from core.alarms import CATALOGUE, Code, Reaction
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.snapshot import LINES, Alarm, Snapshot, State
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.ports import Unknown
 
 # --- Which alarm is a condition of what: slide, spindle drive, wires, interlocks, program, control.
@@ -39,7 +40,9 @@ def conditions_of(snapshot: Snapshot, keys: frozenset[str]) -> Mapping[str, tupl
     """
     active: dict[str, list[Condition]] = {key: [] for key in keys}
     for alarm in snapshot.alarms:
-        active[_place(alarm, keys)].append((FAULT, str(alarm.number), f"{alarm.text}: {alarm.cause}"))
+        active[_place(alarm, keys)].append(
+            (FAULT, str(alarm.number), Message("{alarm}: {cause}", alarm=alarm.text, cause=alarm.cause))
+        )
     if snapshot.interrupted is not None:
         active[SYSTEM].append((WARNING, "interrupted", snapshot.interrupted.words))
     stop = snapshot.stop

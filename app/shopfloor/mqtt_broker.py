@@ -16,6 +16,7 @@ from app.shopfloor.announcements import HELD, Announcement
 from app.shopfloor.network_causes import NO_ANSWER, Trouble, cause_of
 from app.shopfloor.status_file import Status
 from core.machine.shop_network_tables import AnnounceTable, broker_of
+from core.message import Message
 
 if TYPE_CHECKING:
     from paho.mqtt.properties import Properties
@@ -25,10 +26,13 @@ ONLINE, OFFLINE = "online", "offline"
 _SURE = 1  # quality of service: at least once
 KEEP_ALIVE = 15  # s; half as much again without a sign of us, and the broker tells our last will
 _SILENT = "Keep alive timeout"  # as paho calls it
-_NO_WORD = "it closed the connection without an MQTT response; check whether this is its port without TLS"
+_NO_WORD = (
+    "the server closed the connection without an MQTT response; check whether the server "
+    "uses this port without TLS"
+)
 _REFUSALS = {
-    "Not authorized": "it rejects the user or the password of [announce] (Not authorized)",
-    "Bad user name or password": "it rejects the user or the password of [announce]",
+    "Not authorized": ("the server rejects the user name or the password of [announce] (Not authorized)"),
+    "Bad user name or password": "the server rejects the user name or the password of [announce]",
 }
 _log = logging.getLogger(__name__)
 
@@ -64,7 +68,7 @@ class MqttBroker:
         client.on_connect = self._connected
         client.on_disconnect = self._disconnected
         host, port = broker_of(table.mqtt)
-        self._trouble = Trouble(_log, f"the broker {host}:{port}")
+        self._trouble = Trouble(_log, Message("the broker {host}:{port}", host=host, port=port))
         client.failed = lambda error: self._trouble.say(cause_of(error))
         client.connect_async(host, port, KEEP_ALIVE)
         client.loop_start()
@@ -142,4 +146,4 @@ class MqttBroker:
         if str(reason) == _SILENT:
             self._trouble.say(NO_ANSWER)
         else:
-            self._trouble.say("the connection is lost" if answered else _NO_WORD)
+            self._trouble.say("the connection was lost" if answered else _NO_WORD)

@@ -8,6 +8,8 @@ from http.client import BadStatusLine, InvalidURL, RemoteDisconnected
 from urllib.error import URLError
 from urllib.parse import urlsplit
 
+from core.message import Message
+
 LONGEST = 200  # characters of what the other side says that a sentence repeats
 NO_ANSWER = "no answer"
 _NO_TLS = frozenset({"WRONG_VERSION_NUMBER", "RECORD_LAYER_FAILURE", "HTTP_REQUEST"})
@@ -22,17 +24,20 @@ def cause_of(error: Exception) -> str:
         case TimeoutError() if cause.errno is None:
             words = NO_ANSWER
         case ssl.SSLCertVerificationError():
-            words = f"its certificate cannot be verified: {cause.verify_message}"
+            words = Message(
+                "the server certificate cannot be verified: {verify_message}",
+                verify_message=cause.verify_message,
+            )
         case ssl.SSLError() if cause.reason in _NO_TLS:
-            words = "it does not support TLS; use an address that begins with http://"
+            words = "the server does not support TLS; use an address that begins with http://"
         case RemoteDisconnected():
-            words = "it closed the connection without a response"
+            words = "the server closed the connection without a response"
         case BadStatusLine() if str(cause).startswith(_TLS_ALERT):
-            words = "it accepts TLS only; use an address that begins with https://"
+            words = "the server accepts TLS only; use an address that begins with https://"
         case BadStatusLine():
-            words = "its response is not HTTP"
+            words = "the server's response is not HTTP"
         case InvalidURL():  # its sentence has the address with the token
-            words = "its address contains characters that are not allowed in an address"
+            words = "the address contains characters that are not allowed in an address"
         case _:
             words = str(getattr(cause, "strerror", None) or cause)
     return one_line(words)

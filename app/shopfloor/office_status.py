@@ -10,6 +10,7 @@ from datetime import datetime
 from app.shopfloor.floor_reading import FloorReader
 from app.shopfloor.status_file import Status, status_of
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.store.part_cycles import StopRow
 
 STOPS = 6  # the newest
@@ -67,7 +68,7 @@ _NOTHING_KNOWN: Status = {
 def _words(snapshot: Snapshot) -> str:
     """Why it stands, in the words of the screen."""
     if snapshot.alarms:
-        return f"{snapshot.alarms[0].text}: {snapshot.alarms[0].cause}"
+        return Message("{alarms}: {cause}", alarms=snapshot.alarms[0].text, cause=snapshot.alarms[0].cause)
     if snapshot.message:
         return snapshot.message
     told = snapshot.stop.text if snapshot.stop is not None else ""

@@ -21,6 +21,7 @@ from app.desk.translation import tr
 from app.shopfloor.network_causes import cause_of, one_line
 from app.shopfloor.status_page import NOT_YET, OtherDesk
 from app.shopfloor.timed_http import timed_opener
+from core.message import Message
 
 EVERY = 3.0  # s
 LOOKED_AT = 15.0  # s after which nobody looks any more
@@ -68,7 +69,7 @@ def answered(address: str, question: str, most: int, read: Callable[[bytes], Ans
     except (URLError, HTTPException, OSError) as error:
         return OtherDesk(name, trouble=cause_of(error))
     except (ValueError, RecursionError):
-        return OtherDesk(name, trouble=tr("the server at this address is not a TurnDesk"))
+        return OtherDesk(name, trouble=tr("the server at this address is not a TurnDesk server"))
     shown = {key: value for key, value in status.items() if _fits(key, value)} if status is not None else None
     return OtherDesk(name, shown, one_line(trouble))
 
@@ -76,7 +77,9 @@ def answered(address: str, question: str, most: int, read: Callable[[bytes], Ans
 def _refused(error: HTTPError) -> str:
     if error.code in {HTTPStatus.FORBIDDEN, HTTPStatus.UNAUTHORIZED}:
         return tr("access token rejected")
-    return one_line(tr("the server responds with {answer}").format(answer=f"{error.code} {error.reason}"))
+    return one_line(
+        tr(Message(("the server returns HTTP status {answer}"), answer=f"{error.code} {error.reason}"))
+    )
 
 
 _TEXTS = frozenset({"machine", "state", "execution", "program", "stop", "waiting_for"})
@@ -157,4 +160,4 @@ def _if_fresh(desk: OtherDesk, age: float) -> OtherDesk:
     """Of a desk that was not heard for ``age`` s nobody knows how it is."""
     if age <= STALE:
         return desk
-    return OtherDesk(desk.address, trouble=tr("no response for {age} s").format(age=round(age)))
+    return OtherDesk(desk.address, trouble=tr(Message("no response for {age} s", age=round(age))))

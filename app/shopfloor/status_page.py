@@ -91,7 +91,9 @@ class StatusPage:
             lost=escape(tr("NO RESPONSE: the values below are old")),
             now=self._now(),
             part=_picture("part", "part.png", self.picture(), tr("The part made by the loaded program")),
-            alarm=_picture("alarm", "alarm.svg", self.alarm(), tr("Following errors before the last alarm")),
+            alarm=_picture(
+                "alarm", "alarm.svg", self.alarm(), tr("Following errors recorded before the last alarm")
+            ),
         )
         return "text/html; charset=utf-8", page.encode()
 
@@ -218,7 +220,7 @@ def _figures(status: Mapping[str, Any]) -> list[tuple[str, str]]:
         (tr("Program"), str(status.get("program") or "")),
         (tr("Line"), str(line) if line else ""),
         (tr("Parts"), str(made) if made is not None else ""),
-        (tr("Time left"), duration(left) if left is not None else ""),
+        (tr("Time remaining"), duration(left) if left is not None else ""),
         (tr("Last cycle"), duration(last) if last else ""),
         (tr("Spindle load"), f"{load} %" if load is not None else ""),
     ]

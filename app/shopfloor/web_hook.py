@@ -16,6 +16,7 @@ from app.shopfloor.announcements import HELD, Announcement
 from app.shopfloor.network_causes import Trouble, cause_of, host_of, one_line
 from app.shopfloor.status_file import Status
 from app.shopfloor.timed_http import Clock, timed_opener
+from core.message import Message
 
 _PATIENCE = 5.0  # s
 _LATER = frozenset({HTTPStatus.REQUEST_TIMEOUT, HTTPStatus.TOO_MANY_REQUESTS})
@@ -95,6 +96,10 @@ def posted(address: str, body: bytes, clock: Clock = time.monotonic) -> None:
 def _why(error: Exception) -> str:
     if isinstance(error, HTTPError):
         to = error.headers.get("Location", "") if error.code < 400 else ""
-        where = f", moved to {host_of(to)}: [announce] hook must name that address" if to else ""
-        return one_line(f"it answers {error.code} {error.reason}{where}")
+        where = (
+            Message(", redirected to {to}; set [announce] hook to that address", to=host_of(to)) if to else ""
+        )
+        return one_line(
+            Message("HTTP response {code} {reason}{place}", code=error.code, reason=error.reason, place=where)
+        )
     return cause_of(error)

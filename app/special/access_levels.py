@@ -17,6 +17,7 @@ from app.special.special_functions import SpecialFunction
 from core.access.access_table import RULES, Act, Level
 from core.access.pins import LONGEST, PinError, check_pin, hashed
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.store.people import NAME_LONGEST, PersonRow, check_person
 from core.store.store_errors import StoreError
 
@@ -67,7 +68,7 @@ class AccessLevels(SpecialFunction):
         """The people, or what each level may change."""
         if self.table:
             rows = tuple(Row((act.value, rule.level.name)) for act, rule in RULES.items())
-            heads, shares, raw = ("CHANGE TO", "LEVEL"), (0.65, 0.35), frozenset[int]()
+            heads, shares, raw = ("TYPE OF CHANGE", "LEVEL"), (0.65, 0.35), frozenset[int]()
         else:
             rows = tuple(self._row(each) for each in self.access.people.rows)
             heads, shares, raw = ("WHO", "LEVEL"), (0.65, 0.35), frozenset({0})
@@ -86,13 +87,13 @@ class AccessLevels(SpecialFunction):
     def _notes(self) -> tuple[str, ...]:
         if not self.access.people.on:
             return (
-                "Access levels are off: everyone may change everything, and no PIN is required.",
+                "Access levels are off: anyone can change anything, and no PIN is required.",
                 "F3 adds the first user, with SERVICE level, and turns access levels on.",
             )
         minutes = tr("After {minutes} minutes without input, the level returns to OPERATOR.")
         return (
-            minutes.format(minutes=self.access.minutes),
-            "E-stop, feed hold, Reset and drives off work at every level.",
+            tr(Message(minutes, minutes=self.access.minutes)),
+            "E-stop, feed hold, Reset and Drives Off work at every level.",
         )
 
     def _question(self) -> str:
@@ -100,24 +101,22 @@ class AccessLevels(SpecialFunction):
         if draft is None:
             return ""
         return {
-            "sign in": tr("PIN FOR {name}?").format(name=data(draft.name)),
+            "sign in": tr(Message("PIN FOR {name}?", name=data(draft.name))),
             "name": tr("NAME?"),
             "level": tr("LEVEL? 1 OPERATOR, 2 SETUP, 3 SERVICE"),
-            "pin": tr("NEW PIN FOR {name}?").format(name=data(draft.name)),
+            "pin": tr(Message("NEW PIN FOR {name}?", name=data(draft.name))),
             "again": tr("CONFIRM PIN:"),
         }[draft.step]
 
     def prompt(self) -> str:
         """What the keys do."""
         if self.service_reset.under_way:
-            return tr(
-                "ALL PINS WILL BE REMOVED WHEN THE TIME IS UP. TO CANCEL: RELEASE THE E-STOP OR SIGN IN"
-            )
+            return tr("PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL")
         if self.draft is not None:
             return tr("TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL")
         if not self.access.people.on:
             return tr("F3: ADD A USER AND TURN LEVELS ON   ESC: BACK TO THE LIST")
-        return tr("SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK TO THE LIST")
+        return tr("SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK")
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -205,7 +204,9 @@ class AccessLevels(SpecialFunction):
     def _named(self, draft: _Draft, text: str) -> None:
         draft.name = check_person(text)
         if self.access.people.named(draft.name) is not None:
-            raise StoreError(f"{draft.name} already exists; press F4 to change the PIN", "name-in-use")
+            raise StoreError(
+                Message("{draft} already exists; press F4 to change the PIN", draft=draft.name), "name-in-use"
+            )
         draft.step = "level" if self.access.people.on else "pin"
         self._ask(draft)
 
@@ -223,13 +224,17 @@ class AccessLevels(SpecialFunction):
     def _again(self, draft: _Draft, pin: str) -> None:
         if pin != draft.pin:
             self.draft = None
-            raise PinError("the two PINs differ; nothing was saved, enter the PIN again")
+            raise PinError("the two PINs do not match; nothing was saved. Enter the PIN again")
         self.escape()
         if draft.name != self.access.name and self.desk.refused(Act.PEOPLE):
             return  # who began it was away too long, or has signed out
         row = PersonRow(draft.name, draft.level, b"", b"")
-        said = tr("{name}: {level}, PIN SAVED").format(name=data(draft.name), level=tr(draft.level.name))
-        self._change(lambda: self._keep(row, pin), said, f"{draft.name} saved: {draft.level.name}, new PIN")
+        said = tr(Message("{name}: {level}, PIN SAVED", name=data(draft.name), level=tr(draft.level.name)))
+        self._change(
+            lambda: self._keep(row, pin),
+            said,
+            Message("{draft} saved: {level}, new PIN", draft=draft.name, level=draft.level.name),
+        )
 
     def _keep(self, row: PersonRow, pin: str) -> None:
         """On the worker. Raises StoreError."""
@@ -269,10 +274,10 @@ class AccessLevels(SpecialFunction):
         row = self.person
         if row is None or self.desk.refused(Act.PEOPLE):
             return
-        said = tr("{name} REMOVED").format(name=data(row.name))
+        said = tr(Message("{name} REMOVED", name=data(row.name)))
         work = partial(self.persistence.remove_person, row.name)
-        asked = tr("PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN").format(name=data(row.name))
-        self.desk.ask(asked, partial(self._change, work, said, f"{row.name} removed"))
+        asked = tr(Message("PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN", name=data(row.name)))
+        self.desk.ask(asked, partial(self._change, work, said, Message("{row} removed", row=row.name)))
 
     def next_minutes(self) -> None:
         """F8: another time after which the level falls back."""
@@ -288,7 +293,7 @@ class AccessLevels(SpecialFunction):
         if why:
             self.desk.say(why)
             return
-        question = tr("PRESS Y TO REMOVE ALL PINS IN 10 MINUTES (LOGGED), N TO KEEP THEM")
+        question = tr("Y: REMOVE ALL PINS IN 10 MINUTES (LOGGED)   N: KEEP THEM")
         self.desk.ask(question, self.service_reset.begin)
 
     def _reset_now(self) -> None:

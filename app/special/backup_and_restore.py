@@ -22,9 +22,10 @@ from app.special.special_functions import SpecialFunction
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.file_placing import all_to_disk
+from core.message import Message
 from core.store.backup_verdict import Verdict
 
-BARRED = "PROGRAM RUNNING. RESTORE AFTER IT HAS ENDED"
+BARRED = "PROGRAM RUNNING. WAIT UNTIL IT ENDS, THEN RESTORE"
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +100,7 @@ class BackupAndRestore(SpecialFunction):
                 (
                     place.label if not place.backup else f"     {place.label}",
                     self._does(place),
-                    f"{place.size / 1024:.0f} KB" if place.backup else "",
+                    Message("{size} KB", size=f"{place.size / 1024:.0f}") if place.backup else "",
                     place.at,
                 ),
                 None if place.backup else True,
@@ -123,18 +124,18 @@ class BackupAndRestore(SpecialFunction):
         verdict = self.verdicts.get(place)
         if verdict is None:
             return "CHECKING …"
-        return "NOTHING: BACKUP DAMAGED" if verdict.problem else "RESTORE: BACKUP IS INTACT"
+        return "NO ACTION: BACKUP IS DAMAGED" if verdict.problem else "RESTORE: BACKUP IS INTACT"
 
     def _notes(self) -> tuple[str, ...]:
         """Of the marked backup: what is wrong with it, or what a restore would change."""
-        kept = "Restoring saves a copy of the replaced data next to the new data."
+        kept = "A restore saves a copy of the replaced data next to the new data."
         place = self.places[self.marked] if self.places else None
         verdict = self.verdicts.get(place) if place is not None else None
         if verdict is None:
             return (kept,)
         if verdict.problem:
             return (verdict.problem, kept)
-        return (tr("Differences from the current data: {what}.").format(what=_other(verdict)), kept)
+        return (tr(Message("Differences from the current data: {what}.", what=_other(verdict))), kept)
 
     def keys(self) -> Mapping[str, Key]:
         """F4 looks for media again."""
@@ -143,7 +144,7 @@ class BackupAndRestore(SpecialFunction):
     def act(self) -> bool:
         """Back up to a place, or restore a backup."""
         if self.busy:
-            self.desk.say("STILL WORKING: WAIT UNTIL IT IS DONE")
+            self.desk.say("STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE")
         elif self.places:
             place = self.places[self.marked]
             (self._restore if place.backup else self._backup)(place)
@@ -161,7 +162,9 @@ class BackupAndRestore(SpecialFunction):
             try:
                 place.path.mkdir(parents=True, exist_ok=True)
             except OSError as error:
-                raise FileError(f"{place.path} CANNOT BE WRITTEN: {error.strerror}") from error
+                raise FileError(
+                    Message("{target} CANNOT BE WRITTEN: {cause}", target=place.path, cause=error.strerror)
+                ) from error
             self.persistence.backup(target)
             all_to_disk()
             return name
@@ -170,9 +173,7 @@ class BackupAndRestore(SpecialFunction):
 
     def _backed_up(self, name: str) -> None:
         self.busy = ""
-        self.desk.done(
-            tr("BACKUP {name} IS COMPLETE AND ON THE DISK. YOU CAN REMOVE THE USB STICK").format(name=name)
-        )
+        self.desk.done(tr(Message("BACKUP {name} IS COMPLETE. YOU CAN REMOVE THE USB STICK", name=name)))
         self.look()
 
     def _restore(self, place: Place) -> None:
@@ -186,8 +187,10 @@ class BackupAndRestore(SpecialFunction):
         if self.desk.snapshot().state in UNDER_WAY:
             self.desk.say(BARRED)
             return
-        asked = tr("PRESS Y TO RESTORE {name} OVER ALL CURRENT DATA ({what}), N TO CANCEL")
-        self.desk.ask(asked.format(name=place.label, what=_other(verdict)), lambda: self._restore_now(place))
+        asked = tr("Y: RESTORE {name} OVER ALL CURRENT DATA ({what})   N: CANCEL")
+        self.desk.ask(
+            tr(Message(asked, name=place.label, what=_other(verdict))), lambda: self._restore_now(place)
+        )
 
     def _restore_now(self, place: Place) -> None:
         if self.desk.snapshot().state in UNDER_WAY:
@@ -201,9 +204,11 @@ class BackupAndRestore(SpecialFunction):
         self.busy = ""
         self.desk.restoring = False
         where = kept.name if kept else "—"
-        self.persistence.note_change(f"restored; previous data saved as {where}")  # by whom is known still
+        self.persistence.note_change(
+            Message("restored; previous data saved as {place}", place=where)
+        )  # by whom is known still
         self.restored()
-        said = tr("RESTORED. PREVIOUS DATA SAVED AS {name}").format(name=where)
+        said = tr(Message("RESTORED. PREVIOUS DATA SAVED AS {name}", name=where))
         self.desk.done(said)
         self.look()
 
@@ -214,14 +219,14 @@ class BackupAndRestore(SpecialFunction):
 
     def prompt(self) -> str:
         """What Return does, for the prompt line."""
-        return "ENTER OR TAP: BACK UP TO A PLACE OR RESTORE A BACKUP   F4: LOOK FOR USB STICKS"
+        return "ENTER OR TAP: BACK UP OR RESTORE   F4: LOOK FOR USB STICKS"
 
 
 def _other(verdict: Verdict) -> str:
     """How many of what a restore would change, in words."""
     told = [f"{tr(name)} {count}" for name, count in verdict.differs]
     if verdict.older:
-        told.append(tr("rest not compared, backup is from an older version"))
+        told.append(tr("other data was not compared because the backup is from an older version"))
     return ", ".join(told) or tr("nothing")
 
 

@@ -10,10 +10,11 @@ from app.desk.sheet import Row, Sheet
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Alarm, Snapshot
 from core.machine.machine_model import Axis, Machine
+from core.message import Message
 from core.ports import Unknown
 
 OF_DRIVES = frozenset({"axis", "following", "in-position", "driver"})
-HOW = {"lathe": "X IS A RADIUS, FROM HOME", "mill": "FROM HOME"}
+HOW = {"lathe": "POSITIONS FROM HOME, X AS A RADIUS", "mill": "FROM HOME"}
 AXES = frozenset("XYZABC")
 OF_SPINDLE = frozenset({"spindle", "at-speed", "ignores-stop", "spindle-still", "thread-lost"})
 
@@ -36,13 +37,13 @@ class DriveStatus(SpecialFunction):
         unit = "MM" if metric else "INCH"
         largest = formats.length(snapshot.max_following_error, metric)
         return Sheet(
-            f"DRIVE STATUS  ·  {unit}  ·  {HOW[self.machine.kind]}",
+            Message("DRIVE STATUS  ·  {unit}  ·  {method}", unit=unit, method=HOW[self.machine.kind]),
             ("AXIS", "POWER", "HOME", "DEMAND", "ACTUAL", "FOLLOWING ERROR", "ALLOWED", "FAULT"),
             (0.08, 0.1, 0.12, 0.16, 0.16, 0.15, 0.13, 0.1),
             (*rows, self._spindle(snapshot)),
             notes=(
-                f"Largest following error since startup: {largest}",
-                f"Setpoint queue ran low: {snapshot.underruns} times",
+                Message("Largest following error since startup: {largest}", largest=largest),
+                Message("The setpoint queue ran low {underruns} times", underruns=snapshot.underruns),
             ),
             figures=frozenset({3, 4, 5, 6}),
         )

@@ -15,9 +15,10 @@ from core.access.access_table import Act
 from core.executor.commands import ForceOutput
 from core.executor.snapshot import Snapshot, State
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.ports import Unknown
 
-NOT_NOW = "SWITCH OUTPUTS BY HAND ONLY WITH NO PROGRAM RUNNING AND NOTHING MOVING"
+NOT_NOW = "SWITCH OUTPUTS ONLY WHEN NO PROGRAM RUNS AND NOTHING MOVES"
 AT_REST = frozenset({State.IDLE, State.DISABLED})
 # What asks for an input: codes of OmniTurn, and what the control itself looks at.
 _ASKED_IN_PROGRAMS = {"TB2-5": "M91 M92", "TB2-7": "M93 M94", "TB2-9": "M95"}
@@ -129,7 +130,12 @@ class InputsOutputs(SpecialFunction):
         name = tuple(self.machine.inputs)[self.marked]
         if name in OF_STATION:
             self.desk.say(
-                tr("{name} IS A BUTTON ON THE OPERATOR STATION OR FOLLOWS THE MACHINE").format(name=name)
+                tr(
+                    Message(
+                        "{name} IS SET BY THE OPERATOR STATION OR MACHINE, NOT HERE",
+                        name=name,
+                    )
+                )
             )
             return
         if self.desk.refused(Act.INPUTS):
@@ -137,9 +143,11 @@ class InputsOutputs(SpecialFunction):
         on = name not in self.desk.snapshot().inputs
         assert self.desk.set_input is not None
         self.desk.set_input(name, on)
-        self.desk.access.persistence.note_change(f"simulated input {name}: {'on' if on else 'off'}")
+        self.desk.access.persistence.note_change(
+            Message("simulated input {name}: {ending}", name=name, ending="on" if on else "off")
+        )
         words = tr("SIMULATED INPUT {name} IS ON") if on else tr("SIMULATED INPUT {name} IS OFF")
-        self.desk.done(words.format(name=name))
+        self.desk.done(tr(Message(words, name=name)))
 
     def _switch(self) -> None:
         if self.kind is not Kind.OUTPUTS:
@@ -162,24 +170,24 @@ class InputsOutputs(SpecialFunction):
             if on
             else tr("PRESS Y TO SWITCH {name} OFF, N TO LEAVE IT ON")
         )
-        self.desk.ask(asked.format(name=name), lambda: self._force(name, on))
+        self.desk.ask(tr(Message(asked, name=name)), lambda: self._force(name, on))
 
     def _force(self, name: str, on: bool) -> None:
         if not self.desk.refused(Act.OUTPUTS):  # the level may have fallen back meanwhile
             self.desk.post(ForceOutput(name, on))
             self.desk.access.persistence.note_change(
-                f"output {name} switched by hand: {('on' if on else 'off')}"
+                Message("output {name} switched {ending} by hand", name=name, ending="on" if on else "off")
             )
 
     def prompt(self) -> str:
         """What Return does here, for the prompt line."""
         if self.kind is Kind.INPUTS and self._simulated:
-            return tr("ENTER OR TAP: SWITCH THE SELECTED SIMULATED INPUT   F4: NEXT LIST")
+            return tr("ENTER OR TAP: SWITCH SIMULATED INPUT   F4: NEXT LIST")
         if self.kind is not Kind.OUTPUTS:
             return "F4: NEXT LIST   ESC: BACK TO THE LIST OF FUNCTIONS"
         if self.desk.snapshot().state not in AT_REST:
             return NOT_NOW
-        return "CHECK THE MACHINE FIRST   ENTER OR TAP: SWITCH THE SELECTED OUTPUT BY HAND"
+        return "CHECK THE MACHINE FIRST   ENTER OR TAP: SWITCH THE OUTPUT"
 
 
 def _state(on: bool) -> str:

@@ -17,6 +17,7 @@ from core.executor.signal_kinds import SignalKinds
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
 from core.machine.signal_table import SIGNALS, Signal
+from core.message import Message
 from core.store.store_errors import StoreError
 
 _SETTING = "sound"
@@ -56,7 +57,7 @@ class DeskSounds:
         """Once for each reason."""
         why = self.sounds.trouble
         if why and why != self._told:
-            self.desk.say(tr("NO SOUND: {why}").format(why=why))
+            self.desk.say(tr(Message("NO SOUND: {why}", why=why)))
         self._told = why or self._told
 
     def tried(self) -> None:
@@ -81,7 +82,12 @@ class DeskSounds:
         """Keep it. Raises StoreError."""
         before, self.volume, self.silent = self.volume, max(0, min(100, volume)), silent
         self.persistence.save_setting(_SETTING, {"volume": self.volume, "silent": sorted(silent)})
-        told = f"sound volume: {before} → {self.volume} %, muted: {', '.join(sorted(silent)) or 'nothing'}"
+        told = Message(
+            "sound volume: {before} → {volume} %, muted: {silent}",
+            before=before,
+            volume=self.volume,
+            silent=", ".join(sorted(silent)) or "nothing",
+        )
         self.persistence.note_change(told)
 
     def close(self) -> None:
@@ -113,9 +119,10 @@ class LampsAndSound(SpecialFunction):
         )
         volume = f"{self.sounds.volume} %" if self.sounds.volume else tr("OFF")
         lamps = ", ".join(self.machine.lamps) or tr(
-            "none in the machine file; define lamp_red, lamp_amber, lamp_green, lamp_buzzer under [io.out]"
+            "no lamps are defined in the machine file; add lamp_red, lamp_amber, "
+            "lamp_green, lamp_buzzer under [io.out]"
         )
-        notes = (tr("VOLUME: {volume}").format(volume=volume), tr("LAMPS: {names}").format(names=lamps))
+        notes = (tr(Message("VOLUME: {volume}", volume=volume)), tr(Message("LAMPS: {names}", names=lamps)))
         heads = ("DESCRIPTION", "LAMP", "SOUND")
         return Sheet("LAMPS AND SOUND", heads, (0.5, 0.32, 0.18), rows, self.marked, notes=notes,
                      raw=frozenset({0, 1, 2}))  # fmt: skip
@@ -146,7 +153,7 @@ class LampsAndSound(SpecialFunction):
             silent = self.sounds.silent ^ {kind}
             self._choose(self.sounds.volume, silent)
         else:
-            self.desk.say("A RUNNING CYCLE HAS A LAMP ONLY: THE MACHINE ITSELF IS AUDIBLE")
+            self.desk.say("A RUNNING CYCLE HAS A LAMP BUT NO SOUND")
         return True
 
     def _louder(self, by: int) -> None:
@@ -175,4 +182,4 @@ class LampsAndSound(SpecialFunction):
 
     def prompt(self) -> str:
         """What the keys do."""
-        return "ENTER: SOUND ON/OFF IN THE SELECTED ROW   F3: LOUDER   F4: TRY   ESC: BACK TO THE LIST"
+        return "ENTER: SOUND ON/OFF   F3: LOUDER   F4: TRY   ESC: BACK"

@@ -15,6 +15,7 @@ from app.desk.sheet import Entry, Key, Row, Sheet, following
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
+from core.message import Message
 from core.store.store_rows import EventRow
 
 SHOWN = 500
@@ -60,9 +61,13 @@ class LoggedEvents(SpecialFunction):
         if now >= self._next and not self.worker.busy:
             self._next = now + EVERY
             self.look()
-        found = f"{self.count} EVENTS" if self.count < SHOWN else f"THE LAST {SHOWN} EVENTS"
+        found = (
+            Message("{count} EVENTS", count=self.count)
+            if self.count < SHOWN
+            else Message("THE LAST {value} EVENTS", value=SHOWN)
+        )
         return Sheet(
-            f"EVENT LOG  ·  {self.filter}  ·  {found}",
+            Message("EVENT LOG  ·  {filter}  ·  {value}", filter=self.filter, value=found),
             ("WHEN", "KIND", "DESCRIPTION", "LINE"),
             (0.25, 0.13, 0.54, 0.08),
             self._rows,
@@ -126,8 +131,8 @@ class LoggedEvents(SpecialFunction):
     def prompt(self) -> str:
         """What the keys do now, for the prompt line."""
         if self.searching:
-            return "TYPE THE SEARCH TEXT   ENTER: KEEP IT   ESC: CLEAR IT"
-        return "F4: SEARCH   F5: NEXT FILTER   PAGE UP, PAGE DOWN: SCROLL   ESC: BACK"
+            return "TYPE THE SEARCH TEXT   ENTER: ACCEPT   ESC: CLEAR"
+        return "F4: SEARCH   F5: FILTER   PAGE UP/DOWN: SCROLL   ESC: BACK"
 
     def escape(self) -> bool:
         """Take the search away; False when there was none."""
@@ -149,5 +154,5 @@ def event_row(event: EventRow) -> Row:
     alarm = event.kind == "alarm"
     stop = read_back(event)
     said = tr(event.text) if stop is None else f"{stop.number} {tr(stop.text)}: {tr(cause_of(stop))}"
-    text = f"{said} ({event.who})" if event.who else said
+    text = Message("{text} ({who})", text=said, who=event.who) if event.who else said
     return Row((at, event.kind, text, line), True if alarm else None, Tone.ALARM)

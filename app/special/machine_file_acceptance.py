@@ -12,6 +12,7 @@ from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot, State
+from core.message import Message
 
 _OFF = frozenset({State.DISABLED, State.ESTOP, State.FAULT})
 
@@ -20,7 +21,7 @@ class MachineFileAcceptance(SpecialFunction):
     """F2 accepts, after asking once; until then the drives cannot be switched on."""
 
     name = "MACHINE FILE"
-    use = "changes since it was accepted"
+    use = "changes in the machine file since the file was last accepted"
 
     def __init__(self, desk: Desk, changes: FileChanges) -> None:
         super().__init__(desk)
@@ -37,10 +38,10 @@ class MachineFileAcceptance(SpecialFunction):
         note = (
             tr("Press F2 to accept; the drives stay off until then.")
             if rows
-            else tr("No changes since it was accepted.")
+            else tr("No changes since the machine file was accepted.")
         )
         return Sheet(
-            f"MACHINE FILE  ·  {self.changes.source}",
+            Message("MACHINE FILE  ·  {source}", source=self.changes.source),
             ("KEY", "WAS", "IS"),
             (0.44, 0.28, 0.28),
             rows,
@@ -57,7 +58,7 @@ class MachineFileAcceptance(SpecialFunction):
         if self.desk.refused(Act.MACHINE_FILE):
             return
         if self.desk.snapshot().state not in _OFF:
-            self.desk.say(tr("TURN THE DRIVES OFF BEFORE ACCEPTING THE CHANGED MACHINE FILE"))
+            self.desk.say(tr("TURN DRIVES OFF BEFORE ACCEPTING THE CHANGED MACHINE FILE"))
         else:
             question = tr("PRESS Y TO ACCEPT THE MACHINE FILE AS IT IS NOW, N TO CANCEL")
             self.desk.ask(question, self._accepted)
@@ -70,5 +71,5 @@ class MachineFileAcceptance(SpecialFunction):
     def prompt(self) -> str:
         """What the keys do, for the prompt line."""
         if self.changes.changes:
-            return tr("ARROWS: SCROLL THE CHANGES   F2: ACCEPT ALL   ESC: BACK TO THE LIST")
+            return tr("ARROWS: SCROLL THE CHANGES   F2: ACCEPT ALL   ESC: BACK")
         return super().prompt()

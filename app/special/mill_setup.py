@@ -10,6 +10,7 @@ from app.desk.translation import tr
 from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.job_setup import MillTool, Setup, ToolOffset
 from core.interpreter.working_plane import Corners
+from core.message import Message
 
 Length = Callable[[float], str]
 
@@ -27,17 +28,21 @@ class MillSetup:
     def stock_words(self, length: Length) -> str:
         """Length, width and height of the blank."""
         if self.blank is None:
-            return tr("not specified: the program has no BLK FORM")
+            return tr("stock not specified because the program has no BLK FORM")
         low, high = self.blank
-        return "BLK FORM  " + " × ".join(length(b - a) for a, b in zip(low, high, strict=True))
+        return Message("BLK FORM  {b}", b=" × ".join((length(b - a) for a, b in zip(low, high, strict=True))))
 
     def preset_words(self, length: Length) -> str:
         """Which preset is in force, and where it lies, from home."""
         if self.datum is None:
-            return f"{self.preset}   {tr('from the machine file')}"
+            return f"{self.preset}   {tr('zero point from the machine file')}"
         places = (f"{name} {length(at)}" for name, at in zip("XYZ", self.datum.origin, strict=True))
         turned = (f"{name} {rotary_angle(at)}°" for name, at in self.datum.zeros if at)
-        rotation = (f"ROT {rotary_angle(self.datum.rotation)}°",) if self.datum.rotation else ()
+        rotation = (
+            (Message("ROT {rotation}°", rotation=rotary_angle(self.datum.rotation)),)
+            if self.datum.rotation
+            else ()
+        )
         return f"{self.preset}   " + "   ".join((*places, *turned, *rotation))
 
     def tool_words(self, number: int) -> str:
@@ -48,7 +53,7 @@ class MillSetup:
             f"{tr('POINT ANGLE')} {row.point:g}°" if row.point else "",
             f"{row.teeth} {tr('teeth')}" if row.teeth else "",
         )
-        return ", ".join(filter(None, words)) or tr("no name in the tool table")
+        return ", ".join(filter(None, words)) or tr("no tool name in the tool table")
 
 
 def mill_setup(setup: Setup, blank: Corners | None) -> MillSetup | None:

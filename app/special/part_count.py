@@ -10,6 +10,7 @@ from app.desk.persistence import Persistence
 from app.desk.translation import tr
 from core.executor.commands import Command, PartsMade, SetSwitch
 from core.executor.snapshot import Snapshot, State
+from core.message import Message
 from core.store.store_errors import StoreError
 
 MOST = 9_999_999
@@ -65,7 +66,7 @@ class PartCounter:
             self.count += snapshot.parts - self._seen
             if self.reached and not self.of_job:  # the end of a job is told with what comes next
                 words = tr("TARGET REACHED: {count} OF {target} PARTS")
-                say(words.format(count=self.count, target=self.target))
+                say(tr(Message(words, count=self.count, target=self.target)))
         self._seen = snapshot.parts
         self._tell_executor(snapshot, post)
         self._stop_at(snapshot, post, say)
@@ -83,7 +84,7 @@ class PartCounter:
         if last and snapshot.cycle_repeat and snapshot.state in _RUNNING and self._announced != self.count:
             self._announced = self.count
             post(SetSwitch("cycle_repeat", False))
-            say("LAST PART OF THE TARGET: CYCLE REPEAT IS SWITCHED OFF")
+            say("THIS PART REACHES THE TARGET. CYCLE REPEAT IS NOW OFF")
 
     def _load(self, name: str) -> None:
         self.program, self.count, self.target, self._announced = name, 0, 0, -1
@@ -104,19 +105,35 @@ class PartCounter:
         """So many parts, 0: no target. Raises StoreError when it is not kept."""
         before, self.target, self._announced = self.target, target, -1
         self.persistence.save_setting(_key(self.program), target or None)
-        self.persistence.note_change(f"part target of {self.program}: {before} → {target}")
+        self.persistence.note_change(
+            Message(
+                "part target of {program}: {before} → {target}",
+                program=self.program,
+                before=before,
+                target=target,
+            )
+        )
 
     def correct(self, by: int) -> None:
         """Parts that were made otherwise, or are scrap. Raises StoreError when it is not kept."""
         self.count, self._announced = self.count + by, -1
         self.persistence.correct_parts(self.program, by)
-        self.persistence.note_change(f"part count of {self.program}: {self.count - by} → {self.count}")
+        self.persistence.note_change(
+            Message(
+                "part count of {program}: {count} → {count2}",
+                program=self.program,
+                count=self.count - by,
+                count2=self.count,
+            )
+        )
 
     def reset(self) -> None:
         """The count to nought. Raises StoreError when it is not kept."""
         before, self.count, self._announced = self.count, 0, -1
         self.persistence.reset_parts(self.program)
-        self.persistence.note_change(f"part count of {self.program}: {before} → 0")
+        self.persistence.note_change(
+            Message("part count of {program}: {before} → 0", program=self.program, before=before)
+        )
 
 
 def _key(program: str) -> str:

@@ -13,6 +13,7 @@ from app.special.part_count import MOST, PartCounter
 from app.special.special_functions import FigureFunction
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
+from core.message import Message
 
 RESET = "PRESS Y TO SET THE COUNT TO ZERO, N TO KEEP IT"
 NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
@@ -35,10 +36,12 @@ class PartsCounterFunction(FigureFunction):
         aim = counter.aim
         left = max(0, aim - counter.count)
         to_come = formats.duration(left * last) if aim and last else formats.NOTHING
-        stop = tr("{count} (SET BY JOB)").format(count=aim) if counter.of_job else str(aim or tr("NO TARGET"))
+        stop = (
+            tr(Message("{count} (SET BY JOB)", count=aim)) if counter.of_job else str(aim or tr("NO TARGET"))
+        )
         rows = (
             Row(("PARTS MADE", str(counter.count)), counter.reached or None),
-            Row(("STOP AT", stop)),
+            Row(("PART TARGET", stop)),
             Row(("PARTS TO GO", str(left) if aim else formats.NOTHING)),
             Row(("LAST CYCLE", formats.duration(last) if last else formats.NOTHING)),
             Row(("TIME FOR REMAINING PARTS", to_come)),
@@ -53,8 +56,8 @@ class PartsCounterFunction(FigureFunction):
             notes=(
                 "Cycle Repeat is switched off during the last part. Enter 0 to remove the target.",
                 (
-                    "NO COUNT: a dry run, not counted as a part. A restart that skips lines is not "
-                    "counted either."
+                    "NO COUNT is for dry runs: the cycle is not counted as a part. A restart that skips "
+                    "lines is not counted either."
                 ),
             ),
             figures=frozenset({1}),
@@ -63,8 +66,8 @@ class PartsCounterFunction(FigureFunction):
     def keys(self) -> Mapping[str, Key]:
         """Corrections of the count, the count to nought, and runs that are no parts."""
         return {
-            "F2": Key("ONE MORE", partial(self.correct, 1)),
-            "F3": Key("ONE LESS", partial(self.correct, -1)),
+            "F2": Key("COUNT +1", partial(self.correct, 1)),
+            "F3": Key("COUNT -1", partial(self.correct, -1)),
             "F4": Key("RESET", self.reset),
             "F5": Key("NO COUNT", partial(self.desk.switch, "no_count")),
         }
@@ -76,7 +79,7 @@ class PartsCounterFunction(FigureFunction):
         elif self.desk.refused(Act.COUNTS):
             return
         elif self.counter.count + by < 0:
-            self.desk.done("THE COUNT IS ZERO")
+            self.desk.done("THE COUNT IS ALREADY ZERO")
         else:
             self.desk.clear()
             self.desk.keep(lambda: self.counter.correct(by))
@@ -88,7 +91,7 @@ class PartsCounterFunction(FigureFunction):
         elif self.desk.refused(Act.COUNTS):
             return
         elif self.counter.count == 0:
-            self.desk.done("THE COUNT IS ZERO")
+            self.desk.done("THE COUNT IS ALREADY ZERO")
         else:
             self.desk.ask(RESET, partial(self.desk.keep, self.counter.reset))
 
@@ -98,7 +101,7 @@ class PartsCounterFunction(FigureFunction):
             self.desk.say(NO_PROGRAM)
             return False
         if self.counter.of_job:
-            self.desk.say("REJECTED: THE ACTIVE JOB HAS ITS OWN COUNT. CHANGE IT IN JOBS (SHIFT+F6)")
+            self.desk.say("ACTIVE JOB HAS ITS OWN COUNT. CHANGE IT IN JOBS (SHIFT+F6)")
             return False
         if self.desk.refused(Act.COUNTS):
             return False
@@ -106,19 +109,25 @@ class PartsCounterFunction(FigureFunction):
         if 0 < target <= self.counter.count:
             made = self.counter.count
             self.entry.text = refused(self.entry.text)
-            self.desk.say(tr("REJECTED: {made} PARTS ALREADY MADE. F4: RESET COUNT").format(made=made))
+            self.desk.say(tr(Message("REJECTED: {count} PARTS ALREADY MADE. F4: RESET COUNT", count=made)))
             return False
         self.desk.keep(lambda: self.counter.set_target(target))
         return True
 
     def prompt(self) -> str:
         """How to set the target, for the prompt line."""
-        return "TYPE THE NUMBER OF PARTS   ENTER: ACCEPT   ESC: BACK TO THE LIST"
+        return "TYPE THE NUMBER OF PARTS   ENTER: ACCEPT   ESC: BACK"
 
 
 def whole_number(text: str) -> int:
     """A number of parts as it was typed. Raises EntryError."""
     value = value_of(text)
     if value != int(value) or not 0 <= value <= MOST:
-        raise EntryError(f"{value:g} is not a valid number of parts; enter a whole number from 0 to {MOST}")
+        raise EntryError(
+            Message(
+                "{value} is not a valid number of parts; enter a whole number from 0 to {maximum}",
+                value=f"{value:g}",
+                maximum=MOST,
+            )
+        )
     return int(value)

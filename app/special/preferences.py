@@ -10,17 +10,17 @@ from core.executor.snapshot import Snapshot
 
 WORDS = {
     "units": "DISPLAY UNITS",
-    "readout": "LARGE READOUT SHOWS",
+    "readout": "VALUE IN LARGE READOUT",
     "language": "LANGUAGE",
     "theme": "COLORS",
-    "dock": "OPERATOR STATION ON THE SCREEN",
-    "latched": "PALM BUTTONS ON THE SCREEN",
+    "dock": "ON-SCREEN OPERATOR STATION",
+    "latched": "ON-SCREEN PALM BUTTONS",
     "full_screen": "WINDOW",
     "first_job": "FIRST JOB CARD",
 }
 YES_NO = {
     "dock": ("SHOWN", "HIDDEN"),
-    "latched": ("ONE AFTER THE OTHER", "BOTH TOGETHER"),
+    "latched": ("PRESS ONE AFTER THE OTHER", "PRESS BOTH TOGETHER"),
     "full_screen": ("FULL SCREEN", "WINDOW"),
     "first_job": ("SHOWN", "HIDDEN"),
 }
@@ -50,7 +50,7 @@ class ScreenPreferences(SpecialFunction):
             rows,
             self.marked,
             notes=(
-                "The control uses millimeters now." if metric else ("The control uses inches now."),
+                "The control is set to millimeters." if metric else ("The control is set to inches."),
                 ("Display units change only the values shown; entries are always in the control's unit."),
             ),
         )
@@ -69,15 +69,13 @@ class ScreenPreferences(SpecialFunction):
         name = tuple(WORDS)[self.marked]
         settings = self.desk.settings
         if name == "dock" and self.desk.station is None:
-            self.desk.say("THIS MACHINE HAS ITS OWN OPERATOR STATION: NONE IS SHOWN ON THE SCREEN")
+            self.desk.say("NOT AVAILABLE: THIS MACHINE HAS A REAL OPERATOR STATION")
             return
         if name == "dock" and settings.now.dock and self.desk.hands.estop_pressed:
             self.desk.say("RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION")
             return
         if name == "latched" and not self.desk.one_hand:
-            self.desk.say(
-                tr("PALM BUTTONS LATCH ONLY WHEN EVERYTHING IS SIMULATED: HERE REAL HARDWARE WOULD TURN")
-            )
+            self.desk.say(tr("PALM BUTTONS CANNOT LATCH HERE: REAL HARDWARE WOULD TURN"))
             return
         if name == "first_job":
             self.desk.first_job = FirstJob()

@@ -17,6 +17,7 @@ from app.special.special_functions import FigureFunction
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.language.sinumerik.sinumerik_words import MOST_R, REACH
+from core.message import Message
 from core.store.store_errors import StoreError
 
 
@@ -63,10 +64,10 @@ class RParameters(FigureFunction):
             text=self.entry.text,
             notes=(
                 (
-                    "Every SINUMERIK program starts with these values; values that it sets itself apply "
-                    "until it ends."
+                    "Every SINUMERIK program starts with these values. Values that the program assigns "
+                    "apply until the program ends."
                 ),
-                "A parameter with no value counts as 0, with a warning.",
+                "A parameter without a value is treated as 0, and a warning is shown.",
             ),
             figures=frozenset({1}),
         )
@@ -89,7 +90,7 @@ class RParameters(FigureFunction):
         low, high = REACH["R"]
         if not low <= value <= high:
             raise EntryError(
-                tr("R PARAMETERS RANGE FROM {low} TO {high}").format(low=f"{low:g}", high=f"{high:g}")
+                tr(Message("R PARAMETERS RANGE FROM {low} TO {high}", low=f"{low:g}", high=f"{high:g}"))
             )
         return self._keep(self.marked, value)
 
@@ -108,7 +109,7 @@ class RParameters(FigureFunction):
         self._worker.queue(
             partial(self._persistence.keep_settings, {R_PARAMETERS: kept or None}),
             lambda _none: self._is_kept(told),
-            lambda why: self.desk.say(tr("NOT SAVED: {why}").format(why=why)),
+            lambda why: self.desk.say(tr(Message("NOT SAVED: {why}", why=why))),
         )
         return True
 

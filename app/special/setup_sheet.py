@@ -14,6 +14,7 @@ from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroO
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.part.clamping import Clamping
 from core.part.stock import Stock
 from core.part.tool_shape import ToolKind, ToolShape
@@ -70,16 +71,18 @@ class SetupSheet:
         if self.errors == 1:
             return tr("1 ERROR: this program will not run as it is")
         if self.errors:
-            return tr("{count} ERRORS: this program will not run as it is").format(count=self.errors)
+            return tr(Message("{count} ERRORS: this program will not run as it is", count=self.errors))
         if self.warnings == 1:
             return tr("1 WARNING: check it before the first part")
         if self.warnings:
-            return tr("{count} WARNINGS: check them before the first part").format(count=self.warnings)
+            return tr(Message("{count} WARNINGS: check them before the first part", count=self.warnings))
         return ""
 
     def length(self, mm: float) -> str:
         """A length with its unit, as the program counts."""
-        return f"{mm:.3f} mm" if self.metric else f"{mm / _MM_PER_INCH:.4f} {tr('in')}"
+        return (
+            Message("{unit} mm", unit=f"{mm:.3f}") if self.metric else f"{mm / _MM_PER_INCH:.4f} {tr('in')}"
+        )
 
     @property
     def stock_words(self) -> str:
@@ -91,10 +94,10 @@ class SetupSheet:
             return tr("unknown")
         round_ = f"Ø {self.length(2.0 * stock.radius)}"
         if stock.bore:
-            round_ += ", " + tr("bore {size}").format(size=self.length(2.0 * stock.bore[0][1]))
+            round_ += ", " + tr(Message("bore {size}", size=self.length(2.0 * stock.bore[0][1])))
         if stock.given:
             return f"{round_} ({stock.given})"
-        return tr("{size} at least (assumed, not specified)").format(size=round_)
+        return tr(Message("at least {size} (assumed, not specified)", size=round_))
 
     @property
     def held_words(self) -> tuple[tuple[str, str], ...]:
@@ -103,13 +106,13 @@ class SetupSheet:
             return ((tr("PRESET"), self.mill.preset_words(self.length)),)
         held = self.clamping
         if held is None or not held.diameter:
-            return ((tr("STICK-OUT"), tr("unknown: the machine file specifies nothing under [clamping]")),)
+            return ((tr("STICK-OUT"), tr("unknown because the machine file has no values under [clamping]")),)
         chuck = f"Ø {self.length(held.diameter)}"
         if held.jaws:
             size = f"Ø {self.length(held.jaw_diameter)} × {self.length(held.jaws)}"
-            chuck += ", " + tr("jaws {size}").format(size=size)
+            chuck += ", " + tr(Message("jaws {size}", size=size))
         if held.max_rpm:
-            chuck += ", " + tr("max. {rpm} rpm").format(rpm=f"{held.max_rpm:.0f}")
+            chuck += ", " + tr(Message("max. {rpm} rpm", rpm=f"{held.max_rpm:.0f}"))
         rows = [(tr("STICK-OUT"), self.length(held.stick_out)), (tr("CHUCK"), chuck)]
         if held.quill:
             quill = f"Ø {self.length(held.quill)}, {held.point:g}°, Z {self.length(held.centre)}"
@@ -124,7 +127,7 @@ class SetupSheet:
         if shape is None:
             return tr("unknown")
         words = ", ".join(filter(None, self._of_shape(shape)))
-        return tr("{tool} (assumed)").format(tool=words) if tool.assumed else words
+        return tr(Message("{tool} (assumed)", tool=words)) if tool.assumed else words
 
     def _of_shape(self, shape: ToolShape) -> Iterator[str]:
         yield kind_word(shape.kind)
@@ -146,7 +149,7 @@ class SetupSheet:
         if self.mill is not None:
             return mill_offset_words(tool.offset, self.length)
         x, z, r = (self.length(mm) for mm in (tool.offset.x, tool.offset.z, tool.offset.nose_radius))
-        return tr("X (radius) {x}   Z {z}   R {r}").format(x=x, z=z, r=r)
+        return tr(Message("X (radius) {x}   Z {z}   R {radius}", x=x, z=z, radius=r))
 
     def stop_word(self, stop: Stop) -> str:
         """The stop as the program's language writes it."""

@@ -20,13 +20,14 @@ from core.access.access_table import Act
 from core.executor.job import Job
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.store.program_settings import notes_key
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
     from app.special.setup_sheet_work import MadeSheet
 
-NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN SETUP SHEET"
+NO_PROGRAM = "CHOOSE A PROGRAM FIRST: EACH PROGRAM HAS ITS OWN SETUP SHEET"
 MOST_NOTES, LONGEST = 30, 200
 _PAPER = "paper"  # the setting
 _WIDTHS = (0.15, 0.63, 0.22)
@@ -104,7 +105,7 @@ class SetupSheetFunction(SpecialFunction):
         rows = tuple(self._rows())
         self.marked = max(0, min(self.marked, len(rows) - 1))
         return Sheet(
-            f"SETUP SHEET  ·  {name}" if name else "SETUP SHEET",
+            Message("SETUP SHEET  ·  {name}", name=name) if name else "SETUP SHEET",
             ("", "", ""),
             _WIDTHS,
             rows,
@@ -143,12 +144,15 @@ class SetupSheetFunction(SpecialFunction):
     def _sheet_of_places(self) -> Sheet:
         rows = tuple(Row((place.label, str(place.path))) for place in self.places)
         return Sheet(
-            "SETUP SHEET  ·  WRITE WHERE?",
+            "SETUP SHEET  ·  SAVE TO WHICH LOCATION?",
             ("WHERE", "FOLDER"),
             (0.35, 0.65),
             rows,
             self.marked,
-            notes=(self.busy or "Press Enter to write the sheet there, as PDF and as HTML.",),
+            notes=(
+                self.busy
+                or ("Press Enter to save the setup sheet to the selected location as PDF and HTML."),
+            ),
             raw=frozenset({0, 1}),
         )
 
@@ -173,7 +177,9 @@ class SetupSheetFunction(SpecialFunction):
             self._keep_note(self.entry.text.strip())
             return True
         if len(self.entry.text) >= LONGEST and len(key) == 1:
-            self.desk.say(tr("NOTES CAN HAVE UP TO {most} CHARACTERS. ADD ANOTHER NOTE").format(most=LONGEST))
+            self.desk.say(
+                tr(Message("NOTES CAN HAVE UP TO {maximum} CHARACTERS. ADD ANOTHER NOTE", maximum=LONGEST))
+            )
             return True
         return self.entry.type(key)
 
@@ -213,7 +219,9 @@ class SetupSheetFunction(SpecialFunction):
         if not self.program:
             self.desk.say(NO_PROGRAM)
         elif len(self.notes) >= MOST_NOTES:
-            self.desk.say(tr("LIMIT OF {most} NOTES REACHED. CHANGE ONE OF THEM").format(most=MOST_NOTES))
+            self.desk.say(
+                tr(Message("LIMIT OF {maximum} NOTES REACHED. CHANGE AN EXISTING NOTE", maximum=MOST_NOTES))
+            )
         else:
             self._changing, self.entry = None, Entry(words=True)
 
@@ -248,7 +256,9 @@ class SetupSheetFunction(SpecialFunction):
                 self.notes, notes
             )  # before they are kept: whoever reads them behind that sees these
             self.persistence.save_setting(notes_key(program), notes or None)
-            self.persistence.note_change(f"notes of {program}: {told}")
+            self.persistence.note_change(
+                Message("notes for {program}: {details}", program=program, details=told)
+            )
             self._notes_of = program, notes
 
         self.desk.clear()
@@ -264,17 +274,19 @@ class SetupSheetFunction(SpecialFunction):
 
         def save() -> None:
             self.persistence.save_setting(_PAPER, other.value)
-            self.persistence.note_change(f"paper: {before.value} → {other.value}")
+            self.persistence.note_change(
+                Message("paper size: {before} → {other}", before=before.value, other=other.value)
+            )
 
         self.desk.keep(save)
 
     def prompt(self) -> str:
         """What the keys do."""
         if self.entry is not None:
-            return "TYPE THE NOTE   ENTER: SAVE   ESC: LEAVE UNCHANGED"
+            return "TYPE THE NOTE   ENTER: SAVE   ESC: EXIT WITHOUT SAVING"
         if self.places:
-            return "ENTER: WRITE THE SHEET TO THE SELECTED PLACE   F4: LOOK FOR USB STICKS"
-        return "F2: ADD A NOTE   F6: WRITE THE SHEET AS PDF AND HTML   ESC: BACK TO THE LIST"
+            return "ENTER: SAVE SHEET HERE   F4: RESCAN FOR USB STICKS"
+        return "F2: ADD A NOTE   F6: SAVE SHEET AS PDF AND HTML   ESC: BACK"
 
     # --- making it, on the worker --------------------------------------------------------------------
 
@@ -317,7 +329,7 @@ class SetupSheetFunction(SpecialFunction):
 
     def _write(self, place: Place) -> None:
         if self.busy:
-            self.desk.say("STILL WORKING: WAIT UNTIL IT IS DONE")
+            self.desk.say("STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE")
             return
         if self.made is None:
             self.desk.say("THE SETUP SHEET IS STILL BEING PREPARED: WAIT A MOMENT")
@@ -333,7 +345,7 @@ class SetupSheetFunction(SpecialFunction):
 
     def _done(self, name: str) -> None:
         self.busy, self.places = "", ()
-        self.desk.done(tr("{name} SAVED COMPLETELY. A USB STICK CAN NOW BE REMOVED").format(name=name))
+        self.desk.done(tr(Message("{name} SAVED COMPLETELY. YOU CAN NOW REMOVE THE USB STICK", name=name)))
 
     def _not_written(self, why: str) -> None:
         self.busy = ""
@@ -347,8 +359,10 @@ def _texts(kept: object) -> list[str]:
 
 def _changed(before: Sequence[str], now: Sequence[str]) -> str:
     """Which notes went and which came, for the log."""
-    gone = [f"'{each}' removed" for each in before if each not in now]
-    return ", ".join((*gone, *(f"'{each}'" for each in now if each not in before))) or ("order changed")
+    gone = [Message("'{item}' removed", item=each) for each in before if each not in now]
+    return ", ".join((*gone, *(f"'{each}'" for each in now if each not in before))) or (
+        "order of the notes changed"
+    )
 
 
 def _places(folder: Path, plugged: Sequence[Stick]) -> tuple[Place, ...]:

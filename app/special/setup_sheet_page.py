@@ -39,7 +39,7 @@ def _section(sheet: SetupSheet) -> str:
     if sheet.stock is None:
         return ""
     drawing = part_drawings.section(sheet.stock, sheet.part, sheet.clamping)
-    text = tr("Section: stock light, finished part dark")
+    text = tr("Section view: the stock is light, the finished part is dark")
     return figure(
         drawing, text + ("; " + tr("features milled by live tools are not shown") if sheet.milled else "")
     )
@@ -55,7 +55,7 @@ def _notes(notes: Sequence[str]) -> str:
 def _tools(sheet: SetupSheet, remarks: Mapping[int, str]) -> str:
     rows = [
         (
-            f"T{tool.number}" if tool.number else tr("no T"),
+            f"T{tool.number}" if tool.number else tr("no T word"),
             part_drawings.tool_picture(tool.shape),
             _said(sheet.shape_words(tool), remarks.get(tool.number, "")),
             escape(sheet.offset_words(tool)),

@@ -17,6 +17,7 @@ from app.special.setup_sheet import SetupSheet, outside_words, setup_sheet
 from app.special.setup_sheet_page import setup_sheet_html
 from core.executor.job import Job
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.part.insert_codes import InsertCodeError
 from core.part.tool_outline import ToolOutline, outline
 from core.part.tool_shape import ToolShape
@@ -47,7 +48,7 @@ def rows_of(made: MadeSheet, remarks: Mapping[int, str]) -> Iterator[Row]:
         remark = remarks.get(tool.number, "")
         words = f"{remark}: {sheet.shape_words(tool)}" if remark else sheet.shape_words(tool)
         offset = f"{sheet.offset_words(tool)}   {tool.time.total:.1f} s"
-        name = f"T{tool.number}" if tool.number else tr("no T")
+        name = f"T{tool.number}" if tool.number else tr("no T word")
         yield Row((name, f"{words}\n{offset}", ""), outline=made.outlines.get(tool.number))
     length = sheet.length
     for n, d in sheet.secondary:
@@ -55,7 +56,7 @@ def rows_of(made: MadeSheet, remarks: Mapping[int, str]) -> Iterator[Row]:
     for n, zero in sheet.zero:
         yield Row((f"G{n}", f"X {length(zero.x)}   Z {length(zero.z)}   C {zero.c:g}°", ""))
     for stop in sheet.stops:
-        at = tr("LINE {line}").format(line=stop.line)
+        at = tr(Message("LINE {line}", line=stop.line))
         yield Row((sheet.stop_word(stop), f"{stop.message}\n{at}, {clock(stop.at)}", ""))
 
 
@@ -78,7 +79,7 @@ def page_of(
     """Title, date and body of the page."""
     facts = [(tr("MACHINE"), machine.name), (tr("PROGRAM TEXT (SHA-256)"), text_hash(made.job.source))]
     body = setup_sheet_html(made.sheet, facts, remarks, notes)
-    title = tr("Setup sheet: {program}").format(program=program)
+    title = tr(Message("Setup sheet: {program}", program=program))
     return title, datetime.now().strftime("%Y-%m-%d %H:%M"), body
 
 
@@ -90,7 +91,9 @@ def write(page: tuple[str, str, str], program: str, folder: Path, paper: Paper) 
         folder.mkdir(parents=True, exist_ok=True)
         pdf = pdf_of(headline(title, made) + body, title, paper)
     except OSError as error:
-        raise FileError(f"{folder} CANNOT BE WRITTEN: {error.strerror}") from error
+        raise FileError(
+            Message("{target} CANNOT BE WRITTEN: {cause}", target=folder, cause=error.strerror)
+        ) from error
     html = page_head(title, made, spoken()) + body + PAGE_END
     write_out(folder / f"{name}.html", html.encode("utf-8", "backslashreplace"))
     write_out(folder / f"{name}.pdf", pdf)

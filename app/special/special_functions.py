@@ -13,6 +13,7 @@ from app.desk.latest import Latest
 from app.desk.sheet import STEPS, Entry, Key, Row, Sheet, refused
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
+from core.message import Message
 
 
 class SpecialFunction(ABC):
@@ -196,7 +197,7 @@ class SpecialFunctions:
         typed = next((each for each in (self.number + digit, digit) if int(each) in numbers), "")
         if not typed:
             words = tr("FUNCTION {number} DOES NOT EXIST: TYPE 1 TO {last}")
-            self.current.desk.say(words.format(number=self.number + digit, last=len(self.functions)))
+            self.current.desk.say(tr(Message(words, number=self.number + digit, last=len(self.functions))))
             return
         self.show(int(typed) - 1)
         self.number = typed
@@ -220,7 +221,7 @@ class SpecialFunctions:
         """Of the function, or how to choose one."""
         if self.inside:
             return self.current.prompt()
-        return "TAP A FUNCTION OR TYPE ITS NUMBER   ARROWS: SELECT   ENTER: OPEN   ESC: AUTOMATIC"
+        return "TAP A FUNCTION OR TYPE ITS NUMBER   ENTER: OPEN   ESC: BACK"
 
     def opened(self) -> None:
         """The page comes up with the list."""

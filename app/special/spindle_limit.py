@@ -15,6 +15,7 @@ from core.access.access_table import Act
 from core.executor.commands import SpindleLimit
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import SpindleModel
+from core.message import Message
 from core.ports import Unknown
 
 LIFT = "PRESS Y TO REMOVE THE LIMIT, N TO KEEP IT"
@@ -74,25 +75,34 @@ class SpindleSpeedLimit(FigureFunction):
     def _limit(self, rpm: float | None) -> None:
         before = self.desk.snapshot().spindle_limit
         self.desk.post(SpindleLimit(rpm))
-        told = " → ".join(f"{each:g} rpm" if each else "none" for each in (before, rpm))
-        self.desk.access.persistence.note_change(f"spindle limit: {told}")
+        told = " → ".join(
+            Message("{speed} rpm", speed=f"{each:g}") if each else "none" for each in (before, rpm)
+        )
+        self.desk.access.persistence.note_change(Message("spindle limit: {details}", details=told))
 
     def take(self, text: str) -> bool:
         """The limit, where this spindle can turn at it."""
         rpm = value_of(text)
         low, high = self.spindle.rpm_min, self.spindle.rpm_max
         if not low <= rpm <= high:
-            raise EntryError(f"{rpm:g} rpm is outside the range of this spindle, {low:g} to {high:g} rpm")
+            raise EntryError(
+                Message(
+                    "{rpm} rpm is outside the range of this spindle, {low} to {high} rpm",
+                    rpm=f"{rpm:g}",
+                    low=f"{low:g}",
+                    high=f"{high:g}",
+                )
+            )
         limit = self.desk.snapshot().spindle_limit
         if limit and rpm > limit and self.desk.refused(Act.SPINDLE_LIMIT):
             return False
         self._limit(rpm)
-        self.desk.done(tr("SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART").format(rpm=formats.rpm(rpm)))
+        self.desk.done(tr(Message("SPINDLE LIMITED TO {rpm} RPM UNTIL RESTART", rpm=formats.rpm(rpm))))
         return True
 
     def prompt(self) -> str:
         """How to set the limit, for the prompt line."""
-        return "TYPE A SPEED OR EXPRESSION   ENTER: ACCEPT   ESC: BACK TO THE LIST"
+        return "TYPE A SPEED OR EXPRESSION   ENTER: ACCEPT   ESC: BACK"
 
 
 def _measured(snapshot: Snapshot) -> str:

@@ -10,6 +10,7 @@ from typing import Protocol, TypeVar
 from app.programs.copy_rename_delete import checked_name, same_name_in
 from app.programs.whole_file import FileError, write_new
 from core.machine.serial_table import DncModel
+from core.message import Message
 
 T_co = TypeVar("T_co", covariant=True)
 
@@ -95,7 +96,7 @@ def store_new(received: Received, folder: Path, name: str) -> Path:
     """
     name = checked_name(name, Path(received.name))
     if other := same_name_in(folder, name):
-        raise FileError(f"{other} ALREADY EXISTS. USE ANOTHER NAME")
+        raise FileError(Message("{other} ALREADY EXISTS. USE ANOTHER NAME", other=other))
     write_new(folder / name, received.text)
     return folder / name
 

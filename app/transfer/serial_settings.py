@@ -54,7 +54,7 @@ ROWS: tuple[Row, ...] = (
         lambda m: m.wrap or tr("NONE"),
         lambda m, _: replace(m, wrap="" if m.wrap else "%"),
     ),
-    ("LINE END", lambda m: _EOL_NAMES[m.eol], lambda m, _: replace(m, eol=following(EOLS, m.eol))),
+    ("LINE ENDING", lambda m: _EOL_NAMES[m.eol], lambda m, _: replace(m, eol=following(EOLS, m.eol))),
     ("DC CODES", lambda m: _yes(m.dc_codes), lambda m, _: replace(m, dc_codes=not m.dc_codes)),
     ("SEND ONLY AFTER DC1", lambda m: _yes(m.wait), lambda m, _: replace(m, wait=not m.wait)),
     (

@@ -19,6 +19,7 @@ from app.transfer.serial_settings import ROWS, settings_of, stored_form
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.machine.serial_table import DncModel
+from core.message import Message
 from core.store.store_errors import StoreError
 
 # --- what it shows -----------------------------------------------------------------------------------------
@@ -32,7 +33,7 @@ def settings_sheet(settings: DncModel, marked: int, chosen: Path | None, last: s
     """The line, and the program that would be sent."""
     rows = tuple(Row((tr(name), value(settings))) for name, value, _ in ROWS)
     program = chosen.name if chosen is not None else "—"
-    notes = (tr("F4 sends: {program}").format(program=program), last)
+    notes = (tr(Message("F4: send {program}", program=program)), last)
     return Sheet(TITLE, ("SETTING", "VALUE"), (0.5, 0.5), rows, marked, notes=notes, raw=frozenset({0, 1}))
 
 
@@ -57,26 +58,26 @@ def _waits(what: str) -> str:
         "held": tr("STOPPED BY THE OTHER DEVICE (XOFF)"),
         "dc1": tr("WAITING FOR DC1 FROM THE OTHER DEVICE"),
         "sender": tr("WAITING FOR DATA FROM THE OTHER DEVICE"),
-        "frame": tr("WAITING FOR THE FIRST %"),
-        "noise": tr("INCOMING DATA IS NOT TEXT: CHECK BAUD, BITS AND PARITY"),
+        "frame": tr("WAITING FOR THE START CHARACTER %"),
+        "noise": tr("INCOMING DATA IS NOT TEXT: CHECK BAUD RATE, BITS AND PARITY"),
     }
     return words.get(what, "—")
 
 
 def received_sheet(received: Received, name: str) -> Sheet:
     """What came, whether it is whole, and what proving found."""
-    code = tr("7 BITS, EVEN PARITY (DETECTED)") if received.seven else tr("AS IN THE SETTINGS")
+    code = tr("7 BITS, EVEN PARITY (DETECTED)") if received.seven else tr("SAME AS SETTINGS")
     errors = len(received.findings)
-    some = tr("1 ERROR") if errors == 1 else tr("{count} ERRORS").format(count=errors)
+    some = tr("1 ERROR") if errors == 1 else tr(Message("{count} ERRORS", count=errors))
     result = some if errors else tr("NO ERRORS")
-    lines = tr("1 LINE") if received.lines == 1 else tr("{count} LINES").format(count=received.lines)
+    lines = tr("1 LINE") if received.lines == 1 else tr(Message("{count} LINES", count=received.lines))
     rows = (
         Row((tr("WHOLE"), lines), True, Tone.RUN),
         Row((tr("PROVED"), result), True, Tone.ALARM if errors else Tone.RUN),
         Row((tr("NAME IN THE PROGRAM"), received.name or "—")),
         Row((tr("SHA-256"), received.digest[:32] + " …")),
         Row((tr("CHARACTERS"), code)),
-        Row((tr("SKIPPED BEFORE PROGRAM"), f"{received.skipped}")),
+        Row((tr("CHARACTERS SKIPPED AT START"), f"{received.skipped}")),
         *(Row(("", text)) for text in received.findings[:SHOWN]),
     )
     return Sheet(
@@ -86,14 +87,17 @@ def received_sheet(received: Received, name: str) -> Sheet:
         rows,
         question="NAME FOR THE NEW PROGRAM?",
         text=name,
-        notes=(*received.findings[:1], "The received program replaces nothing and does not start."),
+        notes=(
+            *received.findings[:1],
+            ("The received program does not replace any program and is not started."),
+        ),
         raw=frozenset({0, 1}),
     )
 
 
 SETTING = "rs232"
 BUSY = "TRANSFER RUNNING. WAIT UNTIL IT IS DONE   F6: CANCEL"
-SETS = "ENTER OR TAP: CHANGE SELECTED SETTING   F4: SEND LOADED PROGRAM   F5: RECEIVE"
+SETS = "ENTER: CHANGE VALUE   F4: SEND LOADED PROGRAM   F5: RECEIVE"
 THROW_AWAY = "PRESS Y TO DISCARD THE RECEIVED PROGRAM, N TO KEEP IT"
 
 
@@ -176,8 +180,8 @@ class SerialTransfer(SpecialFunction):
         if self.received is not None:
             return "ENTER: SAVE AS A NEW PROGRAM (DOES NOT START)   F6: DISCARD"
         if self.under_way is not None:
-            return "F6: CANCEL TRANSFER. IT CONTINUES WHILE OTHER PAGES ARE OPEN"
-        return "ENTER OR TAP: CHANGE SELECTED SETTING   F4: SEND LOADED PROGRAM   F5: RECEIVE"
+            return "F6: CANCEL. TRANSFER CONTINUES WHILE OTHER PAGES ARE OPEN"
+        return "ENTER: CHANGE VALUE   F4: SEND LOADED PROGRAM   F5: RECEIVE"
 
     def close(self) -> None:
         """The desk shuts: nothing goes on."""
@@ -220,23 +224,23 @@ class SerialTransfer(SpecialFunction):
         if self.under_way is not None or self.worker.busy:
             self.desk.say(BUSY)
         elif not self.settings.port:
-            self.desk.say("NO PORT SELECTED. PRESS ENTER OR TAP THE FIRST LINE TO SELECT ONE")
+            self.desk.say("NO PORT SELECTED. TAP THE FIRST LINE OR PRESS ENTER ON IT")
         else:
             return True
         return False
 
     def _sent(self, count: int) -> None:
         self.under_way = None
-        self._done(tr("{name} SENT: {count} BYTES").format(name=self.sends, count=count))
+        self._done(tr(Message("{name} SENT: {count} BYTES", name=self.sends, count=count)))
 
     def _came(self, received: Received) -> None:
         self.under_way, self.received = None, received
         self.entry.text = free_name(self.own, received.name)
-        self._done(tr("COMPLETE PROGRAM RECEIVED: {lines} LINES").format(lines=received.lines))
+        self._done(tr(Message("COMPLETE PROGRAM RECEIVED: {lines} LINES", lines=received.lines)))
 
     def _failed(self, why: str) -> None:
         self.under_way = None
-        self.last = tr("NOTHING SAVED: {why}").format(why=why)
+        self.last = tr(Message("NOTHING SAVED: {why}", why=why))
         self.desk.say(self.last)
 
     def _done(self, text: str) -> None:
@@ -264,8 +268,8 @@ class SerialTransfer(SpecialFunction):
             self.desk.refuse(str(error))
             return
         self.received = None
-        self.persistence.note_change(f"program {path.name} received")
-        self._done(tr("SAVED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED").format(name=path.name))
+        self.persistence.note_change(Message("program {path} received", path=path.name))
+        self._done(tr(Message("SAVED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED", name=path.name)))
 
     def discard(self) -> None:
         """Throw away what has come, after asking."""
@@ -279,14 +283,16 @@ class SerialTransfer(SpecialFunction):
         if self.desk.refused(Act.TRANSFER):
             return
         if self.marked == 0 and not self.ports:
-            self.desk.say("NO SERIAL PORT FOUND. PLUG IN ITS ADAPTER   F8: SEARCH AGAIN")
+            self.desk.say("NO SERIAL PORT FOUND. PLUG IN THE ADAPTER   F8: SEARCH AGAIN")
             return
         ports = list(dict.fromkeys((*self.ports, self.settings.port))) if self.settings.port else self.ports
         self.settings = replace(ROWS[self.marked][2](self.settings, ports))
         self.desk.clear()
         try:
             self.persistence.save_setting(SETTING, stored_form(self.settings))
-            self.persistence.note_change(f"serial port: {stored_form(self.settings)}")
+            self.persistence.note_change(
+                Message("serial port: {settings}", settings=stored_form(self.settings))
+            )
         except StoreError as error:
             self.desk.refuse(str(error))
 

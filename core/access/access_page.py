@@ -9,24 +9,36 @@ from pathlib import Path
 from core.access.access_table import NEVER, RULES, Level
 
 _HEAD = """\
-# What each level may change
+# What each access level may change
 
-Written from `core/access/access_table.py` by `python -m core.access.access_page docs/access.md`. Levels are
-off until somebody of SERVICE level is entered (`F10` ACCESS LEVELS, or `turndesk access add`); the guide says
-how. A level may all that those before it may. Behind no level, ever: {never}.
-What lies in the program folder the desk publishes by itself, behind no level: whoever put it there had to be
-allowed to, and what is published replaces nothing on another desk.
+This page is a reference for the person who manages users and PINs. It lists what each access level
+may change, on which pages of the screen and by which commands. How to set up users is in
+[guide/access-levels.md](guide/access-levels.md).
+
+Levels are off until a user of SERVICE level is added: `F10`, ACCESS LEVELS, or
+`turndesk access add`. Each level may also make the changes of the levels before it.
+
+No level is ever required for:
+
+{never}
+
+TurnDesk publishes the programs in the program folder automatically, and this needs no level. The
+person who put a program there needed the level for that. A published program replaces nothing on
+another control.
+
+`python -m core.access.access_page docs/access.md` writes this page from
+`core/access/access_table.py`. Do not edit it.
 """
 
 
 def page() -> str:
     """The whole page."""
-    return _HEAD.format(never=", ".join(NEVER)) + "".join(_lines())
+    return _HEAD.format(never="\n".join(f"- {each}" for each in NEVER)) + "".join(_lines())
 
 
 def _lines() -> Iterator[str]:
     for level in Level:
-        yield f"\n## {level.name}\n\n| what | pages | commands |\n|---|---|---|\n"
+        yield f"\n## {level.name}\n\n| what may be changed | page | command |\n|---|---|---|\n"
         for rule in RULES.values():
             if rule.level is level:
                 commands = (

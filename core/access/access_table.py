@@ -22,12 +22,12 @@ class Level(IntEnum):
 class Act(Enum):
     """What is changed, as the screen names it."""
 
-    WEAR = "WEAR AND CORRECTIONS"
+    WEAR = "WEAR AND SECONDARY OFFSETS"
     COUNTS = "PART COUNTS"
-    INSERTS = "FRESH INSERTS"
-    READINGS = "READINGS OF PARTS"
-    JOBS = "THE QUEUE OF JOBS"
-    SCREEN = "THE SCREEN'S SETTINGS"
+    INSERTS = "NEW INSERTS"
+    READINGS = "PART MEASUREMENTS"
+    JOBS = "JOB QUEUE"
+    SCREEN = "SCREEN SETTINGS"
     INPUTS = "SIMULATED INPUTS"
     BACKUPS = "BACKUPS"
     TOOLS = "TOOL OFFSETS"
@@ -36,16 +36,16 @@ class Act(Enum):
     PRESETS = "PRESETS"
     PROGRAMS = "PROGRAMS"
     STOCK = "STOCK AND CHECKS"
-    LIVES = "TOOL LIVES"
+    LIVES = "TOOL LIFE"
     FEATURES = "MEASURED FEATURES"
     TRANSFER = "TRANSFER SETTINGS"
-    RECORDS = "RECORDS OF THE SCOPE"
-    SPINDLE_LIMIT = "A HIGHER SPINDLE LIMIT"
-    OUTPUTS = "OUTPUTS BY HAND"
+    RECORDS = "SCOPE RECORDINGS"
+    SPINDLE_LIMIT = "HIGHER SPINDLE SPEED LIMIT"
+    OUTPUTS = "MANUAL OUTPUTS"
     MACHINE_FILE = "THE MACHINE FILE"
-    RESTORE = "WHAT IS RESTORED"
-    SHARED_PLACE = "THE PLACE OF SHARED PROGRAMS"
-    PEOPLE = "PEOPLE AND THEIR PINS"
+    RESTORE = "RESTORED DATA"
+    SHARED_PLACE = "SHARED PROGRAM LOCATION"
+    PEOPLE = "USERS AND PINS"
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,60 +61,79 @@ class Rule:
 RULES: dict[Act, Rule] = {
     Act.WEAR: Rule(
         Level.OPERATOR,
-        "wear and remark of a tool, secondary offsets, DL, DR and DR2 of a mill's tool; taking these back",
+        (
+            "tool wear values and tool remarks; secondary offsets; DL, DR and DR2 of a "
+            "mill's tools; undoing changes to these values"
+        ),
         "F8, F9, W",
         "offsets set, clear D, undo secondary",
     ),
     Act.COUNTS: Rule(
-        Level.OPERATOR, "the part count and the number at which parts stop", "F10 PARTS COUNTER"
+        Level.OPERATOR, "the part count, and the target count at which production stops", "F10 PARTS COUNTER"
     ),
-    Act.INSERTS: Rule(Level.OPERATOR, "a fresh insert or tool: its life begins at nought", "W, F8 of a mill"),
-    Act.READINGS: Rule(Level.OPERATOR, "readings of parts, and taking one out", "W"),
-    Act.JOBS: Rule(Level.OPERATOR, "jobs, their order, counts and notes", "J", "jobs"),
-    Act.SCREEN: Rule(Level.OPERATOR, "units, language, colours, sounds, notes, paper", "F10"),
+    Act.INSERTS: Rule(
+        Level.OPERATOR,
+        ("replacing an insert or tool, which resets its tool life to zero"),
+        "W, and F8 on a mill",
+    ),
+    Act.READINGS: Rule(Level.OPERATOR, "entering and deleting the measured values of parts", "W"),
+    Act.JOBS: Rule(Level.OPERATOR, "jobs in the queue, with their order, part counts and notes", "J", "jobs"),
+    Act.SCREEN: Rule(Level.OPERATOR, "units, language, colors, sounds, notes, paper size", "F10"),
     Act.INPUTS: Rule(Level.OPERATOR, "the inputs of a simulated machine", "F10 INPUTS AND OUTPUTS"),
     Act.BACKUPS: Rule(
-        Level.OPERATOR, "making a backup, an export", "F10", "store backup, store export, setup save"
+        Level.OPERATOR, "making a backup or an export", "F10", "store backup, store export, setup save"
     ),
     Act.TOOLS: Rule(
         Level.SETUP,
-        "position, nose radius, tip and master of a tool, typed or touched off; a mill's tools; "
-        "undo and clearing",
+        (
+            "position, nose radius, tip quadrant and master of a tool (entered or touched "
+            "off), and the tools of a mill, including undo and clear"
+        ),
         "F8, F5",
         "offsets set, clear, undo",
     ),
     Act.SHAPES: Rule(Level.SETUP, "the shape of a tool", "F8 twice", "offsets set T3 kind=…"),
     Act.ZEROS: Rule(Level.SETUP, "G54 to G59", "G", "offsets set G54"),
     Act.PRESETS: Rule(
-        Level.SETUP, "presets of a mill, and which is in force", "F9, F5 of a mill", "offsets set"
+        Level.SETUP,
+        "presets of a mill, and the selection of the active preset",
+        "F9 and F5 on a mill",
+        "offsets set",
     ),
     Act.PROGRAMS: Rule(
         Level.SETUP,
-        "saving, copying, renaming, deleting, importing and receiving a program; publishing it by a command, "
-        "taking that of another desk or keeping one's own against it",
+        (
+            "saving, copying, renaming, deleting, importing and receiving programs; "
+            "publishing a program from the command line; accepting another control's "
+            "version or keeping this control's own version"
+        ),
         "F3, F6, F10, X",
         "serial receive, share publish, share take, share keep, profile --out, shapes --out",
     ),
     Act.STOCK: Rule(
         Level.SETUP,
-        "stock, stick-out and silenced checks of a program",
+        "stock, stick-out and disabled checks of a program",
         "B",
         "prove --keep-stock, run --keep-stock",
     ),
-    Act.LIVES: Rule(Level.SETUP, "limits of tool lives, and whether parts stop at them", "W"),
-    Act.FEATURES: Rule(
-        Level.SETUP, "what is measured on a part, whether parts wait for it, the hours of a shift", "W"
+    Act.LIVES: Rule(
+        Level.SETUP, "tool life limits, and whether production stops when a limit is reached", "W"
     ),
-    Act.TRANSFER: Rule(Level.SETUP, "the serial line's settings", "F10 RS-232"),
-    Act.RECORDS: Rule(Level.SETUP, "deleting a record of the scope; keeping one is everybody's", "Q"),
+    Act.FEATURES: Rule(
+        Level.SETUP,
+        "features to measure on a part, whether production waits for the measurement, and shift hours",
+        "W",
+    ),
+    Act.TRANSFER: Rule(Level.SETUP, "serial port settings", "F10 RS-232"),
+    Act.RECORDS: Rule(Level.SETUP, "deleting a scope record; everyone can save a record", "Q"),
     Act.SPINDLE_LIMIT: Rule(
         Level.SETUP,
-        "lifting or raising the spindle's speed limit; a lower one is everybody's",
+        "removing or raising the spindle speed limit; everyone can lower it",
         "F10 MAXIMUM SPINDLE SPEED",
     ),
     Act.OUTPUTS: Rule(
         Level.SETUP,
-        "switching an output by its name; the lamp test is everybody's",
+        "switching an output by its name; everyone can use the lamp test",
         "F10 INPUTS AND OUTPUTS",
     ),
     Act.MACHINE_FILE: Rule(
@@ -122,27 +141,27 @@ RULES: dict[Act, Rule] = {
     ),
     Act.RESTORE: Rule(
         Level.SERVICE,
-        "putting a backup, an export or a setup in the place of what is kept",
+        "replacing the stored data with a backup, an export or a setup",
         "F10 BACKUP AND RESTORE",
         "store restore, store import, setup load",
     ),
     Act.SHARED_PLACE: Rule(
         Level.SERVICE,
-        "laying out the place of shared programs, going on as a desk that is gone",
+        "setting up the shared program location; taking over the name of a control that no longer exists",
         "",
         "share begin, share publish --claim",
     ),
-    Act.PEOPLE: Rule(Level.SERVICE, "people, their levels and PINs", "F10 ACCESS LEVELS", "access"),
+    Act.PEOPLE: Rule(Level.SERVICE, "users, their levels and PINs", "F10 ACCESS LEVELS", "access"),
 }
 
 NEVER = (
     "E-stop",
     "feed hold",
     "Reset",
-    "ending what runs",
+    "ending a running program or operation",
     "drives off",
-    "a lower spindle limit",
-    "running a proved program",
+    "lowering the spindle speed limit",
+    "running a program that is proved",
 )
 """What no level ever stands in the way of."""
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from core.coded_error import CodedError
+from core.message import Message
 
 SHORTEST, LONGEST = 4, 12
 _SALT, _LENGTH = 16, 32  # bytes
@@ -45,7 +46,10 @@ class Hashed(NamedTuple):
 def check_pin(pin: str) -> None:
     """Raises PinError for what is no PIN: 4 to 12 figures, not all the same."""
     if not (pin.isascii() and pin.isdigit() and SHORTEST <= len(pin) <= LONGEST):
-        raise PinError(f"a PIN must have {SHORTEST} to {LONGEST} digits", "pin-length")
+        raise PinError(
+            Message("a PIN must have {shortest} to {longest} digits", shortest=SHORTEST, longest=LONGEST),
+            "pin-length",
+        )
     if len(set(pin)) == 1:
         raise PinError("a PIN of one repeated digit is too easy to guess; choose another", "pin-too-simple")
 

@@ -66,15 +66,15 @@ class Reaction(Enum):
     """What an alarm makes of the machine; one supervisor carries it out for all drivers."""
 
     OFF = (
-        "the axes brake and their drives lose power, spindle off, outputs in their safe "
-        "state; press Reset to acknowledge"
+        "the axes brake and their drives lose power, the spindle is switched off, and the "
+        "outputs go to their safe state; press Reset to acknowledge"
     )
     STOP = (
-        "the axes brake and hold position, spindle off, outputs in their safe state; press "
-        "Reset to acknowledge"
+        "the axes brake and hold position, the spindle is switched off, and the outputs go "
+        "to their safe state; press Reset to acknowledge"
     )
     HOLD = "the axes stop on the path and the spindle continues to turn; press Cycle Start to resume"
-    ASKED = "a requested stop, from a button or from the program"
+    ASKED = "a stop requested by a button or by the program"
 
 
 class Entry(NamedTuple):

@@ -8,18 +8,26 @@ from pathlib import Path
 
 from core.alarms import SUBJECTS
 from core.alarms.alarm_entry import Entry, Reaction
+from core.message import Message
+from core.page_contents import contents
 
 _HEAD = """\
 # Alarms, holds and stops
 
-Written from `core/alarms` by `python -m core.alarms.alarms_page docs/alarms.md`; `turndesk alarms` prints the
-same. The number stands on the screen, in `F7` with the time, in the event log and in `status.json`. Where an
-axis, a line or a drive's own word is known it is told with the alarm; the technical side is in
+This page is the reference of all alarms. `turndesk alarms` prints the same list, and
+`turndesk alarms 102` one alarm. For the steps after a stop, see
+[guide/read-an-alarm.md](guide/read-an-alarm.md).
+
+{contents}
+It is written from `core/alarms` by `python -m core.alarms.alarms_page docs/alarms.md`. Do not edit it.
+The number is shown on the screen, in `F7` with the time, in the event log and in `status.json`. If the
+axis, the line or the text of the drive is known, the alarm includes it. Technical details are in
 `logs/turndesk.log`.
 
+The kind in parentheses is what the alarm does:
 """
 _KINDS = {
-    Reaction.OFF: "alarm, drives off",
+    Reaction.OFF: "alarm that switches the drives off",
     Reaction.STOP: "alarm",
     Reaction.HOLD: "hold",
     Reaction.ASKED: "stop",
@@ -27,13 +35,14 @@ _KINDS = {
 
 
 def kind_of(reaction: Reaction) -> str:
-    """In a word or two, what it makes of the machine."""
+    """Return the kind of alarm that causes a reaction."""
     return _KINDS[reaction]
 
 
 def document() -> str:
     """The whole page."""
-    return "\n".join([_HEAD.rstrip("\n"), "", *_legend(), *_subjects()]) + "\n"
+    head = _HEAD.format(contents=contents(title for title, _ in SUBJECTS))
+    return "\n".join([head, *_legend(), *_subjects()]) + "\n"
 
 
 def _legend() -> Iterator[str]:
@@ -50,8 +59,8 @@ def _subjects() -> Iterator[str]:
 
 def _entry(entry: Entry) -> Iterator[str]:
     yield f"**{entry.number} {entry.text.upper()}** ({kind_of(entry.reaction)})  "
-    yield f"Likely causes: {'; '.join(entry.causes)}.  "
-    yield f"Do: {entry.remedy}."
+    yield Message("Likely causes: {causes}.  ", causes="; ".join(entry.causes))
+    yield f"Remedy: {entry.remedy}."
     yield ""
 
 

@@ -35,7 +35,7 @@ AXES: Entries = {
         "axis did not reach position",
         (
             "the axis is blocked or moves stiffly",
-            "lubrication",
+            "a lack of lubrication",
             "the in-position window in the machine file is too narrow",
         ),
         "Find what prevents the axis from reaching its position, then press Reset",
@@ -46,7 +46,7 @@ AXES: Entries = {
         "drive rejected command",
         (
             "the drives received a command that they cannot carry out now",
-            "a drive was no longer ready",
+            "a drive lost its ready signal",
         ),
         (
             "Press Reset, then Drives On, and start again. If the alarm returns, find the "
@@ -57,7 +57,7 @@ AXES: Entries = {
         105,
         "drives lost power",
         (
-            "the safety circuit has opened: a door, a guard or another E-stop on the machine",
+            "the safety circuit was opened by a door, a guard or another E-stop on the machine",
             "a fuse or the drive power supply has failed",
         ),
         "Close the safety circuit. Press Reset, then Drives On. Home any axis shown as not homed",
@@ -90,7 +90,7 @@ AXES: Entries = {
         "drive restarted",
         (
             "the drive's control power failed briefly",
-            "someone reset the drive or is using its own software on it",
+            "someone reset the drive, or the drive is being operated with its own software",
         ),
         "Check the drive's power supply. Press Reset, then Drives On, and home again",
         tells=True,
@@ -99,8 +99,8 @@ AXES: Entries = {
         109,
         "drive rejected its settings",
         (
-            "the drive or its firmware is not the one in the machine file",
-            "a node number is wrong",
+            "the drive or its firmware differs from the one specified in the machine file",
+            "a bus node number is wrong",
             "a fault in the bus cable or in the drive's power supply",
         ),
         "Run 'turndesk machine check' with the machine file to find the rejected setting",
@@ -110,7 +110,7 @@ AXES: Entries = {
         110,
         "drive fault does not clear",
         (
-            "the cause is still present: drive too hot, no motor or no encoder",
+            "the cause is still present: the drive is too hot, or the motor or encoder is missing",
             ("the drive must be switched off and on again"),
         ),
         "Read the drive's display. If the fault does not clear, switch the machine off and on",
@@ -125,8 +125,8 @@ AXES: Entries = {
             "a fault in the switch or its cable",
         ),
         (
-            "Press Reset, then Drives On, and home the axis. If it is still on the switch, move "
-            "it off by hand first"
+            "Press Reset, then Drives On, and home the axis. If the axis is still on the "
+            "switch, first move the axis off the switch by hand"
         ),
         tells=True,
     ),
@@ -134,7 +134,10 @@ AXES: Entries = {
         112,
         "homing failed",
         (
-            "the home switch was not found: cable fault, or the axis moved in the wrong direction",
+            (
+                "the home switch was not found because its cable is faulty or the axis moved in the "
+                "wrong direction"
+            ),
             ("the axis is blocked"),
         ),
         "Check the home switch and the homing direction. Press Reset, then Drives On, and home again",
@@ -151,7 +154,7 @@ AXES: Entries = {
         114,
         "move exceeds drive limits",
         (
-            "speed or travel in the machine file differs from the drive settings",
+            "the speed or the travel in the machine file differs from the drive settings",
             "the spindle was too fast for the thread's lead",
         ),
         (
@@ -178,8 +181,8 @@ AXES: Entries = {
             "the drive is tuned too soft to hold the axis, or its motor cable is disconnected",
         ),
         (
-            "Keep clear of the axis: it may jump when freed. Find what is holding it, then press "
-            "Reset and Drives On"
+            "Keep clear of the axis: the axis may jump when freed. Find what is holding "
+            "the axis, then press Reset and Drives On"
         ),
         tells=True,
     ),
@@ -192,8 +195,8 @@ AXES: Entries = {
             "the motor cable is disconnected",
         ),
         (
-            "Check where the axis actually is. Check encoder and coupling. Press Reset, then "
-            "Drives On, and home the axis"
+            "Check the actual position of the axis. Check the encoder and its coupling. "
+            "Press Reset, then Drives On, and home the axis"
         ),
         tells=True,
     ),
@@ -202,8 +205,8 @@ AXES: Entries = {
         "axis moved without a command",
         (
             "the axis was moved by hand with the drives off",
-            "the axis sinks under its own weight: it has no brake, or the brake slips",
-            "something else is moving the drive: its own software or a pendant",
+            "the axis sinks under its own weight because it has no brake or the brake slips",
+            "the drive is being moved by its own software or by a pendant",
         ),
         "Check where the axis is and that nothing is in its path. Press Reset, then Drives On",
         tells=True,

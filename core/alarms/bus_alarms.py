@@ -34,8 +34,8 @@ WIRES: Entries = {
             "the module restarted and its outputs dropped out",
         ),
         (
-            "Check the module's power and cable. Press Reset, then Drives On. Check what the "
-            "module's outputs have released"
+            "Check the module's power and cable, then press Reset and Drives On. Its "
+            "outputs were off: check clamps, brakes and valves"
         ),
         tells=True,
     ),
@@ -43,17 +43,17 @@ WIRES: Entries = {
         503,
         "an output cannot be switched",
         (
-            "the output is not in the machine file, or the controller does not have it",
+            ("the output is not defined in the machine file, or the controller does not have this output"),
             ("the output module has failed"),
         ),
-        "Check the output in the machine file, then press Reset",
+        "Check the definition of the output in the machine file, then press Reset",
         tells=True,
     ),
     "feeder-gone": off(
         511,
         "driver host has ended",
         (
-            "the driver host was ended or has failed; axes, spindle and outputs are off",
+            "the driver host was stopped or has failed; the axes, spindle and outputs are off",
             "the computer ran out of memory",
         ),
         (
@@ -102,7 +102,7 @@ WIRES: Entries = {
         "controller rejected a block",
         (
             "the controller's settings do not allow the programmed travel, speed or spindle command",
-            "a line was corrupted during transmission",
+            "a block was corrupted during transmission",
         ),
         (
             "Press Reset, then Drives On. Compare the controller's settings with the machine "
@@ -113,14 +113,17 @@ WIRES: Entries = {
     "controller-alarm": off(
         525,
         "controller alarm",
-        ("the cause given by the controller's alarm number",),
+        ("the controller's alarm number indicates the cause",),
         "Correct the cause shown, then press Reset and Drives On. Home any axis shown as not homed",
         tells=True,
     ),
     "controller-modes": off(
         526,
         "controller lost its modal state",
-        ("another program has written to the controller", "an undetected reset of the controller"),
+        (
+            "another program has sent data to the controller",
+            ("the controller was reset, but the reset was not detected"),
+        ),
         "Close any other software that uses the controller. Press Reset, then Drives On",
         tells=True,
     ),
@@ -142,8 +145,8 @@ WIRES: Entries = {
         "HAL bridge process has ended",
         (
             (
-                "the bridge process was ended or has failed; HAL finishes its queued motion, brakes "
-                "and removes drive power"
+                "the HAL bridge process was stopped or has failed; HAL finishes its queued "
+                "motion, slows to a stop and removes drive power"
             ),
             "the computer ran out of memory",
         ),
@@ -157,8 +160,11 @@ WIRES: Entries = {
         532,
         "no response from HAL bridge",
         (
-            ("the computer is overloaded; HAL finishes its queued motion, brakes and removes drive power"),
-            "the bridge process has been stopped",
+            (
+                "the computer is overloaded; HAL finishes its queued motion, slows to a stop and "
+                "removes drive power"
+            ),
+            "the HAL bridge process has been stopped",
         ),
         (
             "PRESS E-STOP: the spindle may be turning. Check where the tool is and close other "
@@ -171,11 +177,12 @@ WIRES: Entries = {
         "HAL real-time thread stopped",
         (
             "the rtapi_app process has ended; only the boards' watchdogs now control the axes",
-            "a board driver is waiting for its board: cable or power fault",
+            "the driver of a board is waiting for the board because of a cable or power fault",
         ),
         (
-            "PRESS E-STOP: the spindle may be turning. Check the boards, then press Reset to "
-            "restart HAL. Home any axis shown as not homed"
+            "PRESS E-STOP: the spindle may be turning. Check power and cables of the "
+            "interface boards, then press Reset to restart HAL. Home any axis shown as not "
+            "homed"
         ),
     ),
     "hal-board": off(
@@ -196,11 +203,11 @@ WIRES: Entries = {
         534,
         "HAL does not start",
         (
-            "a pin named in the machine file does not exist or is of another type",
+            "a HAL pin named in the machine file does not exist or has the wrong type",
             "a board or component does not load, or another LinuxCNC session is running",
         ),
         (
-            "Run 'turndesk machine check' with the machine file: it lists every pin. Correct the "
+            "Run 'turndesk machine check' with the machine file to list every pin. Correct the "
             "fault, then press Reset"
         ),
         tells=True,

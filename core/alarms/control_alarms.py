@@ -8,42 +8,45 @@ CONTROL: Entries = {
     "internal": off(
         901,
         "the control has failed",
-        ("a fault in TurnDesk; see the log",),
-        "Check where the tool is. Save the log (F10), then exit TurnDesk and start it again",
+        ("an internal error in TurnDesk; see the log",),
+        "Check where the tool is. Save the log (F10), then exit and restart TurnDesk",
     ),
     "broken-path": off(
         902,
         "planned path is not continuous",
-        ("a fault in TurnDesk; the faulty part of the path was not run",),
+        ("an internal error in TurnDesk; the faulty section of the path was not executed",),
         ("Press Reset, then Drives On. Save the program and the log (F10), then restart at another line"),
     ),
     "not-safe": off(
         905,
         "the machine could not be made safe",
         (
-            "a driver does not carry out the stop: a wire is disconnected, or the driver has failed",
-            "a fault in TurnDesk; see the log",
+            (
+                "a driver does not carry out the stop command because a wire is disconnected or the "
+                "driver has failed"
+            ),
+            "an internal error in TurnDesk; see the log",
         ),
-        (
-            "PRESS E-STOP and switch the machine off. Save the log (F10), then exit TurnDesk and "
-            "start it again"
-        ),
+        ("PRESS E-STOP and switch the machine off. Save the log (F10), then exit and restart TurnDesk"),
         tells=True,
     ),
     "control-silent": off(
         908,
         "control not responding",
         (
-            ("the computer is overloaded: another program, a backup or an update is using the processor"),
             (
-                "a driver does not respond: a fault in its cable, its adapter, or the computer's "
-                "disk or network"
+                "the computer is overloaded because another program, a backup or an update is using "
+                "the processor"
             ),
-            "a fault in TurnDesk; see the log",
+            (
+                "a driver does not respond because of a fault in its cable, its adapter, or the "
+                "computer's disk or network"
+            ),
+            "an internal error in TurnDesk; see the log",
         ),
         (
             "PRESS E-STOP: the display is out of date. Close other programs and stop backups and "
-            "updates. Save the log, then exit TurnDesk and start it again"
+            "updates. Save the log, then exit and restart TurnDesk"
         ),
         tells=True,
     ),
@@ -56,8 +59,8 @@ CONTROL: Entries = {
             "the screen was locked or the computer was in sleep mode",
         ),
         (
-            "Check the tool. Read what will restart, then press Cycle Start. Measure the part: "
-            "it is not counted"
+            "Check the tool. Read on the screen what will restart, then press Cycle Start. "
+            "Measure this part; it is not counted automatically"
         ),
         tells=True,
     ),
@@ -65,12 +68,12 @@ CONTROL: Entries = {
         907,
         "output not in commanded state",
         (
-            "a fuse, a relay or a terminal switched the output",
-            "something else is switching the output: a pendant or the drive's own software",
+            "a faulty fuse, relay or terminal has changed the state of the output",
+            "a pendant or the drive's own software is also switching the output",
         ),
         (
-            "Find the cause. Read what will be switched again, then press Cycle Start. Measure "
-            "the part: it is not counted"
+            "Find the cause. Read the list of outputs that will be switched again, then "
+            "press Cycle Start. Measure this part, because it is not counted"
         ),
         tells=True,
     ),
@@ -104,7 +107,7 @@ PROGRAM: Entries = {
         "program error",
         (
             "this line cannot be run as programmed",
-            "an input or a counter branched to a line that had never run before",
+            "a branch controlled by an input or a counter went to a line that had never run before",
         ),
         "Correct the line in the editor (F3) and load the program again",
         tells=True,
@@ -114,15 +117,15 @@ PROGRAM: Entries = {
         "end of travel",
         (
             "the tool offset or the part zero is wrong",
-            "the program was started from a position other than the one it was proved from",
+            "the program was not started from the position for which it was proved",
         ),
-        "Check the tool offset and where the axes were at the start, then press Reset",
+        "Check the tool offset and the start position of the axes, then press Reset",
         tells=True,
     ),
     "no-end": stop(
         403,
         "the program ends without M30 or M02",
-        ("the last line is missing: the program was cut off when it was sent or copied",),
-        "Compare the end of the program with the original, add M30 and load it again",
+        ("the last line is missing because the program was cut off when it was sent or copied",),
+        "Compare the end of the program with the original, add M30 and load the program again",
     ),
 }

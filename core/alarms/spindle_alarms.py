@@ -20,7 +20,10 @@ SPINDLE: Entries = {
         202,
         "spindle not at speed",
         (
-            "the spindle does not turn: belt or brake fault, or its drive is not enabled",
+            (
+                "the spindle does not turn because of a belt or brake fault, or because its drive is "
+                "not enabled"
+            ),
             "the spindle cannot reach this speed with this chuck and part",
             "the spindle was stopped externally",
         ),
@@ -32,10 +35,10 @@ SPINDLE: Entries = {
         "spindle ignores the command",
         (
             (
-                "the spindle drive does not follow its command: cable fault, wrong settings, or "
-                "local mode at its keypad"
+                "the spindle drive does not follow its command because of a cable fault, wrong "
+                "settings or local mode at its keypad"
             ),
-            "the spindle was started at its drive",
+            "the spindle was started locally at its drive",
         ),
         "PRESS E-STOP. Find the cause before starting the spindle again",
         tells=True,
@@ -43,7 +46,7 @@ SPINDLE: Entries = {
     "spindle-still": stop(
         204,
         "feed per revolution with spindle stopped",
-        ("no M03 or M04 before the cut",),
+        ("M03 or M04 is missing before the cut",),
         "Start the spindle in the program before this line",
         tells=True,
     ),
@@ -53,7 +56,7 @@ SPINDLE: Entries = {
         (
             "the cut stalled the spindle",
             "the belt slips",
-            "the spindle was switched off during the pass",
+            "the spindle was switched off during the threading pass",
         ),
         "X has retracted and the thread is not finished. Check the part and the insert",
         tells=True,
@@ -100,30 +103,30 @@ SPINDLE: Entries = {
     ),
     "spindle-encoder": stop(
         210,
-        "spindle encoder lost",
+        "spindle encoder signal lost",
         (
             "a fault in the encoder cable",
             "a fault in the encoder power supply",
             "the encoder has restarted or reports a fault",
         ),
-        "Check the encoder and its cable, then press Reset. No thread can be cut without the encoder",
+        "Check the encoder and its cable, then press Reset. Threads cannot be cut without the encoder",
         tells=True,
     ),
     "c-coupling": off(
         211,
-        "spindle did not switch over to C",
+        "spindle did not switch to C-axis mode",
         (
             "the spindle index was not found",
-            "the drive did not switch over to C in time",
-            ("power was lost during the changeover to C"),
+            "the spindle drive did not switch to C-axis mode in time",
+            ("power was lost during the switch to C-axis mode"),
         ),
         "Press Reset, then Drives On. Test M19 in MDI",
         tells=True,
     ),
     "thread-no-encoder": stop(
         212,
-        "threading requires a turning spindle",
-        ("no M03 or M04 before the thread", "this machine has no encoder on the spindle"),
+        "threading requires a running spindle",
+        ("M03 or M04 is missing before the thread", "the spindle of this machine does not have an encoder"),
         "Start the spindle before the thread. Without an encoder, use a die or a tap",
         tells=True,
     ),
@@ -131,15 +134,15 @@ SPINDLE: Entries = {
         213,
         "spindle not at commanded angle",
         (
-            "the spindle drive did not report in time that it reached the angle",
+            "the spindle drive did not report in time that the spindle had reached its angle",
             (
-                "something prevents the spindle from turning to its angle, or has turned it away "
-                "from that angle"
+                "something prevents the spindle from reaching the commanded angle, or has turned the "
+                "spindle away from that angle"
             ),
             "the spindle index was not found",
         ),
         (
-            "Check whether a boring bar is still in its hole before moving any axis. Press "
+            "Before moving any axis, check whether a boring bar is still in its hole. Press "
             "Reset, then test the orientation in MDI"
         ),
         tells=True,
@@ -153,7 +156,7 @@ SPINDLE: Entries = {
     "spindle-stopped": hold(
         222,
         "spindle stopped",
-        ("the spindle was stopped during feed per revolution",),
+        ("the spindle was stopped during a move with feed per revolution",),
         "Start the spindle and press Cycle Start; otherwise press Reset",
     ),
     "spindle-switch": hold(
@@ -161,8 +164,8 @@ SPINDLE: Entries = {
         "spindle switch off",
         ("the spindle switch is at OFF",),
         (
-            "Set the spindle switch to AUTO. Press Cycle Start to start the spindle, as "
-            "announced, and resume. If the collet is open, press Reset, close it and start again"
+            "Set the spindle switch to AUTO, then press Cycle Start: the spindle starts as shown, "
+            "and the program resumes. If the collet is open, press Reset and start again"
         ),
     ),
     "spindle-has-stopped": hold(
@@ -170,11 +173,11 @@ SPINDLE: Entries = {
         "spindle stopped unexpectedly",
         (
             "the safety circuit, the guard or the spindle drive has switched the spindle off",
-            ("the driver host received nothing from the control for a moment and made the machine safe"),
+            ("the driver host received no data from the control for a short time and made the machine safe"),
         ),
         (
-            "Check the spindle and the tool. Press Cycle Start to restart the spindle, as "
-            "announced, and resume"
+            "Check the spindle and the tool. Press Cycle Start to restart the spindle as shown "
+            "on the screen and resume"
         ),
     ),
     "spindle-late": hold(
@@ -190,7 +193,10 @@ SPINDLE: Entries = {
         224,
         "spindle override at 0",
         ("the spindle override is at 0",),
-        ("Turn up the spindle override. Press Cycle Start to start the spindle, as announced, and resume"),
+        (
+            "Turn up the spindle override. Press Cycle Start to start the spindle as shown on "
+            "the screen and resume"
+        ),
     ),
 }
 
@@ -213,17 +219,17 @@ CHUCK: Entries = {
         303,
         "collet did not respond",
         (
-            "no air",
+            "no air pressure",
             "a fault in the collet switch or its cable",
             "the bar or the part prevents the collet from moving",
         ),
-        "Check the air and the switch, then press Reset",
+        "Check the air pressure and the collet switch, then press Reset",
         tells=True,
     ),
     "collet-lost": stop(
         304,
         "collet has opened",
-        ("air was lost while the spindle was turning", "a fault in the switch or its cable"),
+        ("air pressure was lost while the spindle was turning", "a fault in the switch or its cable"),
         "WAIT UNTIL THE SPINDLE STOPS. Check air, collet and bar, then press Reset",
         tells=True,
     ),

@@ -7,8 +7,8 @@ from core.alarms.alarm_entry import Entries, asked, hold
 STATION: Entries = {
     "held": hold(
         600,
-        "feed hold by TurnDesk",
-        ("the reason shown here",),
+        "feed hold set by TurnDesk",
+        ("the cause is shown in this alarm",),
         "Correct the cause shown, then press Cycle Start",
         tells=True,
     ),
@@ -16,14 +16,17 @@ STATION: Entries = {
         601,
         "no response from operator station",
         ("the operator station's cable is disconnected or damaged", "the power supply is off"),
-        ("Check the operator station's cable and power: its buttons do not work now. Then press Cycle Start"),
+        (
+            "The buttons of the operator station do not work. Check the station's cable "
+            "and power, then press Cycle Start"
+        ),
     ),
     "pot-jumps": hold(
         602,
         "override signal unstable",
         ("the track of the feed or spindle override pot is worn", "the override pot's cable is loose"),
         (
-            "Turn the pot slowly through its range and replace it if its signal is still "
+            "Turn the pot slowly through its range, and replace the pot if its signal is still "
             "unstable. Then press Cycle Start"
         ),
     ),
@@ -31,15 +34,15 @@ STATION: Entries = {
         604,
         "guard open",
         ("the guard was opened during the cycle", "a fault in the guard switch or its cable"),
-        "Close the guard, read what will restart, then press Cycle Start",
+        "Close the guard, read the list of functions that will restart, then press Cycle Start",
     ),
     "pendant": hold(
         605,
         "pendant disconnected",
         ("the pendant was unplugged", "a fault in the pendant's cable or hub"),
         (
-            "Plug the pendant in again, then press Cycle Start. To work without it, remove "
-            "[pendant] and everything connected to it from the machine file"
+            "Plug the pendant in again, then press Cycle Start. To work without the pendant, "
+            "remove [pendant] and all entries for it from the machine file"
         ),
         tells=True,
     ),
@@ -53,7 +56,7 @@ STATION: Entries = {
         701,
         "E-stop",
         ("an E-stop button was pressed", "the safety circuit has opened"),
-        "Make the machine safe, release the button, then press Drives On",
+        "Make the machine safe, release the E-stop button, then press Drives On",
         tells=True,
     ),
     "feed-hold": asked(

@@ -15,6 +15,7 @@ from core.drawings.drawing import DrawingError
 from core.drawings.work_limit import check_work
 from core.geometry.intersections import intersections
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between
+from core.message import Message
 
 GAP = 0.02
 """mm: ends nearer than this are joined."""
@@ -212,7 +213,7 @@ def _foremost(net: Net, gap: float) -> int:
     front = _at_front(net, gap)
     if not front:
         raise DrawingError(
-            ("has its frontmost point in the middle of an arc: end the arc at that point."), "front-in-arc"
+            ("has its foremost point in the middle of an arc: end the arc at this point."), "front-in-arc"
         )
     return min(front, key=lambda n: net.nodes[n][0])
 
@@ -311,7 +312,15 @@ def _checked(net: Net, walked: list[Element], gap: float) -> list[Element]:
         if end[0] <= gap and any(abs(z - end[1]) <= gap for z in net.crossings):
             behind = net.reach[1] - end[1]
             raise DrawingError(
-                (f"has a contour that crosses the axis {behind:.3f} mm from its face: choose another axis."),
+                (
+                    Message(
+                        (
+                            "has a contour that crosses the axis {distance} mm from the face: choose "
+                            "another axis."
+                        ),
+                        distance=f"{behind:.3f}",
+                    )
+                ),
                 "crosses-axis",
             )
     return walked
@@ -325,8 +334,12 @@ def _no_crossing(walked: Sequence[Element]) -> None:
         behind = walked[0].start[1] - point[1]
         raise DrawingError(
             (
-                f"has a contour that crosses itself {behind:.3f} mm from its face at a diameter of "
-                f"{2 * point[0]:.3f} mm: correct it there."
+                Message(
+                    "has a contour that crosses itself {distance} mm from the face at a diameter of "
+                    "{point} mm: correct the contour at this point.",
+                    distance=f"{behind:.3f}",
+                    point=f"{2 * point[0]:.3f}",
+                )
             ),
             "crosses-itself",
         )

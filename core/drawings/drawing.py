@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from core.coded_error import CodedError
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
+from core.message import Message
 
 MOST_BYTES = 16 * 1024 * 1024
 MOST_ELEMENTS = 50_000
@@ -101,18 +102,29 @@ def within_limits(found: Iterable[Drawn], name: str) -> Iterator[Drawn]:
     for count, each in enumerate(found):
         if count >= MOST_ELEMENTS:
             raise DrawingError(
-                (f"{name} has more than {MOST_ELEMENTS} lines: save only the layer with the contour."),
+                (
+                    Message(
+                        "{name} has more than {most_elements} lines: save only the layer with the contour.",
+                        name=name,
+                        most_elements=MOST_ELEMENTS,
+                    )
+                ),
                 "too-many-lines",
             )
         values = [v for p in (each.element.start, each.element.end) for v in p]
         if not all(map(math.isfinite, values)):
             raise DrawingError(
-                f"{name} has a point whose coordinate is not a number: save the drawing again.",
+                Message(
+                    "{name} has a point whose coordinate is not a number: save the drawing again.", name=name
+                ),
                 "not-a-number",
             )
         if max(map(abs, values)) > _FARTHEST:
             raise DrawingError(
-                f"{name} has a point too far from the drawing zero: move the contour to the zero.",
+                Message(
+                    "{name} has a point too far from the drawing origin: move the contour to the origin.",
+                    name=name,
+                ),
                 "too-far-from-zero",
             )
         yield each

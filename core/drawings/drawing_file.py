@@ -7,6 +7,7 @@ from pathlib import Path
 
 from core.drawings.drawing import MOST_BYTES, Drawing, DrawingError
 from core.input_file import MB, TooLargeError, failures_as, input_bytes
+from core.message import Message
 
 ENDINGS = (".dxf", ".svg")
 
@@ -19,11 +20,14 @@ def is_drawing(name: str) -> bool:
 def read_drawing(path: Path) -> Drawing:
     """Return the lines and arcs of a drawing. Raises DrawingError alone, without words of a library."""
     if not is_drawing(path.name):
-        raise DrawingError(f"{path.name} is not a supported drawing: use a DXF or SVG file.", "not-a-drawing")
+        raise DrawingError(
+            Message("{path} is not a supported drawing: use a DXF or SVG file.", path=path.name),
+            "not-a-drawing",
+        )
     with failures_as(partial(_unreadable, path)):
         data = input_bytes(path, MOST_BYTES)
         if not data:
-            raise DrawingError(f"{path.name} is empty: save the drawing again.", "empty")
+            raise DrawingError(Message("{path} is empty: save the drawing again.", path=path.name), "empty")
         if path.suffix.lower() == ".svg":
             from core.drawings.svg_reader import read_svg
 
@@ -35,14 +39,27 @@ def read_drawing(path: Path) -> Drawing:
 
 def _unreadable(path: Path, error: Exception) -> DrawingError:
     if isinstance(error, TooLargeError):
-        words = f"{path.name} is larger than {MOST_BYTES // MB} MB. Save only the contour of the part."
+        words = Message(
+            "{path} is larger than {most_bytes} MB. Save only the contour of the part.",
+            path=path.name,
+            most_bytes=MOST_BYTES // MB,
+        )
         return DrawingError(words, "too-large")
     if isinstance(error, OSError) and error.errno is not None:
-        return DrawingError(f"{path.name} cannot be read: {error.strerror}.", "unreadable")
+        return DrawingError(
+            Message("{path} cannot be read: {cause}.", path=path.name, cause=error.strerror),
+            "unreadable",
+        )
     if isinstance(error, MemoryError):
-        words = (
-            f"{path.name} needs more memory than is allowed for a drawing. Save only the contour of the part."
+        words = Message(
+            "{path} needs more memory than is allowed for a drawing. Save only the contour of the part.",
+            path=path.name,
         )
         return DrawingError(words, "out-of-memory")
     kind = path.suffix[1:].upper()
-    return DrawingError(f"{path.name} is damaged or is not a {kind} file: save the drawing again.", "damaged")
+    return DrawingError(
+        Message(
+            "{path} is damaged or is not a {kind} file: save the drawing again.", path=path.name, kind=kind
+        ),
+        "damaged",
+    )

@@ -14,6 +14,7 @@ from pathlib import Path
 from core.drawings.drawing import Drawing, DrawingError
 from core.drawings.drawing_data import drawing_of
 from core.input_file import failures_as
+from core.message import Message
 
 _CHILD = "core.drawings.drawing_child"
 _ROOT = Path(__file__).parents[2]
@@ -53,7 +54,11 @@ def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Lim
         )
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
         raise DrawingError(
-            f"{path.name} cannot be read because no process can be started.", "unreadable"
+            Message(
+                "{path} cannot be read because a process for reading drawings cannot be started.",
+                path=path.name,
+            ),
+            "unreadable",
         ) from error
     with process:
         try:
@@ -90,10 +95,18 @@ def _ended(path: Path, status: int, limits: Limits) -> DrawingError:
     if -status == getattr(signal, "SIGXCPU", 0):
         return _too_long(path, limits.processor)
     most = limits.memory // 1024**2
-    words = f"{path.name} cannot be read with {most} MB of memory. Save only the contour of the part."
+    words = Message(
+        "{path} cannot be read with {maximum} MB of memory. Save only the contour of the part.",
+        path=path.name,
+        maximum=most,
+    )
     return DrawingError(words, "out-of-memory")
 
 
 def _too_long(path: Path, seconds: float) -> DrawingError:
-    words = f"{path.name} takes more than {seconds:.0f} s to read. Save only the contour of the part."
+    words = Message(
+        "{path} takes more than {seconds} s to read. Save only the contour of the part.",
+        path=path.name,
+        seconds=f"{seconds:.0f}",
+    )
     return DrawingError(words, "too-slow")

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from core.drawings.contour_walk import GAP, Net, inner_side, nets, outer_side, turned_about
 from core.drawings.drawing import Drawing, DrawingError, Drawn
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
+from core.message import Message
 
 _SAME = 0.01  # units: centre lines nearer than this are one
 _SQUARE = 1e-3  # rad
@@ -92,7 +93,7 @@ def _centre_lines(drawing: Drawing) -> list[Axis]:
     lines.sort(key=lambda line: (abs(line.start_direction[0]) > 0.5, -line.length))
     found: list[Axis] = []
     for each in lines:
-        axis = _axis(f"CENTRE LINE {len(found) + 1}", each)
+        axis = _axis(Message("CENTRE LINE {found_count}", found_count=len(found) + 1), each)
         if not any(_same(axis, other) for other in found):
             found.append(axis)
     return found[:9]
@@ -131,18 +132,26 @@ def line_axis(drawing: Drawing, number: int) -> Axis:
     if not 1 <= number <= len(drawing.drawn):
         raise DrawingError(
             (
-                f"{drawing.name} has {len(drawing.drawn)} lines, but no line {number}: choose one of "
-                "its lines."
+                Message(
+                    "{drawing} has {drawn_count} lines, but not a line {number}: choose an existing line.",
+                    drawing=drawing.name,
+                    drawn_count=len(drawing.drawn),
+                    number=number,
+                )
             ),
             "no-line",
         )
     each = drawing.drawn[number - 1].element
     if not isinstance(each, Line):
         raise DrawingError(
-            f"{drawing.name} has an arc as line {number}: choose a straight line as the axis.",
+            Message(
+                "{drawing}: line {number} is an arc. Choose a straight line as the axis.",
+                drawing=drawing.name,
+                number=number,
+            ),
             "axis-is-arc",
         )
-    return _axis(f"LINE {number}", each)
+    return _axis(Message("LINE {line}", line=number), each)
 
 
 def axis_named(drawing: Drawing, name: str, layer: str = "") -> Axis:
@@ -156,7 +165,13 @@ def axis_named(drawing: Drawing, name: str, layer: str = "") -> Axis:
     if found is None:
         there = ", ".join(axis.name for axis in known) or "none"
         raise DrawingError(
-            f"{drawing.name} has no axis {name}: choose {there}, or LINE and a line number.", "no-axis"
+            Message(
+                "{drawing} has no axis {name}: choose {present}, or LINE and a line number.",
+                drawing=drawing.name,
+                name=name,
+                present=there,
+            ),
+            "no-axis",
         )
     return found
 
@@ -191,7 +206,9 @@ def contours(drawing: Drawing, view: View, layer: str = "") -> list[Net]:
     try:
         above, below = nets(placed, view.gap), nets(turned_about(placed), view.gap)
     except DrawingError as error:
-        raise DrawingError(f"{drawing.name} {error}", error.code) from None
+        raise DrawingError(
+            Message("{drawing} {error}", drawing=drawing.name, error=error), error.code
+        ) from None
     on_axis = [bool(found) and _touches(found[0], view.gap) for found in (above, below)]
     return below if below and (not above or (on_axis[1] and not on_axis[0])) else above
 
@@ -219,7 +236,9 @@ def profile(drawing: Drawing, view: View, net: Net, side: Side = Side.OUTSIDE) -
     try:
         walked = inner_side(net, view.gap) if side is Side.INSIDE else outer_side(net, view.gap)
     except DrawingError as error:
-        raise DrawingError(f"{drawing.name} {error}", error.code) from None
+        raise DrawingError(
+            Message("{drawing} {error}", drawing=drawing.name, error=error), error.code
+        ) from None
     low, high, _ = net.reach
     zero = {Zero.FACE: high, Zero.BACK: low, Zero.ORIGIN: 0.0}[view.zero] - view.shift
     moved = tuple(_along(each, -zero) for each in walked)

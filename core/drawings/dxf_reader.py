@@ -24,6 +24,7 @@ from core.drawings.drawing import (
 )
 from core.drawings.expansion import Content, check_expansion
 from core.geometry.lines_and_arcs import Element, Point
+from core.message import Message
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
@@ -55,17 +56,23 @@ def _document(path: Path, data: bytes) -> Document:
     from ezdxf.filemanagement import readfile
 
     if data.startswith(b"AC10"):
-        raise DrawingError(f"{path.name} is a DWG drawing: save it as DXF.", "dwg")
+        raise DrawingError(Message("{path} is a DWG drawing: save it as DXF.", path=path.name), "dwg")
     logging.getLogger("ezdxf").setLevel(logging.CRITICAL + 1)  # its words mean nothing to an operator
     return readfile(path)
 
 
 def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
     if any(kind in _SOLID for kind in left_out):
-        text = f"{name} is three-dimensional: save a section or a view of the part in one plane."
+        text = Message(
+            "{name} is three-dimensional: save a section or a view of the part in one plane.", name=name
+        )
         return DrawingError(text, "three-dimensional")
     what = ", ".join(sorted(left_out)) if left_out else "nothing"
-    text = f"{name} has no lines or arcs in model space, only {what[:80]}: draw the contour with lines."
+    text = Message(
+        "{name} does not contain any lines or arcs in model space, only {what}: draw the contour with lines.",
+        name=name,
+        what=what[:80],
+    )
     return DrawingError(text, "nothing-drawn")
 
 
@@ -104,9 +111,14 @@ def _read(read: Reader, entity: Any, near: float, name: str) -> Iterator[Element
         yield from read(entity, near)
     except (ValueError, ArithmeticError, AttributeError, IndexError) as error:
         if isinstance(error, DrawingError):
-            raise DrawingError(f"{name} {error}", error.code) from None
-        what = f"a {entity.dxftype()} in {name} on layer {entity.dxf.get('layer', '0')}"
-        raise DrawingError(f"{what} is damaged: draw it again.", "damaged") from error
+            raise DrawingError(Message("{name} {error}", name=name, error=error), error.code) from None
+        what = Message(
+            "a {kind} in {name} on layer {count}",
+            kind=entity.dxftype(),
+            name=name,
+            count=entity.dxf.get("layer", "0"),
+        )
+        raise DrawingError(Message("{what} is damaged: draw it again.", what=what), "damaged") from error
 
 
 def _centre(layer: str, linetype: str) -> bool:
@@ -118,7 +130,12 @@ def _taken_apart(entities: Iterable[Any], name: str, depth: int) -> Iterator[Any
     """Entities, those of blocks where these are inserted; what has dimensions or texts stays whole."""
     if depth > _DEEPEST:
         raise DrawingError(
-            f"{name} has blocks nested more than {_DEEPEST} levels deep: explode them.", "nested-blocks"
+            Message(
+                "{name} has blocks nested more than {deepest} levels deep: explode the blocks.",
+                name=name,
+                deepest=_DEEPEST,
+            ),
+            "nested-blocks",
         )
     for entity in entities:
         if entity.dxftype() != "INSERT":

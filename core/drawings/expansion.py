@@ -6,6 +6,7 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import NamedTuple, TypeVar
 
 from core.drawings.drawing import MOST_ELEMENTS, DrawingError
+from core.message import Message
 
 Key = TypeVar("Key", bound=Hashable)
 
@@ -23,8 +24,14 @@ def check_expansion(name: str, root: Key, content: Callable[[Key], Content], spa
     ``spare`` entities are allowed besides: those that the file itself has. Raises DrawingError.
     """
     if _count(name, root, content) > MOST_ELEMENTS + spare:
-        words = f"The repeated parts of {name} add up to more than {MOST_ELEMENTS} entities"
-        raise DrawingError(f"{words}: save only the contour of the part.", "too-many-lines")
+        words = Message(
+            "The repeated groups in {name} add up to more than {most_elements} entities",
+            name=name,
+            most_elements=MOST_ELEMENTS,
+        )
+        raise DrawingError(
+            Message("{words}: save only the contour of the part.", words=words), "too-many-lines"
+        )
 
 
 def _count(name: str, root: Key, content: Callable[[Key], Content]) -> int:
@@ -44,7 +51,10 @@ def _count(name: str, root: Key, content: Callable[[Key], Content]) -> int:
             waiting[here] = content(here)  # type: ignore[arg-type]
             below = [each for _, each in waiting[here].inserted if each not in known]
             if any(each in waiting for each in below):
-                words = f"A repeated part of {name} contains itself: save only the contour of the part."
+                words = Message(
+                    "A repeated group in {name} contains itself: save only the contour of the part.",
+                    name=name,
+                )
                 raise DrawingError(words, "nested-blocks")
             stack += below
     return known[root]

@@ -14,6 +14,7 @@ from core.drawings.turning_contour import Groove, TurningContour, joined, reach_
 from core.geometry.intersections import intersections
 from core.geometry.lines_and_arcs import Arc, Element, Line
 from core.language.source import Dialect
+from core.message import Message
 from core.part.insert_codes import decoded
 from core.part.tool_shape import ToolShape
 from core.shapes.contour import Row
@@ -194,12 +195,14 @@ def _check_tip(tool: ToolShape | None, number: float, setting: Setting) -> None:
     The part would come out too small by the nose radius. Raises DrawingError.
     """
     if tool is not None and not tool.tip and (nose := nose_of(tool)):
-        words = (
-            f"T{number:.0f} has a nose radius of {nose / setting.mm:.4g}, but its tool data has "
-            "no tip quadrant"
+        words = Message(
+            "T{number} has a nose radius of {nose}, but its tool data has no tip quadrant",
+            number=f"{number:.0f}",
+            nose=f"{nose / setting.mm:.4g}",
         )
         raise DrawingError(
-            (f"{words}: enter the tip quadrant on the SHAPE page of the tool (F8, F8)."), "no-tip-quadrant"
+            (Message("{words}: enter the tip quadrant on the SHAPE page of the tool (F8, F8).", words=words)),
+            "no-tip-quadrant",
         )
 
 
@@ -306,7 +309,10 @@ def _groove(
     if blade is None:
         number = _number(typed, "BLADE")
         return (
-            f"the groove cannot be cut because T{number:.0f} has no width"
+            Message(
+                "the groove cannot be cut because the width of T{number} is not defined",
+                number=f"{number:.0f}",
+            )
             if number
             else ("the groove cannot be cut because no grooving tool is specified")
         )
@@ -314,7 +320,7 @@ def _groove(
     leaning = _leaning(groove, wide)
     box = leaning[:4] if leaning else _square(groove, wide, 1.0 if outside else -1.0)
     if box is None:
-        return f"the groove is narrower than the {wide:.3g} mm blade"
+        return Message("the groove is narrower than the {wide} mm blade", wide=f"{wide:.3g}")
     front, back, bottom, edge = box
     found: dict[str, Value] = {
         "T": _number(typed, "BLADE"),

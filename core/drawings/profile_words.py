@@ -8,6 +8,7 @@ from typing import Any
 from core.drawings.drawing_view import Profile
 from core.drawings.part_against_drawing import Comparison, Deviation
 from core.drawings.profile_program import ProfileProgram
+from core.message import Message
 from core.shapes.number_words import plain
 
 _CLOSED = 1e-4  # mm: a narrower gap was none
@@ -24,34 +25,63 @@ def in_words(
         x, z, r = (plain(v / mm, places + 1) for v in (2.0 * n.x, n.z, n.r))
         if n.quadrant:
             edge = f"T{made.tool:.0f} D{n.number}"
-            yield f"{edge} must have nose radius {r} {unit} and tip quadrant {n.quadrant}"
+            yield Message(
+                "{edge} must have nose radius {radius} {unit} and tip quadrant {quadrant}",
+                edge=edge,
+                radius=r,
+                unit=unit,
+                quadrant=n.quadrant,
+            )
         else:
-            yield f"secondary offset {n.number} must have X {x} (diameter), Z {z}, R {r} {unit}"
+            yield Message(
+                "secondary offset {number} must have X {x} (diameter), Z {z}, R {radius} {unit}",
+                number=n.number,
+                x=x,
+                z=z,
+                radius=r,
+                unit=unit,
+            )
     elif not made.nose_radius:
-        yield (f"the tool data of T{made.tool:.0f} has no nose radius: the contour is not compensated")
+        yield (
+            Message(
+                "the tool data of T{tool} has no nose radius, so the contour is not compensated",
+                tool=f"{made.tool:.0f}",
+            )
+        )
     if profile.closed > _CLOSED:
-        yield f"gaps up to {plain(profile.closed / mm, places)} {unit} were closed"
+        yield Message(
+            "gaps up to {closed} {unit} were closed", closed=plain(profile.closed / mm, places), unit=unit
+        )
     for each in made.left:
-        span = f"Z {plain(each.front / mm, places)} to {plain(each.back / mm, places)}"
-        yield f"{span} is not cut: {each.why}"
+        span = Message(
+            "Z {front} to {back}", front=plain(each.front / mm, places), back=plain(each.back / mm, places)
+        )
+        yield Message("{span} is not cut: {why}", span=span, why=each.why)
     if comparison is None:
-        yield "the proof produced no part, so no comparison with the drawing was possible"
+        yield "proving did not produce a part, so a comparison with the drawing was not possible"
         return
     for found in comparison.found:
         yield _deviation(found, made.nose_radius, mm, unit, places)
     within = plain(max(comparison.worst, 0.001) / mm, places)
     what = "elsewhere, the proved part" if comparison.found else "the proved part"
-    yield f"{what} matches the drawing within {within} {unit}"
+    yield Message("{what} matches the drawing to within {within} {unit}", what=what, within=within, unit=unit)
 
 
 def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int) -> str:
     what = "of stock remains on" if found.most > 0.0 else "too much is cut from"
     deep = plain(abs(found.most) / mm, places)
-    span = f"Z {plain(found.front / mm, places)} to {plain(found.back / mm, places)}"
+    span = Message(
+        "Z {front} to {back}", front=plain(found.front / mm, places), back=plain(found.back / mm, places)
+    )
     if is_corner(found, nose):
         at = plain(found.back / mm, places)
-        return f"{deep} {unit} of stock remains in the corner at Z {at} because of the tool nose"
-    return f"{deep} {unit} {what} the radius, {span}"
+        return Message(
+            "{depth} {unit} of stock remains in the corner at Z {position} because of the tool nose radius",
+            depth=deep,
+            unit=unit,
+            position=at,
+        )
+    return Message("{depth} {unit} {what} the radius, {span}", depth=deep, unit=unit, what=what, span=span)
 
 
 def is_corner(found: Deviation, nose: float) -> bool:

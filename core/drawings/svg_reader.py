@@ -16,6 +16,7 @@ from core.drawings.arc_fitting import Place, arcs_of
 from core.drawings.drawing import Drawing, DrawingError, Drawn, arc, line, nearest, within_limits
 from core.drawings.expansion import Content, check_expansion
 from core.geometry.lines_and_arcs import Element, Point
+from core.message import Message
 
 _PIXELS = 96.0  # an inch, by CSS
 _ROOT = re.compile(rb"<svg\b[^>]*>", re.IGNORECASE | re.DOTALL)
@@ -57,7 +58,11 @@ def read_svg(name: str, data: bytes) -> Drawing:
     if not drawn:
         what = ", ".join(sorted(left_out)) or "nothing"
         raise DrawingError(
-            f"{name} has no paths or lines, only {what[:80]}: draw the contour as a path.",
+            Message(
+                "{name} does not contain any paths or lines, only {what}: draw the contour as a path.",
+                name=name,
+                what=what[:80],
+            ),
             "nothing-drawn",
         )
     return Drawing(name, drawn, unit, dict(left_out))
@@ -73,14 +78,16 @@ def _shapes(name: str, data: bytes) -> Any:
 
     if b"<!ENTITY" in data:
         raise DrawingError(
-            f"{name} defines XML entities, which are not supported: save it as plain SVG.", "own-entities"
+            Message("{name} defines XML entities, which are not supported: save it as plain SVG.", name=name),
+            "own-entities",
         )
     _check_elements(name, data)
     root = SVG.parse(io.BytesIO(data), reify=True, ppi=_PIXELS)
     if not isinstance(root, SVG):
-        words = (
-            f"{name} is not an SVG file, because its first element is in another namespace: save "
-            "the drawing again."
+        words = Message(
+            "{name} is not an SVG file, because its first element is in another namespace: save "
+            "the drawing again.",
+            name=name,
         )
         raise DrawingError(words, "damaged")
     return root
@@ -112,7 +119,12 @@ def _check_numbers(name: str, element: Element_) -> None:
     for dimension in _DIMENSIONS.intersection(element.keys()):
         if _NO_NUMBER.search(element.get(dimension, "")):
             kind = str(element.tag).rpartition("}")[2]
-            words = f"{name}: {dimension} of <{kind}> is not a number. Draw that element again."
+            words = Message(
+                "{name}: {dimension} of <{kind}> is not a number. Draw that element again.",
+                name=name,
+                dimension=dimension,
+                kind=kind,
+            )
             raise DrawingError(words, "no-number")
 
 
@@ -133,7 +145,9 @@ def _drawn(root: Any, near: float, left_out: Counter[str], name: str) -> Iterato
         for segment in Outline(each):
             if not isinstance(segment, Move | Close) and segment.start is None:
                 raise DrawingError(
-                    f"{name} has a path that does not begin with M: save the drawing again.",
+                    Message(
+                        "{name} has a path that does not begin with M: save the drawing again.", name=name
+                    ),
                     "path-without-start",
                 )
             for element in _segment(segment, near):

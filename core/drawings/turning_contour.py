@@ -15,6 +15,7 @@ from core.drawings.drawing import DrawingError
 from core.drawings.drawing_view import Profile, Side
 from core.geometry.intersections import intersections
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
+from core.message import Message
 from core.part.swept_edge import towards_axis
 from core.part.tool_outline import outline
 from core.part.tool_shape import ToolShape
@@ -91,7 +92,7 @@ def turning_contour(profile: Profile, reach: Reach) -> TurningContour:
     lit = _without_face(lit)
     if not lit:
         raise DrawingError(
-            "This contour has only a face, so nothing can be turned. Choose another contour.",
+            "This contour consists only of a face, so there is nothing to turn. Choose another contour.",
             "nothing-to-turn",
         )
     kept, grooves = _bridged(lit, reach.fall, left)
@@ -218,9 +219,13 @@ def _not_too_steep(kept: Iterable[Element], reach: Reach) -> None:
         if each.end[0] > each.start[0] + _SAME and _rise(each) > reach.rise + 1e-3:
             raise DrawingError(
                 (
-                    f"The tool edge is at {math.degrees(reach.rise):.0f} degrees, but the contour at Z "
-                    f"{each.start[1]:.3f} mm is at {math.degrees(_rise(each)):.0f} degrees: use a tool "
-                    "for shoulders."
+                    Message(
+                        "The tool edge is at {rise} degrees, but the contour at Z {start} mm is at {item} "
+                        "degrees: use a tool that can turn shoulders.",
+                        rise=f"{math.degrees(reach.rise):.0f}",
+                        start=f"{each.start[1]:.3f}",
+                        item=f"{math.degrees(_rise(each)):.0f}",
+                    )
                 ),
                 "too-steep",
             )
@@ -261,7 +266,7 @@ def _bridged(
                 continue  # what comes now may be a groove of its own
             edge = elements[at].start[1]
             at = _sloped(elements, at, most, kept)
-            left.append((kept[-1].end[1], edge, "the contour falls too steeply for the tool"))
+            left.append((kept[-1].end[1], edge, "the contour slopes too steeply for the tool"))
     return kept, grooves
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.drawings.contour_walk import Net
+from core.message import Message
 
 UNITS = {"MM": 1.0, "INCH": 25.4}
 """The units that a user can choose, mm."""
@@ -31,4 +32,4 @@ def _fits(long: float, radius: float, travel: tuple[float, float]) -> bool:
 def _too_large(long: float, radius: float, unit: float, most: float) -> str:
     size, what = (long, "long") if long > most else (2.0 * radius, "across")
     mm, name = (25.4, "in") if unit == UNITS["INCH"] else (1.0, "mm")
-    return f"{size / mm:.4g} {name} {what}"
+    return Message("{size} {name} {what}", size=f"{size / mm:.4g}", name=name, what=what)

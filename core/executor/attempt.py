@@ -8,6 +8,8 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import ClassVar
 
+from core.message import Message
+
 _log = logging.getLogger(__name__)
 
 
@@ -57,7 +59,7 @@ class ReportedAttempt(Attempt):
         return True
 
     def _write(self, error: BaseException) -> None:
-        what = f"{type(error).__name__}: {error}"
+        what = Message("{name}: {error}", name=type(error).__name__, error=error)
         self._written[what] += 1
         times = self._written[what]
         if str(times).strip("0") == "1":

@@ -35,7 +35,10 @@ class ChangedOffsets:
         """Keep them for the end of the part; returns why not, empty when they are kept."""
         job = asked.job
         if job is not None and (running is None or job.source.text != running.source.text):
-            return "another program is running; changed offsets apply only to the same program"
+            return (
+                "another program is running; changed offsets apply only to the program for which "
+                "they were entered"
+            )
         self._asked = asked
         return ""
 

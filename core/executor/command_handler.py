@@ -12,11 +12,12 @@ from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
 from core.executor.snapshot import CYCLE, LINES, Starts, State
 from core.executor.station_signals import StationWatch
+from core.message import Message
 
 LAMP_TEST = 2.0  # s
 _SWITCHES = ("single_block", "optional_stop", "cycle_repeat", "no_count")
 _AT_REST = frozenset({State.IDLE, State.DISABLED})
-_UNDER_WAY = "a program is running; wait for its end or press Reset before loading another"
+_UNDER_WAY = "a program is running; wait until it ends or press Reset before loading another program"
 
 
 class CommandHandler:
@@ -77,7 +78,7 @@ class CommandHandler:
     def _enable(self, _: commands.EnableDrives) -> None:
         control = self._control
         if control.state is not State.DISABLED:
-            self._refuse(f"drives cannot be switched on in state {control.state.value}")
+            self._refuse(Message("drives cannot be switched on in state {state}", state=control.state.value))
         elif control.status.alarms:
             self._refuse("an alarm is active; press Reset first")
         elif self._context.unknown:
@@ -92,28 +93,38 @@ class CommandHandler:
     def _switch(self, command: commands.SetSwitch) -> None:
         name, on = command.name, command.on
         if name not in _SWITCHES:
-            self._refuse(f"switch {name!r} does not exist")
+            self._refuse(Message("switch {name} does not exist", name=f"{name!r}"))
             return
         setattr(self._context.switches, name, on)
-        self._context.log("switch", f"{name.replace('_', ' ')} {'on' if on else 'off'}")
+        self._context.log(
+            "switch", Message("{name} {ending}", name=name.replace("_", " "), ending="on" if on else "off")
+        )
 
     def _override(self, command: commands.FeedOverride) -> None:
         if not 0.0 <= command.fraction <= 1.5:
-            self._refuse(f"feed override {command.fraction} is not between 0 and 1.5")
+            self._refuse(
+                Message("feed override {fraction} is not between 0 and 1.5", fraction=command.fraction)
+            )
             return
         self._context.soft_override = command.fraction
 
     def _limit(self, command: commands.SpindleLimit) -> None:
         rpm, highest = command.rpm, self._context.machine.spindle.rpm_max
         if rpm is not None and not 0.0 < rpm <= highest:
-            self._refuse(f"spindle speed limit {rpm:g} is not between 0 and {highest:g} rpm")
+            self._refuse(
+                Message(
+                    "spindle speed limit {rpm} is not between 0 and {highest} rpm",
+                    rpm=f"{rpm:g}",
+                    highest=f"{highest:g}",
+                )
+            )
             return
         spindle = self._context.spindle
         if spindle.command and (rpm or highest) > spindle.highest:
             self._refuse("the spindle speed limit can be raised only when the spindle is stopped")
             return
         spindle.limit = rpm
-        self._context.log("override", f"spindle speed limit {rpm or highest:g} rpm")
+        self._context.log("override", Message("spindle speed limit {rpm} rpm", rpm=f"{rpm or highest:g}"))
 
     # --- what Cycle Start will begin ----------------------------------------------------------------------
 
@@ -170,7 +181,7 @@ class CommandHandler:
             self._refuse(why)
         elif command.at:
             self._control.meant_at = self._context.now
-            self._context.log("confirmed", "start at the first line confirmed")
+            self._context.log("confirmed", "confirmed: the program starts at the first line")
 
     def _count(self, command: commands.PartsMade) -> None:
         self._control.counters.made = max(0, command.parts)
@@ -180,7 +191,10 @@ class CommandHandler:
         if command.why != status.next_barred:
             status.next_barred, status.start_refused = command.why, ""
             self._context.log(
-                "switch", f"no further parts: {command.why}" if command.why else ("further parts allowed")
+                "switch",
+                Message("further parts are not allowed: {why}", why=command.why)
+                if command.why
+                else ("further parts are allowed"),
             )
 
     # --- jog, homing --------------------------------------------------------------------------------------
@@ -198,12 +212,12 @@ class CommandHandler:
         why = why or jogger.refusal(command.axis, command.velocity, command.lease, command.along)
         if why:
             jogger.stop()
-            self._refuse(f"jog: {why}")
+            self._refuse(Message("jog: {why}", why=why))
         elif jogger.move(command.axis, command.velocity, command.lease, command.along):
             jogger.while_on = command.while_on
             control.enter(State.JOG)
         elif control.state is State.IDLE:
-            self._refuse(f"jog: {at_the_end(command.axis, command.velocity)}")
+            self._refuse(Message("jog: {why}", why=at_the_end(command.axis, command.velocity)))
 
     def _step(self, command: commands.JogStep) -> None:
         control, jogger = self._control, self._control.jogger
@@ -217,7 +231,7 @@ class CommandHandler:
             return
         if not jogger.stepping:
             jogger.stop()  # a held jog and a step at once: nobody can mean both
-        self._refuse(f"jog: {why}")
+        self._refuse(Message("jog: {why}", why=why))
 
     def _test(self, command: commands.DriveTest) -> None:
         control, jogger = self._control, self._control.jogger
@@ -227,19 +241,19 @@ class CommandHandler:
         why = why or control.drive_test.refusal(command.path, command.lease)
         if why:
             jogger.stop()  # whatever moves: nobody can mean both
-            self._refuse(f"drive test: {why}")
+            self._refuse(Message("drive test: {why}", why=why))
             return
         if control.drive_test.begin(command.path, command.lease):
             control.enter(State.JOG)
         else:
-            self._refuse("drive test: the lease time ran out before any axis could move")
+            self._refuse("drive test: the watchdog time expired before any axis could move")
 
     def _may_not_jog(self) -> bool:
         control = self._control
         if control.state is State.IDLE:
             control.jogger.forget()  # an alarm or the E-stop may have ended the jog before
         elif control.state is not State.JOG:
-            self._refuse(f"jogging is not available in state {control.state.value}")
+            self._refuse(Message("jogging is not available in state {state}", state=control.state.value))
             return True
         elif control.touch.phase is not None:
             control.stop_jog("another function was requested")
@@ -255,10 +269,12 @@ class CommandHandler:
         control = self._control
         idle = control.state is State.IDLE
         why = (
-            control.homing.begin(command.axis) if idle else (f"not available in state {control.state.value}")
+            control.homing.begin(command.axis)
+            if idle
+            else (Message("not available in state {state}", state=control.state.value))
         )
         if why:
-            self._refuse(f"homing: {why}")
+            self._refuse(Message("homing: {why}", why=why))
         else:
             control.enter(State.HOME)
 
@@ -266,18 +282,18 @@ class CommandHandler:
 
     def _offsets(self, command: commands.UseOffsets) -> None:
         if self._control.state in CYCLE:
-            self._refuse("a program is running and uses the offsets that it was proved with")
+            self._refuse("the running program uses the offsets with which it was proved")
             return
         status = self._control.status
         status.modal = modal_with_offsets(status.modal, command.tools, command.secondary)
-        self._context.log("offsets", "the offsets of the tables are in effect")
+        self._context.log("offsets", "the offsets in the tables are in effect")
 
     def _stop_spindle(self, _: commands.SpindleStop) -> None:
         if self._control.state in CYCLE:
             if self._control.status.starts in LINES:  # begun behind what the screen could see
                 self._control.reset()
             else:
-                self._refuse("a program is running; press feed hold, then Reset to stop its spindle")
+                self._refuse("a program is running; press feed hold, then Reset to stop the spindle")
             return
         self._context.spindle.stop()
         self._context.log_stop("by-hand", "the spindle was stopped manually")
@@ -292,15 +308,29 @@ class CommandHandler:
             self._context.log("force", "lamp test")
             return
         self._context.ports.io.write(command.name, command.on)
-        self._context.log("force", (f"{command.name} switched {('on' if command.on else 'off')} manually"))
+        self._context.log(
+            "force",
+            (
+                Message(
+                    "{command} switched {ending} manually",
+                    command=command.name,
+                    ending="on" if command.on else "off",
+                )
+            ),
+        )
 
     def _output_refusal(self, name: str, on: bool) -> str:
         """Why an output is not switched by hand now; empty when it is."""
         context, state = self._context, self._control.state
         if name not in context.machine.outputs:
-            return f"this machine has no output {name}"
+            return Message("this machine has no output {name}", name=name)
         if state not in _AT_REST:
-            return f"{name}: outputs can be switched manually only at rest, not in state {state.value}"
+            return Message(
+                "{name}: outputs can be switched manually only when the machine is at rest, not in "
+                "state {state}",
+                name=name,
+                state=state.value,
+            )
         if name == "collet" and not on and not (context.spindle.stopped and not context.spindle.asked):
             return "the collet cannot be opened manually while the spindle is turning"
         return ""

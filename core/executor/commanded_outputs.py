@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from core.machine.machine_model import OutputModel
 from core.machine.signal_table import LAMPS
+from core.message import Message
 from core.ports import DigitalIO
 
 _TELLS = 0.5  # s in which an output that was written may still be told as it was before
@@ -22,7 +23,9 @@ class Differing(NamedTuple):
     def words(self) -> str:
         """What has become of it, as the operator reads it."""
         name = self.name.upper()
-        return f"{name} TURNED OFF" if self.wanted else f"{name} TURNED ON"
+        return (
+            Message("{name} TURNED OFF", name=name) if self.wanted else Message("{name} TURNED ON", name=name)
+        )
 
 
 class CommandedOutputs:

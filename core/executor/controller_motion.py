@@ -19,6 +19,7 @@ from core.executor.standstill import Wait, at_speed
 from core.geometry.lines_and_arcs import arc_sweep
 from core.geometry.surface_speed import surface_rpm
 from core.interpreter.elementary_blocks import Block, Kind
+from core.message import Message
 from core.motion.axis_limits import CENTRIPETAL_SHARE, MotionLimits
 from core.ports import ArcOp, BlockOp, BlockSink, BlockState, LineOp, RapidOp, ThreadOp
 
@@ -53,7 +54,7 @@ def parts_of(
     Raises AlarmError for what has no speed or is not X and Z alone.
     """
     if block.travel is not None or block.plane is not None or block.c != block.c0:
-        raise AlarmError("program", "this controller moves X and Z only", block.line)
+        raise AlarmError("program", "this controller can move only X and Z", block.line)
     fastest = most(block)
     seconds = max(nominal_seconds(block), block.length / fastest)
     if block.kind is Kind.THREAD:
@@ -133,7 +134,7 @@ def _feed_rate(block: Block, x: float, turning: Turning) -> float:
             rpm = surface_rpm(block.css, x, modal.css_min, modal.css_max or turning.highest)
         feed *= min(rpm, turning.highest) * turning.scale / 60.0
     if feed <= 0.0:
-        raise AlarmError("program", f"line {block.line} has no feed", block.line)
+        raise AlarmError("program", Message("line {line} has no feed rate", line=block.line), block.line)
     return feed
 
 

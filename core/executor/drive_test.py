@@ -15,9 +15,12 @@ from core.executor.jogging import LONGEST_LEASE, Jogger
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import DriveTestState
 from core.machine.machine_model import Axis
+from core.message import Message
 from core.ports import MachinePorts
 
-PLANS = "no drive tests: the controller plans its own motion and accepts no setpoints"
+PLANS = (
+    "drive tests are not available because the controller plans its own motion and does not accept setpoints"
+)
 _ROUND = 1e-9
 TICKS = 100.0  # samples a second where the driver has none of its own
 
@@ -61,13 +64,13 @@ class DriveTester:
         if why := barred(self._context.ports) or self._jogger.missing(path.axis):
             return why
         if not math.isfinite(lease) or lease <= 0.0:
-            return "a drive test needs a lease time above 0"
+            return "a drive test needs a watchdog time greater than 0"
         return self._not_now(path.axis) or self._no_test(path)
 
     def _not_now(self, name: str) -> str:
         context = self._context
         if self._jogger.axis:
-            return f"{self._jogger.axis} is still moving"
+            return Message("{axis} is still moving", axis=self._jogger.axis)
         if context.signals.hold:
             return "feed hold is pressed"
         if context.spindle.guard_open:
@@ -75,13 +78,16 @@ class DriveTester:
         if context.spindle.asked or not context.spindle.stopped:
             return "the spindle is turning; stop it first"
         if not context.sample.homed[context.ports.axes.axes.index(name)]:
-            return f"{name} is not homed, so it is not known whether the test has room"
+            return Message(
+                "{name} is not homed, so TurnDesk cannot check whether there is enough travel for the test",
+                name=name,
+            )
         return ""
 
     def _no_test(self, path: DriveTestPath) -> str:
         axis = self._context.machine.axis(path.axis)
         if axis.rotary:
-            return f"{axis.name} is a rotary axis; drive tests are only for linear axes"
+            return Message("{axis} is a rotary axis; drive tests are only for linear axes", axis=axis.name)
         limits = self._limits(axis)
         return path.refusal(limits) or self._no_room(axis, path, limits)
 
@@ -91,9 +97,12 @@ class DriveTester:
         for way in (low, high):
             if abs(way) > _ROUND and abs(way) > room_to_limit(axis, here, way):
                 end = "+" if way > 0.0 else "−"
-                return (
-                    f"{axis.name} needs {abs(way):.3f} mm in the {end} direction for the test, but its "
-                    "travel ends before that"
+                return Message(
+                    "{axis} must move {distance} mm in the {end} direction for the test, but its travel ends "
+                    "before that point",
+                    axis=axis.name,
+                    distance=f"{abs(way):.3f}",
+                    end=end,
                 )
         return ""
 

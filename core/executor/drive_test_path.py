@@ -15,6 +15,7 @@ import numpy as np
 
 from core.executor.jog_line import Ramp
 from core.executor.jogging import step_ramps
+from core.message import Message
 
 LARGEST = 2.54  # mm: what is larger is no small test
 LONGEST = 25.4  # mm of a ramp, which needs way to become even
@@ -63,19 +64,26 @@ class DriveTestPath:
         """Why this is no test; empty when it is one."""
         longest = LONGEST if self.shape is Shape.RAMP else LARGEST
         if not 0.0 < abs(self.size) <= longest + _ROUND:
-            return f"the size of this test must be above 0 and at most {longest:g} mm"
+            return Message(
+                ("the travel of this test must be greater than 0 and at most {longest} mm"),
+                longest=f"{longest:g}",
+            )
         if self.shape is Shape.RAMP:
             return self._ramp_refusal(limits)
         return self._sine_refusal(limits) if self.shape is Shape.SINE else ""
 
     def _ramp_refusal(self, limits: Limits) -> str:
         if not 0.0 < self.speed <= limits.top + _ROUND:
-            return (
-                f"the speed of a ramp must be above 0 and at most {limits.top:.0f} mm/s, the limit "
-                "for manual moves"
+            return Message(
+                "the speed of a ramp must be above 0 and at most {top} mm/s, the limit for manual moves",
+                top=f"{limits.top:.0f}",
             )
         if self.speed**2 / limits.amax > 0.5 * abs(self.size):
-            return f"{abs(self.size):g} mm is too short to reach a constant speed of {self.speed:g} mm/s"
+            return Message(
+                "a travel of {size} mm is too short to reach a constant speed of {speed} mm/s",
+                size=f"{abs(self.size):g}",
+                speed=f"{self.speed:g}",
+            )
         return ""
 
     def _sine_refusal(self, limits: Limits) -> str:
@@ -83,8 +91,10 @@ class DriveTestPath:
             return "the frequency of a sine must be from 0.5 to 200 Hz"
         fastest = max(self.frequencies)
         if fastest > limits.fastest_sine + _ROUND:
-            return (
-                f"this driver reports {limits.rate:g} samples per second, too few for a {fastest:g} Hz sine"
+            return Message(
+                "this driver reports {rate} samples per second, which is not enough for a {fastest} Hz sine",
+                rate=f"{limits.rate:g}",
+                fastest=f"{fastest:g}",
             )
         return ""
 

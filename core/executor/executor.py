@@ -40,6 +40,7 @@ from core.executor.start_conditions import guard_open
 from core.executor.station_signals import StationWatch
 from core.interpreter.job_setup import Setup
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.motion.axis_limits import MotionError
 from core.ports import DriverError, MachinePorts, TrippedError, Unknown
 
@@ -249,7 +250,12 @@ class Executor:
             self._control.counters.cycle += context.now - before
             self._control.program_run.cut(context.now - before)
             if context.now - before > _STALL:
-                context.log("starved", f"the control did not run for {context.now - before:.2f} s")
+                context.log(
+                    "starved",
+                    Message(
+                        ("the control software did not run for {now} s"), now=f"{context.now - before:.2f}"
+                    ),
+                )
                 if self._control.cycle is not None:  # before what was pressed meanwhile stops or ends it
                     self._control.cycle.catch_up()
 
@@ -267,7 +273,9 @@ class Executor:
             self._logged_override == 0.0
         ):
             self._logged_override = fraction
-            self._context.log("override", f"feed override {100 * fraction:.0f} %")
+            self._context.log(
+                "override", Message("feed override {fraction} %", fraction=f"{100 * fraction:.0f}")
+            )
 
     def _obey(self) -> None:
         """E-stop first, then what was posted, then the station's buttons."""
@@ -277,7 +285,7 @@ class Executor:
             self.patient = self.patient or isinstance(command, _WAITED_FOR)
             self._guarded(partial(self._handler.obey, command))
         if signals.hold:
-            control.feed_hold("", "the button at the operator station")
+            control.feed_hold("", "the feed hold button on the operator station")
         elif signals.trouble:
             control.feed_hold(signals.trouble)
         elif signals.lost and (control.state in ACTIVE or signals.lost != self._lost):
@@ -287,7 +295,7 @@ class Executor:
         if signals.start:
             control.start()
         elif signals.late_start:
-            self._context.log("refused", "CycleStart arrived too late and was ignored")
+            self._context.log("refused", "the CycleStart command arrived too late and was ignored")
         if signals.turned_on:
             control.spindle_switch()
         control.follow_wheel()
@@ -301,7 +309,15 @@ class Executor:
                 return
             self._rest.over()  # whatever it does is shown at once
             if isinstance(command, _STARTS) and self._context.now - posted > _STALE:
-                self._context.log("refused", (f"{type(command).__name__} arrived too late and was ignored"))
+                self._context.log(
+                    "refused",
+                    (
+                        Message(
+                            ("the {name} command arrived too late and was ignored"),
+                            name=type(command).__name__,
+                        )
+                    ),
+                )
             else:
                 yield command
 

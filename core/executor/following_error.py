@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from core.alarms import Code
 from core.executor.raised_alarm import AlarmError
 from core.machine.machine_model import Axis
+from core.message import Message
 from core.ports import AxisSample
 
 _HOST = 0.03  # s beyond a drive's own time: a drive that trips by itself is to be heard first
@@ -90,7 +91,9 @@ class _OneAxis:
         limit = axis.following_limit(self._speed)
         if self._lasts("off", error > limit) > axis.following_time + _HOST:
             code: Code = "standstill" if rest > axis.still_time else "following"
-            raise AlarmError(code, f"{axis.name} is {self._words(error)} off its setpoint")
+            raise AlarmError(
+                code, Message("{axis} is {error} off its setpoint", axis=axis.name, error=self._words(error))
+            )
         if rest > axis.still_time:
             self._at_standstill(error, rest)
 
@@ -99,11 +102,25 @@ class _OneAxis:
         axis, unmoved = self._axis, self._t - self._counted_at
         pushed = max(_PART * axis.still_window, 4.0 * axis.in_position)
         if self._lasts("pushed", error > pushed) > axis.still_time and unmoved > axis.still_time:
-            raise AlarmError("standstill", (f"{axis.name} remains {self._words(error)} off its setpoint"))
+            raise AlarmError(
+                "standstill",
+                (
+                    Message(
+                        "{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)
+                    )
+                ),
+            )
         beside = self._lasts("beside", error > axis.in_position) > _ARRIVES and rest > _ARRIVES
         frozen = self._lasts("frozen", error > _CLOSE * axis.count) > _FROZEN and unmoved > _FROZEN
         if beside or frozen:
-            raise AlarmError("standstill", (f"{axis.name} remains {self._words(error)} off its setpoint"))
+            raise AlarmError(
+                "standstill",
+                (
+                    Message(
+                        "{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)
+                    )
+                ),
+            )
 
     def sent(self) -> None:
         """Something moves, by the driver's own word: where it stood no longer counts."""
@@ -121,7 +138,12 @@ class _OneAxis:
         self._stood = actual if self._stood is None else self._stood
         off = abs(actual - self._stood)
         if self._lasts("moved", off > axis.still_window) > axis.still_time:
-            raise AlarmError("moved-unasked", f"{axis.name} has moved by {self._words(off)}")
+            raise AlarmError(
+                "moved-unasked",
+                Message(
+                    ("{axis} has moved by {off} without a command"), axis=axis.name, off=self._words(off)
+                ),
+            )
 
     def _note_speed(self, speed: float) -> None:
         if speed * self._dt > _NOTHING:
@@ -142,7 +164,13 @@ class _OneAxis:
         elif self._t - since > _UNMOVED and sent > least and abs(demand - actual) > least:
             raise AlarmError(
                 "encoder-still",
-                (f"{axis.name} was commanded to move {self._words(sent)}, but its encoder does not count"),
+                (
+                    Message(
+                        "{axis} was commanded to move {sent}, but its encoder does not count",
+                        axis=axis.name,
+                        sent=self._words(sent),
+                    )
+                ),
             )
 
     def _lasts(self, what: str, holds: bool) -> float:
@@ -153,4 +181,8 @@ class _OneAxis:
         return self._t - self._since.setdefault(what, self._t)
 
     def _words(self, way: float) -> str:
-        return f"{way:.2f} degrees" if self._axis.rotary else f"{way:.3f} mm"
+        return (
+            Message("{angle} degrees", angle=f"{way:.2f}")
+            if self._axis.rotary
+            else Message("{unit} mm", unit=f"{way:.3f}")
+        )

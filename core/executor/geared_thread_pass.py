@@ -66,7 +66,7 @@ class GearedThreadPass(SpindlePass):
             if self._mesh_from_rest(early):
                 self._stopped = False
                 return
-        raise DriverError("the thread could not be queued in time", "late")
+        raise DriverError("the thread moves could not be queued in time", "late")
 
     def track(self) -> None:
         """Once a tick: see how well it is followed; plan the end again when the speed has changed."""

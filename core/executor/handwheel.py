@@ -17,6 +17,7 @@ from core.executor.machine_context import MachineContext
 from core.executor.snapshot import State
 from core.machine.machine_model import Axis
 from core.machine.station_rules import ENABLE, WHEEL, selector
+from core.message import Message
 
 # --- counts and clicks ----------------------------------------------------------------------------------
 
@@ -98,7 +99,7 @@ class Handwheel:
         """Take the handwheel away, and log why. Raises DriverError."""
         self._stop(state)
         self.axis, self.ended = "", why
-        self._context.log("refused", f"handwheel: {why}")
+        self._context.log("refused", Message("handwheel: {what}", what=why))
 
     def turn(self, state: State) -> bool:
         """Called once a tick: follow the clicks; returns whether the axis moves. Raises DriverError."""
@@ -146,26 +147,36 @@ class Handwheel:
             return why
         longest = LONGEST_TURN if context.machine.axis(command.axis).rotary else LONGEST_CLICK
         if not 0.0 < command.step <= longest + _ROUNDING:
-            return f"a handwheel step must be above 0 and at most {longest:g}, not {command.step:g}"
+            return Message(
+                "a handwheel step must be above 0 and at most {longest}, not {step}",
+                longest=f"{longest:g}",
+                step=f"{command.step:g}",
+            )
         if not 0.0 < command.lease < math.inf:
-            return "the handwheel needs a lease time above 0"
+            return "the handwheel needs a watchdog time greater than 0"
         return ""
 
     def _lost(self, state: State, axis: str) -> str:
         """What takes the wheel away in this tick."""
         context, signals, inputs = self._context, self._context.signals, self._context.inputs
         reasons = (
-            (state not in {State.IDLE, State.JOG}, f"not available in state {state.value}"),
+            (
+                state not in {State.IDLE, State.JOG},
+                Message("not available in state {state}", state=state.value),
+            ),
             (signals.trouble != "", signals.trouble.lower()),
             (signals.wheel_trouble != "", signals.wheel_trouble),
             (signals.hold, "feed hold"),
-            (self._clicks.leapt, "the handwheel counts jump; check its cable"),
+            (self._clicks.leapt, "the handwheel count jumps; check the handwheel cable"),
             (
                 self.axis != "" and context.now > self._until,
                 ("the page that uses the handwheel stopped responding"),
             ),
             (not inputs.get(ENABLE, True), "the handwheel's enabling switch is not pressed"),
-            (not inputs.get(selector(axis), True), f"the axis selector switch is not set to {axis}"),
+            (
+                not inputs.get(selector(axis), True),
+                Message("the axis selector switch is not set to {axis}", axis=axis),
+            ),
         )
         found = next((why for so, why in reasons if so), "")
         return found or self._jogger.spinning(axis) or self._jogger.uncoupled(axis)
@@ -179,7 +190,12 @@ class Handwheel:
         jogger.chase(self.axis, found.pieces, wanted)
         if jogger.goal is not None and found.goal != wanted:
             jogger.goal = found.goal
-            self._refuse_once(f"the handwheel is turned faster than {self.axis} can move; clicks are dropped")
+            self._refuse_once(
+                Message(
+                    "the handwheel is being turned faster than {axis} can move, so clicks are lost",
+                    axis=self.axis,
+                )
+            )
         return jogger.goal is not None
 
     def _top(self, index: int) -> float:
@@ -200,7 +216,7 @@ class Handwheel:
     def _refuse_once(self, what: str) -> None:
         if what != self._reported:
             self._reported = what
-            self._context.log("refused", f"handwheel: {what}")
+            self._context.log("refused", Message("handwheel: {what}", what=what))
 
 
 class _Chase:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.executor.machine_context import MachineContext
+from core.message import Message
 from core.ports import Stop
 
 _SETTLES = 1.0  # s that the slides may take to stand before the next axis looks for home
@@ -21,7 +22,7 @@ class Homing:
         """Start with one axis, or with all; returns why not, empty when it has begun."""
         axes = self._context.machine.axes
         if name and name not in {axis.name for axis in axes}:
-            return f"this machine has no axis {name} to home"
+            return Message("this machine has no axis {name} to home", name=name)
         lost = [
             axis
             for axis, homed in zip(axes, self._context.sample.homed, strict=True)

@@ -7,9 +7,10 @@ from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from math import isfinite
 
+from core.message import Message
 from core.tool_edges import edge_name
 
-CONTROL_LOST = "THE CONTROL LOST ITS POWER OR WAS KILLED"
+CONTROL_LOST = "THE CONTROL LOST POWER OR ITS PROCESS WAS KILLED"
 CLOSED = "TURNDESK WAS CLOSED"
 GIVEN_UP = "CANCELED BY RESET"
 ESTOP = "E-STOP"
@@ -43,7 +44,14 @@ class InterruptedJob:
     @property
     def words(self) -> str:
         """Program, line, tool, part and cause in a few words, for the log and for sentences."""
-        return f"{self.program} line {self.line}, {edge_name(self.tool)}, part {self.part}: {self.why}"
+        return Message(
+            "{program}, line {line}, {tool}, part {part}: {why}",
+            program=self.program,
+            line=self.line,
+            tool=edge_name(self.tool),
+            part=self.part,
+            why=self.why,
+        )
 
 
 def plain(kept: InterruptedJob) -> dict[str, object]:

@@ -16,6 +16,7 @@ from core.executor.snapshot import STOPPED, Starts, State
 from core.interpreter.checkpoint import Begin
 from core.interpreter.elementary_blocks import Block
 from core.language.source import Dialect
+from core.message import Message
 from core.tool_edges import edge_name
 
 Note = Callable[[InterruptedJob | None], None]
@@ -79,7 +80,7 @@ class InterruptionWatch:
         if before is not None and begin is not None and _of(before, status.job):
             self._before = before
         elif before is not None:
-            self._over(f"{before.words}; the program restarts from the beginning")
+            self._over(Message("{before}; the program restarts from the beginning", before=before.words))
         status.interrupted = None
         self._note(self._now(status.job, None))
 
@@ -143,7 +144,9 @@ class InterruptionWatch:
         before = self._status.interrupted
         self._answered = None
         if before is not None and not _of(before, job):
-            self._over(f"{before.words}; {job.source.name} was loaded instead")
+            self._over(
+                Message("{before}; {source} was loaded instead", before=before.words, source=job.source.name)
+            )
 
     def answer(self, at: str) -> str:
         """The operator has read what a start at the first line does; why that does not count, or nothing."""
@@ -173,10 +176,18 @@ class InterruptionWatch:
             return ""
         job = self._status.job
         there = job is None or job.source.dialect is Dialect.OMNITURN
-        how = "resume at that line with SEARCHTO (F6), or press Y" if there else "jog the tool clear, press Y"
-        return (
-            f"line {found.line} of {found.program} was interrupted and {edge_name(found.tool)} "
-            f"may still be in the part: {how} and then start at the first line"
+        how = (
+            "resume at the interrupted line with SEARCHTO (F6), or press Y"
+            if there
+            else ("jog the tool clear of the part, press Y")
+        )
+        return Message(
+            "line {line} of {program} was interrupted, and {tool} may still be in the part: "
+            "{method} and then start at the first line",
+            line=found.line,
+            program=found.program,
+            tool=edge_name(found.tool),
+            method=how,
         )
 
     def _over(self, words: str) -> None:

@@ -23,6 +23,7 @@ from core.executor.jog_line import (
 )
 from core.executor.machine_context import MachineContext
 from core.machine.machine_model import Axis
+from core.message import Message
 from core.ports import BlockSink, DriverError, at_rest
 
 # --- setpoints of one axis ------------------------------------------------------------------------------
@@ -130,11 +131,11 @@ class Jogger:
         if why := self.missing(name) or self._astray(name, along):
             return why
         if not (math.isfinite(velocity) and math.isfinite(lease)) or lease <= 0.0:
-            return "a jog needs a velocity and a lease time above 0"
+            return "a jog needs a velocity and a watchdog time greater than 0"
         if self.testing:
-            return f"the drive test of {self.axis} is still running"
+            return Message("the drive test of {axis} is still running", axis=self.axis)
         if self.stepping:
-            return f"the jog step of {self.axis} is not finished"
+            return Message("the jog step of {axis} is not finished", axis=self.axis)
         return self._barred(name)
 
     def step_refusal(self, name: str, distance: float, speed: float, along: Direction | None = None) -> str:
@@ -144,20 +145,24 @@ class Jogger:
         if not math.isfinite(speed) or speed <= 0.0:
             return "a jog step needs a speed above 0"
         if not 0.0 < abs(distance) <= _LONGEST_STEP + _STEP_ROUNDING:
-            return f"a jog step must be above 0 and at most {_LONGEST_STEP:g}, not {distance:g}"
+            return Message(
+                "a jog step must be above 0 and at most {longest_step}, not {distance}",
+                longest_step=f"{_LONGEST_STEP:g}",
+                distance=f"{distance:g}",
+            )
         if self.axis:
-            return f"{self.axis} is still moving; wait for the end of its step"
+            return Message("{axis} is still moving; wait until its jog step is finished", axis=self.axis)
         return self._barred(name) or self._too_far(name, distance, along)
 
     def _astray(self, name: str, along: Direction | None) -> str:
         """Why nothing moves along an axis of a tilted plane."""
         context = self._context
         if self.axis == name and not self._line_of(name, along).same(self._line):
-            return f"{self.axis} is still being jogged"
+            return Message("{axis} is still being jogged", axis=self.axis)
         if along is None:
             return ""
         if not set("XYZ") <= {axis.name for axis in context.machine.axes} or wrong_direction(along):
-            return "jogging in a tilted plane needs X, Y and Z and a direction of length 1"
+            return "jogging in a tilted plane needs the axes X, Y and Z and a direction vector of length 1"
         if not all(context.sample.homed):
             return "home all axes before jogging in a tilted plane"
         return ""
@@ -173,14 +178,14 @@ class Jogger:
         machine = self._context.machine
         known = name in {axis.name for axis in machine.axes}
         there = known and (name != "C" or machine.c_enabled or machine.kind != "lathe")
-        return "" if there else f"this machine has no axis {name} to jog"
+        return "" if there else Message("this machine has no axis {name} to jog", name=name)
 
     def _barred(self, name: str) -> str:
         context = self._context
         if context.signals.hold:
             return "feed hold is pressed"
         if self.axis and self.axis != name:
-            return f"{self.axis} is still being jogged"
+            return Message("{axis} is still being jogged", axis=self.axis)
         return self.spinning(name) or self.uncoupled(name)
 
     def spinning(self, name: str) -> str:
@@ -188,14 +193,14 @@ class Jogger:
         context = self._context
         turns = context.spindle.asked or not context.spindle.stopped
         if name == "C" and context.machine.spindle_is_c and turns:
-            return "C is the spindle, which is turning; stop it first"
+            return "the C axis is the spindle, and the spindle is turning; stop the spindle first"
         return ""
 
     def uncoupled(self, name: str) -> str:
         """Why C does not move yet: the spindle's drive has to become C first, which begins here."""
         if name != "C" or not self._context.machine.spindle_is_c or self._context.spindle.hold(orient=False):
             return ""
-        return "the spindle drive is switching over to C; release the key or button and jog again in 2 s"
+        return "the spindle drive is switching to C-axis mode; release the key or button and jog again in 2 s"
 
     def _too_far(self, name: str, distance: float, along: Direction | None) -> str:
         """A step that would leave the travel is not shortened: it would no longer be what was asked."""
@@ -302,12 +307,18 @@ class Jogger:
     def ended(self) -> None:
         """It rests; a step that was cut short is said to be so."""
         if self._short and self.testing:
-            self._context.log("refused", (f"the drive test of {self.axis} was stopped before its end"))
+            self._context.log(
+                "refused",
+                (Message("the drive test of {axis} was stopped before it was finished", axis=self.axis)),
+            )
         elif self._short:
-            self._context.log("refused", f"the jog step of {self.axis} was stopped before its end")
+            self._context.log(
+                "refused",
+                Message("the jog step of {axis} was stopped before it was finished", axis=self.axis),
+            )
         elif self.testing:
             self.tested += 1
-            self._context.log("test", f"{self.axis} drive test")
+            self._context.log("test", Message("{axis} drive test", axis=self.axis))
         self.forget()
 
     def forget(self) -> None:
@@ -351,7 +362,11 @@ class Jogger:
 
 def at_the_end(name: str, direction: float) -> str:
     """Why an axis goes no further."""
-    return f"{name} is at the end of its travel in the {('+' if direction > 0.0 else '−')} direction"
+    return Message(
+        "{name} is at the end of its travel in the {ending} direction",
+        name=name,
+        ending="+" if direction > 0.0 else "−",
+    )
 
 
 # --- jog by the controller ------------------------------------------------------------------------------
@@ -392,7 +407,7 @@ class BlockJogger(Jogger):
 
     def _astray(self, name: str, along: Direction | None) -> str:
         """A controller that jogs by itself jogs its own axes."""
-        return "" if along is None else f"{name}: the controller can jog only its own axes"
+        return "" if along is None else Message("{name}: the controller can jog only its own axes", name=name)
 
     def step(self, name: str, distance: float, speed: float, along: Direction | None = None) -> None:
         """Begin a step from rest. Raises DriverError."""

@@ -28,6 +28,7 @@ from core.executor.supervision import OutputsWatch, Supervisor
 from core.executor.touch_off import TouchOff
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
+from core.message import Message
 from core.ports import Unknown
 
 _GOES_ON = frozenset({State.RUN, State.WAIT, State.IDLE, State.DISABLED, State.JOG, State.HOME})
@@ -146,8 +147,8 @@ class MachineControl:
         if self._context.now - self.meant_at >= MEANT:
             return ""
         return (
-            "pressed too soon after the confirmation: release both palm buttons, read the "
-            "prompt, then press them again"
+            "the palm buttons were pressed too soon after the confirmation: release both "
+            "buttons, read the prompt, then press both buttons again"
         )
 
     def _unannounced(self) -> str:
@@ -161,9 +162,12 @@ class MachineControl:
         rpm, by_hand = spindle.would_turn, self.state in BY_HAND
         if rpm and (by_hand or (self.state in STOPPED and not spindle.start_barred)):
             way = "FORWARD" if rpm > 0.0 else "REVERSE"
-            text = f"SPINDLE STARTS AT {abs(rpm):.0f} RPM {way}"
+            text = Message("SPINDLE STARTS AT {rpm} RPM {direction}", rpm=f"{abs(rpm):.0f}", direction=way)
             yield Starting(
-                SPINDLE, text if spindle.auto else f"SET SPINDLE SWITCH TO AUTO: {text}", spindle.permit, rpm
+                SPINDLE,
+                text if spindle.auto else Message("SET SPINDLE SWITCH TO AUTO: {start}", start=text),
+                spindle.permit,
+                rpm,
             )
 
     def _warned(self) -> Iterator[Starting]:
@@ -174,8 +178,8 @@ class MachineControl:
             return
         if proof.digest == job.digest and proof.warned and not proof.errors:  # else nothing begins
             first, more = proof.warned[0], len(proof.warned) - 1
-            said = f"{first} ({more} MORE)" if more else first
-            yield Starting("warned" + job.digest, f"WARNING: {said}", lambda: None)
+            said = Message("{first_error} ({more} MORE)", first_error=first, more=more) if more else first
+            yield Starting("warned" + job.digest, Message("WARNING: {warned}", warned=said), lambda: None)
 
     def _first_move_warned(self) -> Iterator[Starting]:
         """What the first move may meet where the part is not known, or is only assumed."""
@@ -183,7 +187,9 @@ class MachineControl:
             return
         found = start_conditions.first_move_verdict(self._context, self.status, self.counters.begun)
         if found is not None and found.warned:
-            yield Starting("first-move" + found.job, f"WARNING: {found.warned}", lambda: None)
+            yield Starting(
+                "first-move" + found.job, Message("WARNING: {warned}", warned=found.warned), lambda: None
+            )
 
     def feed_hold(self, reason: str, by: str = "", code: Code | None = None) -> None:
         """Hold the cycle, end a jog, brake a homing, take the handwheel away.
@@ -209,7 +215,9 @@ class MachineControl:
             self._acknowledge()
         elif self.cycle is not None and self.state in CYCLE:
             job = self.status.job
-            self._context.log_stop("reset", f"{job.source.name} was canceled" if job is not None else "")
+            self._context.log_stop(
+                "reset", Message("{source} was canceled", source=job.source.name) if job is not None else ""
+            )
             self._giving_up = True
             self.cycle.abandon()
             self._leave()
@@ -243,20 +251,23 @@ class MachineControl:
         turned, self._turned = self._turned, spindle.asked and not spindle.fails
         if not turned or self._turned or self.state is not State.JOG:
             return
-        why = f"the spindle has stopped: {spindle.why_slow or 'below half of commanded speed'}".lower()
+        why = Message(
+            "the spindle has stopped: {why_slow}",
+            why_slow=spindle.why_slow or "the spindle speed is below half of the commanded speed",
+        ).lower()
         self._end_jog(why)
         if self.wheel.axis:
             self.wheel.end(why, self.state)
         else:
-            self._context.log("refused", f"jog: {why}")
+            self._context.log("refused", Message("jog: {why}", why=why))
 
     def _ran_into_setter(self) -> None:
-        why = "the tool setter is triggered; jog away from it"
+        why = "the tool setter is triggered; jog the tool away from it"
         self.stop_jog(why)
         if self.wheel.axis:
             self.wheel.end(why, self.state)
         else:
-            self._context.log("refused", f"jog: {why}")
+            self._context.log("refused", Message("jog: {why}", why=why))
 
     def follow_wheel(self) -> None:
         """Where the handwheel is turned, its axis goes. Raises DriverError."""
@@ -336,7 +347,7 @@ class MachineControl:
         self.status.alarms = (*self.status.alarms, alarm)
         self.status.power_off = self.status.power_off or reaction is Reaction.OFF
         self.safe.react(reaction)
-        self._give_up(f"ALARM {alarm.number}: {alarm.text}")
+        self._give_up(Message("ALARM {number}: {alarms}", number=alarm.number, alarms=alarm.text))
         if self.state not in {State.ESTOP, State.FAULT}:
             self.enter(State.FAULT)
         context.log_event(Event(context.now, "alarm", log_line(alarm), alarm.line, alarm))
@@ -357,7 +368,7 @@ class MachineControl:
         """A mistake of the control itself, whatever the table of states says about it."""
         if self.state is not State.ESTOP:
             self.status.state = State.FAULT
-        self.alarm(AlarmError("internal", f"{type(error).__name__}: {error}"))
+        self.alarm(AlarmError("internal", Message("{name}: {error}", name=type(error).__name__, error=error)))
 
     def _give_up(self, why: str) -> None:
         """What was under way is over, whether or not what it stood on still answers."""
@@ -367,7 +378,9 @@ class MachineControl:
             self.program_run.forget(why)
         if trial.error is not None:
             self.program_run.drop()
-            self._context.log("alarm", f"while canceling the program: {trial.error}")
+            self._context.log(
+                "alarm", Message("fault while canceling the program: {error}", error=trial.error)
+            )
 
     def _finish_stopping(self) -> None:
         """A safe stop that a driver keeps from being done is tried on, and is an alarm of its own."""
@@ -375,7 +388,15 @@ class MachineControl:
             self.safe.again()
             if self.safe.undone and not any(each.code in CUT_OFF for each in self.status.alarms):
                 self.alarm(
-                    AlarmError("not-safe", (f"a driver does not carry out the stop for {self.safe.undone}"))
+                    AlarmError(
+                        "not-safe",
+                        (
+                            Message(
+                                "a driver does not carry out the stop command for {undone}",
+                                undone=self.safe.undone,
+                            )
+                        ),
+                    )
                 )
 
     def shut(self) -> None:

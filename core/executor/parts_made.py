@@ -6,6 +6,7 @@ from core.executor.control_status import Counters
 from core.executor.job import Job
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import Event
+from core.message import Message
 
 
 class Workpiece:
@@ -42,9 +43,10 @@ class Workpiece:
     def why_none(self) -> str:
         """Why its end makes no part; empty when it makes one."""
         if self.disturbed:
-            return (
-                f"the cycle was disturbed ({self.disturbed}); measure the part and, if it is good, "
-                "add it on F10"
+            return Message(
+                "the cycle was disturbed ({disturbed}); measure the part and, if it is good, add it "
+                "to the part count on page F10",
+                disturbed=self.disturbed,
             )
         return "" if self._whole else "a restart skipped part of the program"
 
@@ -70,12 +72,17 @@ class PartCount:
         if not self.piece.restarted:
             counters.last_cycle, counters.timed = seconds, counters.timed + 1
         if why:
-            text, line = f"{why}; {seconds:.2f} s", self._context.line
+            text, line = Message("{why}; {seconds} s", why=why, seconds=f"{seconds:.2f}"), self._context.line
             self._context.log_event(Event(self._context.now, "uncounted", text, line, load=load))
         else:
             counters.parts += 1
             counters.made += 1
-            text, line = f"part {counters.parts}, {seconds:.2f} s", self._context.line
+            text, line = (
+                Message(
+                    ("part {parts} completed in {seconds} s"), parts=counters.parts, seconds=f"{seconds:.2f}"
+                ),
+                self._context.line,
+            )
             self._context.log_event(
                 Event(self._context.now, "part", text, line, part=counters.made, load=load)
             )

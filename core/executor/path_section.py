@@ -17,11 +17,11 @@ from core.motion.motion_path import Path, PathBuilder
 class Progress(Enum):
     """How far the present path section is."""
 
-    DONE = "no path section, or its end is reached"
+    DONE = "no path section is active, or the end of the path section is reached"
     MOVING = "moving"
-    BLOCK_END = "stopped at the end of a block by Single Block"
-    STILL = "stopped because the override is 0"
-    HELD = "stopped by a hold from outside the control"
+    BLOCK_END = "the axes are stopped at the end of a block by Single Block"
+    STILL = "the axes are stopped because the override is 0"
+    HELD = "the axes are stopped by an external hold"
 
 
 class Overrides(NamedTuple):

@@ -26,6 +26,7 @@ from core.interpreter.actions import ProgramEnd
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 from core.language.source import Dialect
+from core.message import Message
 from core.tool_edges import tool_of
 
 
@@ -87,7 +88,7 @@ class ProgramRun:
         context.log("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
         begin = job.setup.begin
         if begin is not None and not begin.single:
-            context.log("restart", f"from line {begin.line}")
+            context.log("restart", Message("the program restarts at line {line}", line=begin.line))
 
     @property
     def will_count(self) -> bool:
@@ -221,11 +222,13 @@ class ProgramRun:
         if again is not None and again.code:
             return again.why
         old = outdated(self.status.job, left) if self.status.job is not None else ""
-        return f"{old}, and the program does not specify it" if old else ""
+        return Message("{old}, but the program does not specify this setting", old=old) if old else ""
 
     def _program_ended(self, no_repeat: str = "") -> None:
         if no_repeat:
-            self._context.log("refused", f"no cycle repeat: {no_repeat}")
+            self._context.log(
+                "refused", Message("the cycle is not repeated: {no_repeat}", no_repeat=no_repeat)
+            )
         self._context.log("end", "program end")
         self._put_away(self.modal)
         self._enter(State.IDLE)

@@ -6,6 +6,7 @@ import logging
 
 from core.alarms import CATALOGUE, Code, Reaction
 from core.executor.snapshot import Alarm
+from core.message import Message
 
 _log = logging.getLogger(__name__)
 CODES_OF_HOLDS: dict[str, Code] = {
@@ -52,17 +53,17 @@ def make_alarm(code: Code, detail: str, line: int, now: float) -> Alarm:
 def code_of_hold(reason: str, by: str) -> tuple[Code, str]:
     """What of the catalogue a hold is: ``reason`` in its words, or ``by`` whom it was pressed."""
     if not reason:
-        return "feed-hold", f"requested by {by}" if by else ""
+        return "feed-hold", Message("feed hold requested by {name}", name=by) if by else ""
     code = CODES_OF_HOLDS.get(reason)
     return ("held", reason.lower()) if code is None else (code, "")
 
 
 def log_line(alarm: Alarm) -> str:
     """One line for the log of events; it begins with the number, by which the catalogue is found again."""
-    return f"{alarm.number} {alarm.text}: {alarm.cause}"
+    return Message("{number} {alarm}: {cause}", number=alarm.number, alarm=alarm.text, cause=alarm.cause)
 
 
 def log_alarm(alarm: Alarm) -> None:
     """The technical side of an alarm, for whoever mends it."""
-    where = f" line {alarm.line}" if alarm.line else ""
+    where = Message(" line {line}", line=alarm.line) if alarm.line else ""
     _log.warning("alarm %d %s%s: %s", alarm.number, alarm.code, where, alarm.detail or alarm.cause)

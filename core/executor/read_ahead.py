@@ -12,6 +12,7 @@ from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.path_sections import SectionEnds
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.machine.machine_model import Machine
+from core.message import Message
 
 
 class ProgramPass(NamedTuple):
@@ -132,10 +133,14 @@ def check_block(block: Block, machine: Machine) -> None:
     if not block.moves:
         return
     if block.per_rev and block.kind is not Kind.RAPID and block.rpm == 0.0 and block.c == block.c0:
-        raise AlarmError("spindle-still", f"line {block.line} uses feed per revolution", block.line)
+        raise AlarmError(
+            "spindle-still", Message("line {line} uses feed per revolution", line=block.line), block.line
+        )
     if block.c != block.c0 and block.modal.spindle and machine.spindle_is_c:
         raise AlarmError(
-            "c-is-spindle", f"line {block.line} moves C while the spindle is turning", block.line
+            "c-is-spindle",
+            Message("line {line} moves C while the spindle is turning", line=block.line),
+            block.line,
         )
     for axis, (low, high) in zip(machine.axes, block.machine_reach(), strict=True):
         least, most = axis.reach
@@ -143,5 +148,13 @@ def check_block(block: Block, machine: Machine) -> None:
             unit = "degrees" if axis.rotary else "mm"
             far = low if low < least else high
             raise AlarmError(
-                "travel", f"line {block.line} moves {axis.name} to {far:.3f} {unit} from home", block.line
+                "travel",
+                Message(
+                    "line {line} moves {axis} to a position {distance} {unit} from home",
+                    line=block.line,
+                    axis=axis.name,
+                    distance=f"{far:.3f}",
+                    unit=unit,
+                ),
+                block.line,
             )

@@ -20,6 +20,7 @@ import numpy as np
 from core.executor.attempt import Attempt
 from core.executor.snapshot import Event, Snapshot, State, Tick
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.ports import FloatArray, MachinePorts, Unknown
 from core.records.record import Record
 from core.records.record_errors import RecordError
@@ -96,7 +97,7 @@ class Recorder:
         try:
             self._file = new_ring(folder, name, self.ring)
         except RecordError as error:
-            self.trouble = f"the record is stored in memory only: {error}"
+            self.trouble = Message("the record is stored in memory only: {error}", error=error)
 
     # --- the executor's thread ------------------------------------------------------------------------
 
@@ -138,7 +139,9 @@ class Recorder:
         if name in {self._name, self._writing} - {""}:
             raise RecordError("the record of this alarm is still being saved; try again in 2 s")
         if self.folder is None or Path(name).name != name or not (self.folder / name).exists():
-            raise RecordError(f"this alarm record was deleted; only the newest {KEPT} are stored")
+            raise RecordError(
+                Message("this alarm record was deleted; only the newest {saved} are stored", saved=KEPT)
+            )
         return open_record(self.folder / name)
 
     # --- the recorder's thread --------------------------------------------------------------------------
@@ -184,7 +187,7 @@ class Recorder:
             try:
                 self._file.write(rows, parts)
             except RecordError as error:
-                self.trouble = f"the record is stored in memory only: {error}"
+                self.trouble = Message("the record is stored in memory only: {error}", error=error)
                 _log.warning("%s", self.trouble)
                 self._file.close()
                 self._file = None
@@ -285,7 +288,12 @@ class Recorder:
         about = {
             **record.about,
             "program": frozen.program,
-            "alarm": f"{event.alarm.number} {event.alarm.text}: {event.alarm.cause}",
+            "alarm": Message(
+                "{number} {alarm}: {cause}",
+                number=event.alarm.number,
+                alarm=event.alarm.text,
+                cause=event.alarm.cause,
+            ),
             "alarm line": str(event.line),
             "alarm time": repr(event.t),  # on the clock of the samples
         }
@@ -293,7 +301,7 @@ class Recorder:
             save_record(replace(record, about=about), folder / event.record)
             rotate(folder)
         except RecordError as error:
-            self.trouble = f"the record of an alarm is lost: {error}"
+            self.trouble = Message("the record of an alarm was lost: {error}", error=error)
             _log.warning("%s", self.trouble)
 
 
@@ -313,7 +321,13 @@ def rotate(folder: Path) -> None:
         for old in sorted(folder.glob(f"*-alarm*{ENDING}"))[:-KEPT]:
             old.unlink()
     except OSError as error:
-        raise RecordError(f"{folder}: old records cannot be deleted: {error.strerror or error}") from error
+        raise RecordError(
+            Message(
+                "{folder}: old records cannot be deleted: {cause}",
+                folder=folder,
+                cause=error.strerror or error,
+            )
+        ) from error
 
 
 _LOAD = -2  # column of the spindle's load in a sample

@@ -12,6 +12,7 @@ from functools import partial
 from core.alarms import Reaction
 from core.executor.attempt import Attempt
 from core.executor.machine_context import MachineContext
+from core.message import Message
 from core.ports import DriverError, Stop
 
 _log = logging.getLogger(__name__)
@@ -80,7 +81,14 @@ class SafeStop:
         if error is not None and self._tries == 1:
             if not isinstance(error, DriverError):
                 _log.error("while stopping %s", name, exc_info=error)
-            self._context.log("alarm", f"while stopping {name}: {str(error) or type(error).__name__}")
+            self._context.log(
+                "alarm",
+                Message(
+                    "fault while stopping {name}: {error}",
+                    name=name,
+                    error=str(error) or type(error).__name__,
+                ),
+            )
         return error is None
 
     def _brake(self, how: Stop) -> None:

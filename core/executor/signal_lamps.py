@@ -14,6 +14,7 @@ from core.executor.machine_context import MachineContext
 from core.executor.signal_kinds import SignalKinds
 from core.executor.snapshot import ACTIVE, State
 from core.machine.signal_table import BUZZER, HALF, SIGNALS
+from core.message import Message
 from core.ports import DigitalIO, Unknown
 
 _AGAIN = 1.0  # s until a lamp that is not as it was switched is switched again
@@ -85,7 +86,7 @@ class SignalLamps:
             self._sent[name], self._due[name] = on, now + _AGAIN
             return
         self._refused[name] = now + _REFUSED
-        why = f"{name.upper()} CANNOT BE SWITCHED: {trial.error}"
+        why = Message("{name} CANNOT BE SWITCHED: {error}", name=name.upper(), error=trial.error)
         if why != self._told:
             self._told = why
             self.context.log("disturbed", why)

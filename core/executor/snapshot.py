@@ -17,6 +17,7 @@ from core.executor.interrupted_job import InterruptedJob
 from core.interpreter.kept_pass import KeptPass
 from core.interpreter.modal_state import Modal
 from core.interpreter.working_plane import Swivel
+from core.message import Message
 from core.ports import FloatArray, Unknown
 
 
@@ -282,4 +283,6 @@ class TransitionError(Exception):
 def demand_allowed(old: State, new: State) -> None:
     """Raises TransitionError unless ``new`` may follow ``old``."""
     if new not in TRANSITIONS[old]:
-        raise TransitionError(f"state {old.value} cannot change to {new.value}")
+        raise TransitionError(
+            Message(("the machine state cannot change from {old} to {new}"), old=old.value, new=new.value)
+        )

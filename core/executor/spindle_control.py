@@ -16,6 +16,7 @@ from core.executor.spindle_orientation import Orientation
 from core.geometry.surface_speed import surface_rpm
 from core.interpreter.elementary_blocks import Block
 from core.machine.machine_model import SpindleModel
+from core.message import Message
 from core.ports import Spindle, SpindleHold, SpindleOrientation, code_of
 
 # --- the angle of the spindle ---------------------------------------------------------------------------
@@ -31,7 +32,7 @@ class SpindleAngle:
     """A cubic through the encoder's readings of the last moments; revolutions, signed, and seconds.
 
     A reading every 10 ms in 4096 steps a turn tells the angle 45 ms ahead within .25 degree, and with a speed
-    that swings by 2 % in two seconds within .2 degree (docs/decisions/0009-threads.md).
+    that swings by 2 % in two seconds within .2 degree.
     """
 
     def __init__(self) -> None:
@@ -283,7 +284,7 @@ class SpindleControl:
             self._coasting = True
         return [
             ("C", self._free_c),
-            ("the spindle angle", self.orientation.let_go),
+            ("the spindle orientation", self.orientation.let_go),
             ("the spindle", partial(self._tell_off, coast=coast)),
         ]
 
@@ -360,8 +361,10 @@ class SpindleControl:
         self._coasting = self._coasting and not self.stopped and self.command == 0.0
         self.orientation.look()
         if not self._coasting and abs(self.measured) > self._allowed(now):
-            turns = (
-                f"the spindle turns at {self.measured:.0f} rpm; the commanded speed is {self.command:.0f} rpm"
+            turns = Message(
+                "the spindle turns at {measured} rpm; the commanded speed is {command} rpm",
+                measured=f"{self.measured:.0f}",
+                command=f"{self.command:.0f}",
             )
             raise AlarmError("ignores-stop", turns)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.executor.raised_alarm import AlarmError
+from core.message import Message
 from core.ports import SpindleOrientation
 
 
@@ -34,9 +35,7 @@ class Orientation:
     def bring(self, angle: float, sense: int) -> bool:
         """Ask for an angle, once; True as soon as the spindle is held there. Raises DriverError."""
         if self._port is None:
-            raise AlarmError(
-                "spindle-orient", ("this machine has nothing that stops the spindle at an angle")
-            )
+            raise AlarmError("spindle-orient", ("this machine cannot stop the spindle at an angle"))
         if self._asked != (angle, sense):
             self._reached = False
             self._port.orient(angle, sense)
@@ -56,5 +55,11 @@ class Orientation:
             assert self._asked is not None
             self._reached = False
             raise AlarmError(
-                "spindle-orient", (f"the drive no longer holds the spindle at {self._asked[0]:g} degrees")
+                "spindle-orient",
+                (
+                    Message(
+                        "the spindle drive no longer holds the spindle at {requested} degrees",
+                        requested=f"{self._asked[0]:g}",
+                    )
+                ),
             )

@@ -29,6 +29,7 @@ from core.interpreter.actions import (
 )
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.path_sections import needs_speed
+from core.message import Message
 
 # --- waits and actions ----------------------------------------------------------------------------------
 
@@ -166,7 +167,10 @@ def _orient_spindle(context: MachineContext, angle: float, sense: int) -> Wait:
     """The drive brings it to its angle once it stands; nothing goes on before it is held there."""
     spindle, model = context.spindle, context.machine.spindle
     if spindle.orientation.at != angle and start_conditions.unclamped(context):
-        raise AlarmError("collet-open", f"SPOS or M19 would turn the spindle to {angle:g} degrees")
+        raise AlarmError(
+            "collet-open",
+            Message("SPOS or M19 would turn the spindle to {angle} degrees", angle=f"{angle:g}"),
+        )
     if spindle.asked or not spindle.stopped:
         spindle.stop()
 
@@ -193,7 +197,10 @@ def _move_collet(closed: bool, context: MachineContext) -> Wait:
     """Where the machine file forbids unclamping at speed, opening waits until the spindle has run down."""
     waits = not closed and not context.machine.interlocks.unclamp_while_turning
     if waits and context.spindle.asked:
-        raise AlarmError("unclamp", f"the spindle turns at {context.spindle.measured:.0f} rpm")
+        raise AlarmError(
+            "unclamp",
+            Message("the spindle turns at {measured} rpm", measured=f"{context.spindle.measured:.0f}"),
+        )
     timing = context.machine.timing
     time = timing.collet_close if closed else timing.collet_open
     moved_at: list[float] = []

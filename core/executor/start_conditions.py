@@ -18,6 +18,7 @@ from core.executor.start_clearance import UNCHECKED, Clearance, verdict
 from core.interpreter.checkpoint import Begin
 from core.interpreter.machine_requirements import ORIENT, THREAD
 from core.interpreter.modal_state import Modal
+from core.message import Message
 from core.tool_edges import edge_name
 
 INHIBIT = "start_inhibit"  # the input that keeps every cycle from being started or going on
@@ -79,7 +80,7 @@ def hindrance(context: MachineContext, state: State) -> str:
         name(a.name) for a, homed in zip(context.machine.axes, context.sample.homed, strict=True) if not homed
     ]
     if away:
-        return f"{', '.join(away)} must be homed first"
+        return Message("{away} must be homed first", away=", ".join(away))
     return ""
 
 
@@ -91,18 +92,30 @@ def job_refusal(context: MachineContext, state: State, job: Job | None, proof: P
 def lacking(context: MachineContext, proof: Proof | None) -> str:
     """What the program asks for and this machine cannot do; empty when nothing."""
     blocks = context.ports.blocks
-    absent = {f"output {name}" for name in context.machine.absent}
+    absent = {Message("output {name}", name=name) for name in context.machine.absent}
     for need in proof.needs if proof is not None else ():
         if need.builders_m:
-            return f"line {need.line}: this machine has no function for {need.words}"
+            return Message(
+                "line {line}: this machine does not define {need}",
+                line=need.line,
+                need=need.words,
+            )
         if need.what in absent:
-            return f"line {need.line}: this machine has no {need.words}"
+            return Message("line {line}: this machine has no {need}", line=need.line, need=need.words)
         if blocks is not None and need.what not in blocks.caps:
-            return f"line {need.line}: this controller does not support {need.words}"
+            return Message(
+                "line {line}: this controller does not support {need}", line=need.line, need=need.words
+            )
         if blocks is None and need.what == ORIENT and context.ports.orientation is None:
-            return f"line {need.line}: the spindle driver of this machine cannot stop the spindle at an angle"
+            return Message(
+                "line {line}: the spindle driver of this machine cannot stop the spindle at an angle",
+                line=need.line,
+            )
         if blocks is None and need.what == THREAD and context.ports.spindle.angle() is None:
-            return f"line {need.line}: a thread needs a spindle encoder, and this machine has none"
+            return Message(
+                "line {line}: a thread needs a spindle encoder, but this machine does not have one",
+                line=need.line,
+            )
     return ""
 
 
@@ -113,11 +126,14 @@ def unproved(job: Job | None, proof: Proof | None) -> str:
     if proof is None:
         return "the program is not proved yet"
     if proof.digest != job.digest:
-        return "the proof belongs to another program or to other offsets: load the program again"
+        return "the proof was made for another program or with other offsets: load the program again"
     if proof.errors:
-        return f"the program has errors: {proof.errors[0]}"
+        return Message("the program has errors: {errors}", errors=proof.errors[0])
     if missing := proof.unset(job):
-        return f"tool offset {', '.join(edge_name(number) for number in missing)} has never been set"
+        return Message(
+            "tool offset {number} has never been set",
+            number=", ".join(edge_name(number) for number in missing),
+        )
     return ""
 
 
@@ -126,7 +142,7 @@ def unproved(job: Job | None, proof: Proof | None) -> str:
 
 _NOTHING = {
     Starts.LINE: "no line is ready to start",
-    Starts.RESTART: "no restart is ready: search for a line and confirm it",
+    Starts.RESTART: "the restart is not ready: search for a line and confirm it",
 }
 _SAME = 0.01  # mm, degrees: nearer than this the slides stand where a way was planned from
 
@@ -180,7 +196,7 @@ def _moved(context: MachineContext, job: Job | None) -> str:
     away = max(abs(a - b) for a, b in zip(at, job.setup.start, strict=False))
     if away <= _SAME:
         return ""
-    return f"the axes have moved since the proof: {_again(job.setup.begin)}"
+    return Message("the axes have moved since the program was proved; {begin}", begin=_again(job.setup.begin))
 
 
 def _changed(context: MachineContext, status: ControlStatus, job: Job | None) -> str:
@@ -190,12 +206,20 @@ def _changed(context: MachineContext, status: ControlStatus, job: Job | None) ->
     begin = job.setup.begin
     if begin is None:
         old = outdated(job, status.modal)
-        return f"{old}, and the program does not specify it; load the program again" if old else ""
+        return (
+            Message("{old}, but the program does not specify this setting; load the program again", old=old)
+            if old
+            else ""
+        )
     now = modal_as_machine(status.modal, context)
     if not begin.single:
         return _changed_for_restart(status, job, begin, now)
     same = now == begin.checkpoint.modal
-    return "" if same else f"the state has changed since the line was proved: {_again(begin)}"
+    return (
+        ""
+        if same
+        else Message("the machine state has changed since the line was proved; {begin}", begin=_again(begin))
+    )
 
 
 def _again(begin: Begin) -> str:
@@ -212,7 +236,12 @@ def _changed_for_restart(status: ControlStatus, job: Job, begin: Begin, now: Mod
     wanted = begin.checkpoint.modal.collet_closed
     if now.collet_closed != wanted:
         is_now, must = ("closed", "open") if now.collet_closed else ("open", "closed")
-        return f"the collet is {is_now} and must be {must} at line {begin.line}: use MDI"
+        return Message(
+            "the collet is {is_now}, but must be {must} at line {line}: change it in MDI",
+            is_now=is_now,
+            must=must,
+            line=begin.line,
+        )
     return unproved(status.job, status.proof)
 
 
@@ -255,7 +284,7 @@ class Announcement:
         for item in self._items(what):
             since, figure = self._since.get(item.what, (math.inf, 0.0))
             if now - since < TIME_TO_READ - 1e-9 or _differ(item.figure, figure):
-                return f"read this first: {item.text}; then start again"
+                return Message("read this message first: {item}; then start again", item=item.text)
         return ""
 
     def begin(self, what: str = "") -> None:

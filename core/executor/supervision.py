@@ -19,6 +19,7 @@ from core.executor.program_run import ProgramRun
 from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import ACTIVE, CYCLE, STOPPED, State
 from core.executor.start_conditions import Starting
+from core.message import Message, join_messages
 from core.ports import AxisSample, Trip, Unknown, code_of
 
 _POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
@@ -73,7 +74,10 @@ class Supervisor:
         )
         for axis, *told in each:
             if not all(map(math.isfinite, told)):
-                raise AlarmError("axis", (f"{axis.name}: the drive reports a position that is not a number"))
+                raise AlarmError(
+                    "axis",
+                    (Message("{axis}: the drive reports a position that is not a number", axis=axis.name)),
+                )
 
     def _collet_lost(self) -> None:
         """The switch may bounce while the collet closes; it must be off for its closing time."""
@@ -112,7 +116,7 @@ class OutputsWatch:
             told, self._known_off = self._known_off, frozenset()
             for each in self._context.outputs.accept():
                 if each.name not in told:  # by what has switched it off
-                    self._context.log("disturbed", f"{each.words} WITHOUT A COMMAND")
+                    self._context.log("disturbed", Message("{item} MOVED WITHOUT A COMMAND", item=each.words))
             return
         differing = self._context.outputs.differing()
         new = [each for each in differing if each.name not in self._known_off]
@@ -124,9 +128,9 @@ class OutputsWatch:
         """What the announcement lists: outputs that going on switches as the program has them."""
         if self._program_run.status.state in STOPPED:
             for name, wanted in self._context.outputs.differing():
-                words = f"{name.upper()} {'TURNS ON' if wanted else 'TURNS OFF'}"
+                words = Message("{output} TURNS ON" if wanted else "{output} TURNS OFF", output=name.upper())
                 begin = partial(self._context.outputs.write, name, wanted)
-                yield Starting(f"output {name}", words, begin)
+                yield Starting(Message("output {name}", name=name), words, begin)
 
     def _tripped(self, trip: Trip) -> None:
         """Lamps are no outputs of the program: they are lit again, and nothing is held or told for them."""
@@ -140,8 +144,17 @@ class OutputsWatch:
         context.outputs.fell(outputs)
         self._known_off |= set(outputs)
         who = "NO SIGNAL FROM MACHINE" if trip.found else "NO SIGNAL FROM CONTROL"
-        what = "FOUND ON AND SWITCHED OFF" if trip.found else "SWITCHED OFF"
-        self._disturbed("feeder-tripped", f"{who} FOR {trip.away:.1f} S, {what}: {', '.join(off)}")
+        what = "OUTPUTS FOUND ON AND SWITCHED OFF" if trip.found else "SWITCHED OFF"
+        self._disturbed(
+            "feeder-tripped",
+            Message(
+                "{who} FOR {away} S, {what}: {off}",
+                who=who,
+                away=f"{trip.away:.1f}",
+                what=what,
+                off=join_messages(", ", off),
+            ),
+        )
 
     def _disturbed(self, code: Code, words: str) -> None:
         program_run, state = self._program_run, self._program_run.status.state

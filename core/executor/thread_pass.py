@@ -109,7 +109,7 @@ class ThreadPass(SpindlePass):
             if self._replan():
                 self._stopped = False
                 return
-        raise DriverError("the thread could not be queued in time", "late")
+        raise DriverError("the thread moves could not be queued in time", "late")
 
     def track(self) -> None:
         """Once a tick: correct the way from a commit ahead on, and see how well the last one was met."""

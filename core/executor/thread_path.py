@@ -17,6 +17,7 @@ from core.executor.raised_alarm import AlarmError
 from core.executor.spindle_control import SpindleControl
 from core.executor.thread_curve import ThreadCurve, curve_of, turns_of
 from core.interpreter.elementary_blocks import Block, Kind
+from core.message import Message
 from core.motion.axis_limits import MotionLimits
 from core.ports import Segments
 
@@ -57,7 +58,7 @@ class ThreadPath(NamedTuple):
         cut = [first, *(block for block in blocks[1:] if block.continues)]
         length = abs(first.z - first.z0)
         if not length or not first.feed:
-            raise AlarmError("program", "the thread has no length or no lead", first.line)
+            raise AlarmError("program", "the thread has a length or lead of zero", first.line)
         if len(cut) > 1 or first.growth:
             return cls._chained(cut, out, limits)
         ax, az = limits.amax[:2]
@@ -335,18 +336,31 @@ class ThreadRetract(NamedTuple):
     def _left(self, z: float) -> str:
         """Why, and what the thread on the part is now."""
         if not self.cutting:
-            return f"{self.why} during the pull-out: the thread is cut, but its runout is short"
+            return Message(
+                "{why} during the pull-out: the thread is cut, but its runout is short", why=self.why
+            )
         metric = self.block.modal.metric
         at = f"{z - self.block.offset_z:.3f}" if metric else f"{(z - self.block.offset_z) / _INCH:.4f}"
-        return f"{self.why}: the tool left the thread at Z{at}, and the rest of this pass is not cut"
+        return Message(
+            (
+                "{why}: the tool retracted from the thread at Z{position}, and the rest of "
+                "this thread pass is not cut"
+            ),
+            why=self.why,
+            position=at,
+        )
 
 
 def _why_lost(spindle: SpindleControl) -> str:
     if spindle.why_slow:
         return spindle.why_slow.lower()
     if spindle.measured * spindle.command < 0.0:
-        return f"the spindle turned in the wrong direction at {abs(spindle.measured):.0f} rpm"
-    return (
-        f"the spindle speed dropped to {abs(spindle.measured):.0f} rpm (commanded: "
-        f"{abs(spindle.command):.0f} rpm)"
+        return Message(
+            "the spindle turned in the wrong direction at {measured} rpm",
+            measured=f"{abs(spindle.measured):.0f}",
+        )
+    return Message(
+        "the spindle speed dropped to {measured} rpm (commanded: {command} rpm)",
+        measured=f"{abs(spindle.measured):.0f}",
+        command=f"{abs(spindle.command):.0f}",
     )

@@ -12,6 +12,7 @@ from core.executor.machine_context import MachineContext
 from core.executor.snapshot import State, Touched, TouchPhase
 from core.executor.start_conditions import guard_open
 from core.machine.setter_table import SetterModel
+from core.message import Message
 from core.ports import PROBE, Latch, Unknown
 from core.table_schema import INCH
 
@@ -53,7 +54,7 @@ class TouchOff:
             self._command.sign,
             self._command.press,
         ):
-            self.end("another direction was selected")
+            self.end("another touch-off direction was selected")
             self._ended = command.press
             return False
         self._until = self._context.now + min(command.lease, LONGEST_LEASE)
@@ -72,7 +73,7 @@ class TouchOff:
         """
         before, self._was_made = self._was_made, self._made
         if self.phase is not None and state is not State.JOG:
-            self._over(f"the machine is in state {state.value}")
+            self._over(Message("the machine is in state {state}", state=state.value))
         runs_in = self._was_made and not before and self._model is not None
         return runs_in and self.phase is None and state is State.JOG
 
@@ -100,7 +101,7 @@ class TouchOff:
     def _begin(self, command: Touch, state: State, wheel: str) -> bool:
         if why := self._refusal(command, state, wheel):
             self._ended = command.press
-            self._context.log("refused", f"touch-off: {why}")
+            self._context.log("refused", Message("touch-off: {why}", why=why))
             return False
         self._command, self._failed, self._latch = command, "", None
         self._until = self._context.now + min(command.lease, LONGEST_LEASE)
@@ -119,16 +120,19 @@ class TouchOff:
         if self._model is None or PROBE not in self._context.machine.inputs:
             return "this machine has no tool setter; add [setter] and the input probe to the machine file"
         if axis not in {"X", "Z"} or command.sign not in {-1, 1}:
-            return f"a tool cannot be touched off along {axis or 'no axis'}"
+            return Message("a tool cannot be touched off along {axis}", axis=axis or "no axis")
         reasons = (
-            (state is not State.IDLE, f"not available in state {state.value}"),
+            (state is not State.IDLE, Message("not available in state {state}", state=state.value)),
             (
                 not self._context.sample.homed[self._index(axis)],
-                f"{axis} is not homed, so its position is not valid",
+                Message("{axis} is not homed, so its position is not valid", axis=axis),
             ),
             (
                 inputs.get(PROBE, False),
-                ("the probe input is already on; check whether the setter is touched or its cable damaged"),
+                (
+                    "the probe input is already on; check whether the setter is touched or its cable is "
+                    "damaged"
+                ),
             ),
             (wheel != "", "the handwheel is selected; deselect it first"),
         )
@@ -141,7 +145,10 @@ class TouchOff:
         button = (command or self._command).while_on
         reasons = (
             (command is None and context.now > self._until, "the key or button was released"),
-            (bool(button) and not context.button(button), f"button {button} was released"),
+            (
+                bool(button) and not context.button(button),
+                Message("button {button} was released", button=button),
+            ),
             (context.signals.hold, "feed hold is pressed"),
             (guard_open(context), "the guard is open: close it"),
             (context.spindle.asked or not context.spindle.stopped, ("the spindle is turning: stop it first")),
@@ -162,11 +169,22 @@ class TouchOff:
         if low <= end <= high:
             return ""
         far = self._length(abs(end - (high if command.sign > 0 else low)))
-        return f"the search would exceed the travel of {command.axis} by {far}; jog back first"
+        return Message(
+            (
+                "the search for the touch point would exceed the travel of {axis} by "
+                "{distance}; jog the axis back first"
+            ),
+            axis=command.axis,
+            distance=far,
+        )
 
     def _length(self, mm: float) -> str:
         """In the unit of the machine's builder."""
-        return f"{mm / INCH:.3f} in" if self._context.machine.inch else f"{mm:.2f} mm"
+        return (
+            Message("{mm} in", mm=f"{mm / INCH:.3f}")
+            if self._context.machine.inch
+            else Message("{unit} mm", unit=f"{mm:.2f}")
+        )
 
     # --- from phase to phase --------------------------------------------------------------------------------
 
@@ -219,7 +237,13 @@ class TouchOff:
         over = (here - place) * sign
         if over > model.overtravel:
             far = self._length(over)
-            self.end(f"the axis ran {far} past the touch point, more than overtravel; check the setter")
+            self.end(
+                Message(
+                    "the axis moved {distance} past the touch point, which is more than the overtravel "
+                    "setting; check the setter",
+                    distance=far,
+                )
+            )
         elif self.phase is TouchPhase.SEARCH:
             self._go(TouchPhase.BACK_OFF, self._first - sign * model.back_off)
         else:
@@ -229,7 +253,7 @@ class TouchOff:
         assert self._model is not None
         model, sign, port = self._model, self._command.sign, self._context.ports.touch
         if self.phase is TouchPhase.SEARCH:
-            self._failed = f"no touch detected within {self._length(model.search)}"
+            self._failed = Message("no touch detected within {search}", search=self._length(model.search))
             self._go(TouchPhase.RETURN, self._start)
         elif self.phase is TouchPhase.RETURN:
             self._over(self._failed)
@@ -239,7 +263,11 @@ class TouchOff:
         elif self._made:
             far = self._length(model.back_off)
             self._over(
-                f"the probe input is still on {far} away from the touch point; check the stylus and the cable"
+                Message(
+                    "the probe input is still on at a distance of {distance} from the touch point; check the "
+                    "stylus and the cable",
+                    distance=far,
+                )
             )
         elif self.phase is TouchPhase.BACK_OFF:
             if port is not None:
@@ -264,4 +292,4 @@ class TouchOff:
         self.phase, self._ended, self._braking = None, command.press, False
         self.touched = Touched(count + 1, command.axis, command.sign, place, error, why)
         if why:
-            self._context.log("refused", f"touch-off: {why}")
+            self._context.log("refused", Message("touch-off: {why}", why=why))

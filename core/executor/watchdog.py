@@ -197,7 +197,11 @@ class Watchdog:
         if again:
             self._halting.halt()
         if first:
-            executor.declare_silent("the control thread has ended" if dead else "the control thread is stuck")
+            executor.declare_silent(
+                "the software thread of the control has ended"
+                if dead
+                else ("the software thread of the control is stuck")
+            )
 
     def _mind_others(self) -> None:
         for name in [name for name in self._awaited if running(name)]:

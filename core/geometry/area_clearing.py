@@ -13,6 +13,7 @@ from math import dist
 
 from core.geometry.lines_and_arcs import SAME_POINT, Element, Line, Point
 from core.geometry.pocket_area import AreaError, Loop, Winding, Within, goes_round, inset
+from core.message import Message
 
 _MOST_RINGS = 2000
 _LINK = 4.0  # tool radii: a farther ring is gone to above the workpiece
@@ -52,7 +53,7 @@ def clearing(
     """
     outmost = _patches(inset(area, first))
     if not outmost:
-        raise AreaError("the tool does not fit anywhere inside it")
+        raise AreaError("the tool does not fit anywhere inside the contour")
     layer, apart = outmost, first
     for _ in range(_MOST_RINGS):
         apart += step
@@ -64,7 +65,9 @@ def clearing(
         if not layer:
             break
     else:
-        raise AreaError(f"clearing needs more than {_MOST_RINGS} concentric passes")
+        raise AreaError(
+            Message("clearing needs more than {most_rings} concentric passes", most_rings=_MOST_RINGS)
+        )
     return _cuts(outmost, Within(area), first, radius, against=against, here=here)
 
 

@@ -12,6 +12,7 @@ from core.coded_error import CodedError
 from core.geometry.contour_offset import GougeError, offset_element
 from core.geometry.intersections import meetings
 from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, left_of, turn
+from core.message import Message
 
 # Lines that turn by less than this go on in one direction, or straight back: a corner of any size that
 # fits a machine would be smaller, or farther off, than the last place of its numbers. rad.
@@ -30,7 +31,10 @@ class CornerTooLargeError(CornerError):
     """The corner takes more of a line than there is. ``needed`` mm of it, and ``first`` tells which line."""
 
     def __init__(self, needed: float, *, first: bool) -> None:
-        super().__init__(f"the {'line itself' if first else 'next line'} is too short", "line-too-short")
+        super().__init__(
+            Message("the {choice} is too short", choice="line itself" if first else "next line"),
+            "line-too-short",
+        )
         self.needed = needed
         self.first = first
 
@@ -59,11 +63,13 @@ def _turned(before: Element, after: Element) -> float:
             raise CornerTooLargeError(0.0, first=element is before)
     angle = turn(before.end_direction, after.start_direction)
     if abs(angle) < STRAIGHT:
-        raise NoCornerError("the two moves run in the same direction", "no-corner")
+        raise NoCornerError("the two moves have the same direction", "no-corner")
     if abs(angle) > pi - STRAIGHT:
         lines = isinstance(before, Line) and isinstance(after, Line)
         raise CornerError(
-            "the next line doubles straight back" if lines else "the next move doubles straight back",
+            "the next line goes straight back along the previous line"
+            if lines
+            else ("the next move reverses the direction of the previous move"),
             "straight-back",
         )
     return angle
@@ -107,12 +113,14 @@ def rounding(before: Element, after: Element, radius: float) -> tuple[Element, A
         return _fillet(before, after, radius)
     angle = turn(before.end_direction, after.start_direction)
     if abs(angle) < STRAIGHT:
-        raise NoCornerError("the two moves run in the same direction", "no-corner")
+        raise NoCornerError("the two moves have the same direction", "no-corner")
     side = radius if angle > 0 else -radius
     try:
         aside = offset_element(before, side), offset_element(after, side)
     except GougeError as problem:
-        raise CornerError(f"one of the two moves does not fit: {problem}", "no-arc") from None
+        raise CornerError(
+            Message("the arc does not fit one of the two moves: {problem}", problem=problem), "no-arc"
+        ) from None
     touched = [(before.along(centre), after.along(centre), centre) for centre in meetings(*aside)]
     fitting = [
         (before.length - end + start, end, start, centre)
@@ -121,7 +129,9 @@ def rounding(before: Element, after: Element, radius: float) -> tuple[Element, A
         and -SAME_POINT <= start <= after.length - _left(after)
     ]
     if not fitting:
-        raise CornerError("no arc of that radius touches both moves between their ends", "no-touching-arc")
+        raise CornerError(
+            "no arc of this radius is tangent to both moves within their length", "no-touching-arc"
+        )
     _, end, start, centre = min(fitting)
     first = before.part(before.start, before.point(end))
     last = after.part(after.point(start), after.end)
@@ -154,7 +164,7 @@ def leg_of(before: Element, after: Element, length: float) -> float:
     for step in range(1, _STEPS + 1):
         if _width(before, after, most * step / _STEPS) >= length:
             return _found(before, after, length, most * (step - 1) / _STEPS, most * step / _STEPS)
-    raise CornerError("the two moves are too short for a chamfer of that length", "too-short")
+    raise CornerError("the two moves are too short for a chamfer of this length", "too-short")
 
 
 def _found(before: Element, after: Element, length: float, short: float, long: float) -> float:

@@ -66,7 +66,7 @@ def offset_element(element: Element, distance_left: float) -> Element:
         return Line(start, end)
     grown = element.radius + (distance_left if element.clockwise else -distance_left)
     if grown < SAME_POINT:
-        raise GougeError(0, "its inside radius is too small")
+        raise GougeError(0, "the inside radius of the move is too small for the offset path")
     return Arc(start, end, element.centre, element.clockwise)
 
 
@@ -114,7 +114,7 @@ class Offset:
         corner = after.start
         angle = turn(before.end_direction, after.start_direction)
         if abs(angle) > pi - STRAIGHT_BACK and self._distance:
-            raise GougeError(index, "it doubles straight back on the previous move")
+            raise GougeError(index, "the move reverses the direction of the previous move")
         if dist(ended.end, begun.start) <= JOINED:
             joint = _middle(ended.end, begun.start)
             joint = ended.end if dist(joint, ended.end) < SAME_POINT else joint
@@ -144,7 +144,7 @@ def _inside(ended: Element, begun: Element, corner: Point, index: int) -> Point:
     found = intersections(ended, begun)
     if not found:
         shorter = index - 1 if ended.length < begun.length else index
-        raise GougeError(shorter, "nothing of its offset path is left between the neighboring moves")
+        raise GougeError(shorter, "the neighboring moves leave no room for the offset path of the move")
     return min(found, key=lambda point: dist(point, corner))
 
 
@@ -152,7 +152,7 @@ def _cut(element: Element, start: Point, end: Point, index: int) -> Element:
     """The part of an offset between two points. Raises GougeError where it vanishes or runs backwards."""
     whole = start == element.start and end == element.end
     if not whole and element.along(end) - element.along(start) < 2 * SAME_POINT:  # else an arc could close
-        raise GougeError(index, "nothing of its offset path is left between the neighboring moves")
+        raise GougeError(index, "the neighboring moves leave no room for the offset path of the move")
     return element.part(start, end)
 
 
@@ -167,13 +167,13 @@ class _Guard:
     def contour(self, index: int, element: Element) -> None:
         box = element.box
         if self._too_near(element, box, self._path):
-            raise GougeError(index, "the offset path of another move would cut into it")
+            raise GougeError(index, "the offset path of another move would cut into this move")
         self._contour.append((element, box))
 
     def path(self, piece: Piece) -> None:
         box = piece.element.box
         if self._too_near(piece.element, box, self._contour):
-            raise GougeError(piece.source, "its offset path would cut into another move")
+            raise GougeError(piece.source, "the offset path of the move would cut into another move")
         self._path.append((piece.element, box))
 
     def _too_near(self, element: Element, box: Box, others: deque[tuple[Element, Box]]) -> bool:

@@ -10,13 +10,17 @@ import sys
 from core.interpreter.dialects import NAMES, code_book
 from core.language.code_book import CodeBook, Entry
 from core.language.source import Dialect
+from core.page_contents import contents
 
 _TOP = """\
 # {name}, code by code
 
-Written from the code book that the tests prove, `core/language/{dialect}/{dialect}_book.py`.
-Do not edit it by hand. Under every code stand lines that use it and, where there are such, lines that are
-refused with a part of what is said.
+This page is the reference of all {name} codes. For an introduction, see
+[programming/{dialect}.md](programming/{dialect}.md).
+
+{contents}
+It is written from `core/language/{dialect}/{dialect}_book.py`, which the tests use. Do not edit it.
+Each code has an example. "Rejected" gives an example that is rejected, with a part of the message.
 
 """
 
@@ -27,15 +31,17 @@ def page(dialect: Dialect) -> str:
     chapters = "".join(
         f"\n## {title}\n\n" + "".join(map(_entry, entries)) for title, entries in book.chapters
     )
-    return _TOP.format(name=NAMES[dialect], dialect=dialect) + _frame(book) + _words(book) + chapters
+    titles = [*(["Words of cycles"] if book.meanings else []), *(title for title, _ in book.chapters)]
+    top = _TOP.format(name=NAMES[dialect], dialect=dialect, contents=contents(titles))
+    return top + _frame(book) + _words(book) + chapters
 
 
 def _frame(book: CodeBook) -> str:
-    return f"Every example stands between these lines:\n\n```\n{book.head}…\n{book.tail}```\n"
+    return f"Every example goes between these lines:\n\n```\n{book.head}…\n{book.tail}```\n"
 
 
 def _words(book: CodeBook) -> str:
-    """What stands behind the codes, which the screen shows beside each."""
+    """Return the table of the words of cycles, or nothing for a language without them."""
     rows = "".join(f"| `{word}` | {what} |\n" for word, what in book.meanings.items())
     return f"\n## Words of cycles\n\n| word | means |\n|---|---|\n{rows}" if rows else ""
 
@@ -44,7 +50,7 @@ def _entry(entry: Entry) -> str:
     lines = [*entry.example.splitlines(), *(["…", *entry.behind.splitlines()] if entry.behind else [])]
     example = "```\n" + "\n".join(lines) + "\n```\n" if lines else ""
     refused = " / ".join(entry.refused.splitlines())
-    says = f"Refused, “{entry.why}”: `{refused}`\n\n" if entry.refused else ""
+    says = f"Rejected with “{entry.why}”: `{refused}`\n\n" if entry.refused else ""
     return f"**`{entry.form}`** {entry.what}\n\n{example}\n{says}"
 
 

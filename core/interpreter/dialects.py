@@ -106,7 +106,8 @@ def _refusal(dialect: Dialect, setup: Setup) -> RefusedPass | None:
         return RefusedPass(why, "Choose the machine file of a lathe: --machine sinumerik-modulo.")
     if dialect is Dialect.KLARTEXT and setup.kinematics is None:
         why = (
-            "A Klartext program needs a mill with X, Y, Z and [kinematics]; this machine is not such a mill."
+            "A Klartext program needs a mill with X, Y, Z and [kinematics]; this machine does "
+            "not meet these requirements."
         )
         return RefusedPass(why, "Choose the machine file of a mill: --machine ac-table-mill.")
     return None

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from core.geometry.rotation_frames import cos_sin
 from core.language.formulas import Formula, Number, Operation, Parameter
+from core.message import Message
 
 
 class NoValueError(Exception):
@@ -38,7 +39,11 @@ def worth(formula: Formula, parameter: Callable[[Parameter], float]) -> float:
 
 
 def _undefined(formula: Operation, operands: list[float]) -> str:
-    return f"{formula.name} of {', '.join(f'{each:g}' for each in operands)} has no value"
+    return Message(
+        "{formula} of {item} is undefined",
+        formula=formula.name,
+        item=", ".join(f"{each:g}" for each in operands),
+    )
 
 
 def _tangent(degrees: float) -> float:

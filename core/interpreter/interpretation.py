@@ -12,6 +12,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.interpreter.machine_requirements import Need
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, refusal
+from core.message import Message
 
 MOST_BLOCKS = 5_000_000
 MOST_LINES = 10_000_000
@@ -119,8 +120,10 @@ class Interpretation(ABC):
     def _stop_endless(self, line: int, hint: str) -> None:
         """A program that makes more than anybody runs ends at this line."""
         self._stopped = True
-        text = (
-            f"The program makes more than {MOST_BLOCKS:,} blocks or executes more than {MOST_LINES:,} lines."
+        text = Message(
+            "The program produces more than {most_blocks} blocks or executes more than {most_lines} lines.",
+            most_blocks=f"{MOST_BLOCKS:,}",
+            most_lines=f"{MOST_LINES:,}",
         )
         self._log.add(refusal(line, 0, "too-many-blocks", text, hint))
 

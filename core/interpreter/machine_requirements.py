@@ -16,6 +16,7 @@ from core.interpreter.actions import (
     WaitInput,
 )
 from core.interpreter.elementary_blocks import Block, Kind
+from core.message import Message
 
 ARC = "arc"
 THREAD = "thread"
@@ -33,12 +34,13 @@ BUILDERS_M = "M"
 _WORDS = {
     ARC: "arcs",
     THREAD: "threads",
-    PULL_OUT: "a thread with a pull-out synchronized with the spindle; end it in a groove",
+    PULL_OUT: "a thread pull-out synchronized with the spindle; end the thread in a groove instead",
     THREAD_CHAIN: (
-        "chained threads or threads with a variable lead; cut each thread separately with its own lead"
+        "chained threads or threads with a variable lead; cut each thread separately "
+        "with its own lead instead"
     ),
-    SURFACE: "constant surface speed; program the spindle in rpm with G97",
-    SURFACE_THREAD: "a thread with constant surface speed; program G97 before it",
+    SURFACE: "constant surface speed; program the spindle speed in rpm with G97 instead",
+    SURFACE_THREAD: "threading with constant surface speed; program G97 before the thread",
     C_AXIS: "the C axis",
     ORIENT: "spindle orientation to an angle",
     PLANE: "milling with plane switching",
@@ -62,16 +64,18 @@ class Need(NamedTuple):
     def words(self) -> str:
         """The need in words for the operator, where it has any."""
         if self.builders_m:
-            return f"{self.what}; {how_bound(self.builders_m)}"
+            return Message("{what}; {builders_m}", what=self.what, builders_m=how_bound(self.builders_m))
         return _WORDS.get(self.what, self.what)
 
 
-def how_bound(code: int) -> str:
+def how_bound(code: int) -> Message:
     """The lines of a machine file that give a builder's M function its meaning."""
-    return (
-        f'write {code} = {{ output = "NAME", on = true }} under [m_codes] in the machine file, '
-        f"where NAME is an output under [io.out], or {code} = {{ ignored = true }} if the code "
-        "does nothing on this machine"
+    return Message(
+        'write {code} = {{ output = "NAME", on = true }} under [m_codes] in the machine '
+        "file, where NAME is an output under [io.out], or {code2} = {{ ignored = true }} if "
+        "the code does nothing on this machine",
+        code=code,
+        code2=code,
     )
 
 
@@ -121,12 +125,12 @@ def _of_action(action: Action) -> Iterator[str]:
         case SpindleOrient():
             yield ORIENT
         case Output(name=name):
-            yield f"output {name}"
+            yield Message("output {name}", name=name)
         case Collet():
             yield "output collet"
         case Coolant():
             yield "output coolant"
         case WaitInput(terminal=terminal) | AskInput(terminal=terminal):
-            yield f"input {terminal}"
+            yield Message("input {name}", name=terminal)
         case _:
             return

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from core.message import Message
+
 MM_PER_INCH = 25.4
 FEET_PER_MINUTE = 12 * MM_PER_INCH / 60  # mm/s
 METRES_PER_MINUTE = 1000 / 60  # mm/s
@@ -15,11 +17,18 @@ def per_unit(*, metric: bool) -> float:
 
 def length(mm: float, *, metric: bool) -> str:
     """A length as the program's reader knows it: five places in inch, four in metric."""
-    return f"{mm:.4f} mm" if metric else f"{mm / MM_PER_INCH:.5f} in"
+    return (
+        Message("{unit} mm", unit=f"{mm:.4f}") if metric else Message("{mm} in", mm=f"{mm / MM_PER_INCH:.5f}")
+    )
 
 
 def feed(value: float, *, per_rev: bool, metric: bool) -> str:
     """A feed in mm/s or mm/rev as the program's reader knows it."""
     number = value / per_unit(metric=metric) * (1 if per_rev else 60)
     digits = f"{number:.5f}".rstrip("0").rstrip(".")
-    return f"{digits} {'mm' if metric else 'in'}/{'rev' if per_rev else 'min'}"
+    return Message(
+        "{digits} {ending}/{choice}",
+        digits=digits,
+        ending="mm" if metric else "in",
+        choice="rev" if per_rev else "min",
+    )

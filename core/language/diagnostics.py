@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
+from core.message import Message
+
 
 class Severity(StrEnum):
     """How much a diagnostic weighs: an error refuses the run, a warning is shown, a note informs."""
@@ -38,13 +40,24 @@ class Diagnostic:
     @property
     def text(self) -> str:
         """The sentence, and how often it would have to be said."""
-        return self.message if self.count == 1 else f"{self.message} ({self.count} times)"
+        return (
+            self.message
+            if self.count == 1
+            else Message("{message} ({count} times)", message=self.message, count=self.count)
+        )
 
     def in_one_line(self, name: str) -> str:
         """The finding in the one line that goes to a person: place, weight, code, message, what to do."""
         place = f"{name}:{self.line}:{max(self.column, 1)}" if self.line else name
-        hint = f" — {self.hint}" if self.hint else ""
-        return f"{place}: {self.severity}: {self.text} [{self.code}]{hint}"
+        hint = Message(" — {hint}", hint=self.hint) if self.hint else ""
+        return Message(
+            "{place}: {severity}: {text} [{code}]{hint}",
+            place=place,
+            severity=self.severity,
+            text=self.text,
+            code=self.code,
+            hint=hint,
+        )
 
 
 class ProgramError(Exception):

@@ -134,7 +134,9 @@ class FormulaReader:
         """Operands and operators that bind at least as close as ``weakest``, from left to right."""
         self._depth += 1
         if self._depth > _DEEPEST:
-            raise FormulaError(self.at, "The formula is nested too deeply", ("Split it into smaller parts."))
+            raise FormulaError(
+                self.at, "The formula is nested too deeply", ("Split the contour into smaller parts.")
+            )
         made = self._operand()
         while (sign := self._operator()) is not None:
             power, name = self._grammar.operators[sign]

@@ -12,6 +12,7 @@ from pathlib import Path, PurePath
 from core.coded_error import CodedError
 from core.input_file import TooLargeError, input_bytes
 from core.language.diagnostics import Diagnostic, refusal
+from core.message import Message
 
 
 class Dialect(StrEnum):
@@ -92,7 +93,9 @@ def load_source(path: Path, said: Dialect | None = None) -> Source:
     except OSError as problem:
         reason = problem.strerror or "read error"
         raise _refused(
-            "file-unreadable", f"{path.name} cannot be read: {reason}.", ("Check the file name and the disk.")
+            "file-unreadable",
+            Message("{path} cannot be read: {cause}.", path=path.name, cause=reason),
+            ("Check the file name and the disk."),
         ) from problem
     return source_of(path.name, data, said)
 
@@ -106,14 +109,22 @@ def source_of(name: str, data: bytes, said: Dialect | None = None) -> Source:
 
 def _decoded(name: str, data: bytes) -> str:
     if data.startswith(_UTF_16):
-        raise _refused("file-utf16", f"{name} is stored as UTF-16.", "Save it as UTF-8 or plain text.")
+        raise _refused(
+            "file-utf16",
+            Message("{name} is stored as UTF-16.", name=name),
+            "Save the file as UTF-8 or plain text.",
+        )
     if b"\0" in data:
         raise _refused(
-            "file-binary", f"{name} contains zero bytes: it is not a program text.", "Choose a text file."
+            "file-binary",
+            Message("{name} contains NUL bytes, so it is not a text file.", name=name),
+            "Choose a text file.",
         )
     text = _characters(data.removeprefix(codecs.BOM_UTF8)).rstrip(_DOS_END_OF_FILE)
     if not text or text.isspace():
-        raise _refused("file-empty", f"{name} is empty.", "Choose a file that contains a program.")
+        raise _refused(
+            "file-empty", Message("{name} is empty.", name=name), "Choose a file that contains a program."
+        )
     _check_line_lengths(name, text)
     return text
 
@@ -139,7 +150,15 @@ def _check_line_lengths(name: str, text: str) -> None:
         if len(line) > _LONGEST_LINE:
             raise _refused(
                 "line-too-long",
-                (f"Line {number} of {name} has {len(line)} characters; the maximum is {_LONGEST_LINE}."),
+                (
+                    Message(
+                        "Line {number} of {name} has {line_count} characters; the maximum is {longest_line}.",
+                        number=number,
+                        name=name,
+                        line_count=len(line),
+                        longest_line=_LONGEST_LINE,
+                    )
+                ),
                 "Choose a program file with line breaks.",
                 number,
             )
@@ -157,7 +176,9 @@ def _may_hold_long_line(text: str) -> bool:
 
 
 def _too_large(name: str) -> SourceError:
-    return _refused("file-too-large", f"{name} is larger than 64 MB.", "Split the program.")
+    return _refused(
+        "file-too-large", Message("{name} is larger than 64 MB.", name=name), "Split the program."
+    )
 
 
 def _refused(code: str, message: str, hint: str, line: int = 0) -> SourceError:

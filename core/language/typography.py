@@ -9,12 +9,14 @@ _SIGNS: dict[str, tuple[str, str]] = {
         "．·‧", ("a special decimal point, not the one on the keyboard", "Type a decimal point.")
     ),
     **dict.fromkeys(
-        "‘’‚“”„\"'", ("a quotation mark, which this control does not allow", ("Remove it from the program."))
+        "‘’‚“”„\"'",
+        ("a quotation mark, which this control does not allow", ("Remove this text from the program.")),
     ),
     **dict.fromkeys("（［【", ("a special parenthesis, not the one on the keyboard", "Type (.")),
     **dict.fromkeys("）］】", ("a special parenthesis, not the one on the keyboard", "Type ).")),
     **dict.fromkeys(
-        "\u200b\u200c\u200d\u2060\ufeff\u00ad", ("an invisible character", ("Remove it from the program."))
+        "\u200b\u200c\u200d\u2060\ufeff\u00ad",
+        ("an invisible character", ("Remove this text from the program.")),
     ),
 }
 

@@ -8,8 +8,23 @@ from core.table_schema import Driver, DriverTable, Field, Kind
 
 KEPT = 14
 _FIELDS = (
-    Field("folder", Kind.TEXT, default=""),
-    Field("keep", Kind.WHOLE, low=2, high=400, default=KEPT),
+    Field(
+        "folder",
+        Kind.TEXT,
+        default="",
+        meaning=(
+            "Folder of the daily backups, best on another disk or computer. Default: `backups` in "
+            "the data folder."
+        ),
+    ),
+    Field(
+        "keep",
+        Kind.WHOLE,
+        low=2,
+        high=400,
+        default=KEPT,
+        meaning="Number of daily backups that remain; older ones are deleted.",
+    ),
 )
 
 
@@ -22,5 +37,12 @@ class BackupTable:
 
 
 DRIVER = Driver(
-    tables=(DriverTable("backup", _FIELDS, lambda file: file.values.model(BackupTable, "backup")),)
+    tables=(
+        DriverTable(
+            "backup",
+            _FIELDS,
+            lambda file: file.values.model(BackupTable, "backup"),
+            purpose="Where TurnDesk saves its daily backups, and how many of them remain.",
+        ),
+    )
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from core.machine.hardware_model import AnalogModel, Hardware, HomeModel
+from core.message import Message
 from core.table_schema import (
     Driver,
     DriverTable,
@@ -22,11 +23,46 @@ from core.table_schema import (
 )
 
 ANALOG_NAMES = ("feed_pot", "spindle_pot", "handwheel", "spindle_load")
-_ANALOG = (
-    Field("at", Kind.TEXT),
-    Field("range", Kind.PAIR, Unit.PLAIN, -1000.0, 1000.0, default=(0.0, 1.0)),
-    Field("switch", Kind.TEXT, default=""),
-    Field("counts_per_click", Kind.WHOLE, low=-1000, high=1000, default=1),
+ANALOG = (
+    Field(
+        "at",
+        Kind.TEXT,
+        meaning=(
+            "Terminal of the signal, written as the backend requires. The handwheel can also be at "
+            "the pendant, such as `pendant.REL_DIAL`."
+        ),
+    ),
+    Field(
+        "range",
+        Kind.PAIR,
+        Unit.PLAIN,
+        -1000.0,
+        1000.0,
+        default=(0.0, 1.0),
+        meaning=(
+            "Values at the two ends of the signal: fractions of the programmed value for the pots, "
+            "percent for `spindle_load`."
+        ),
+    ),
+    Field(
+        "switch",
+        Kind.TEXT,
+        default="",
+        meaning=(
+            "Name of the input of the AUTO/OFF switch next to the pot, such as `spindle_auto`. "
+            "Default: no switch."
+        ),
+    ),
+    Field(
+        "counts_per_click",
+        Kind.WHOLE,
+        low=-1000,
+        high=1000,
+        default=1,
+        meaning=(
+            "Handwheel: counts per detent; a negative value reverses the direction. A pot has no detents."
+        ),
+    ),
 )
 _AXES = "XYZABC"
 
@@ -82,7 +118,7 @@ def _read_analog(file: FileReading) -> Iterator[Finding]:
     if isinstance(table, dict):
         yield from unknown_keys(table, list(ANALOG_NAMES), "io.analog")
         table = {name: entry for name, entry in table.items() if name in ANALOG_NAMES}
-    yield from read_named({} if table is None else table, _ANALOG, "io.analog", file.values)
+    yield from read_named({} if table is None else table, ANALOG, "io.analog", file.values)
 
 
 def _analog(values: Values, name: str) -> AnalogModel:
@@ -122,7 +158,13 @@ def _backend(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
         path = driver.tables[0].path
         if driver.backend and path not in file.tables and file.values.says("machine.backend", driver.backend):
             yield Finding(
-                f"[{path}]", "", f'missing; machine.backend = "{driver.backend}" needs it', "missing"
+                Message("[{path}]", path=path),
+                "",
+                Message(
+                    ('this table is missing but required by machine.backend = "{backend}"'),
+                    backend=driver.backend,
+                ),
+                "missing",
             )
 
 
@@ -139,10 +181,19 @@ def _spindle(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
         *beside,
     ]
     if word not in allowed:
-        expected = f"expected {' or '.join(allowed)} with machine.backend = {written(backend)}"
+        expected = Message(
+            "this value must be {allowed} with machine.backend = {backend}",
+            allowed=" or ".join(allowed),
+            backend=written(backend),
+        )
         yield Finding(path, written(word), expected, "broken-rule")
     elif word in beside and beside[word] not in file.tables:
-        yield Finding(beside[word], "", f'missing; spindle.driver = "{word}" needs it', "missing")
+        yield Finding(
+            beside[word],
+            "",
+            Message('this table is missing but required by spindle.driver = "{word}"', word=word),
+            "missing",
+        )
 
 
 def _orients(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
@@ -153,14 +204,21 @@ def _orients(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
     word = values.text("spindle.driver")
     can = [driver.spindle for driver in drivers if driver.orients]
     if word not in can:
-        expected = (
-            f"expected false: a spindle can be stopped at an angle with spindle.driver {' or '.join(can)}"
+        expected: str = Message(
+            (
+                "this value must be false, because only a spindle with spindle.driver = {can} "
+                "can be stopped at an angle"
+            ),
+            can=" or ".join(can),
         )
         yield Finding(path, "true", expected, "broken-rule")
     lathe = values.has("machine.kind", "axis.C.enabled", "axis.C.own_drive")
     lathe = lathe and values.says("machine.kind", "lathe")
     if lathe and values.flag("axis.C.enabled") and not values.flag("axis.C.own_drive"):
-        expected = "expected false: C is the spindle, which is positioned as C; or axis.C.own_drive = true"
+        expected = (
+            "this value must be false, because the spindle is the C axis and is positioned "
+            "as C; alternatively, set axis.C.own_drive = true"
+        )
         yield Finding(path, "true", expected, "broken-rule")
 
 
@@ -176,8 +234,14 @@ def _count_rates(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]
             yield Finding(
                 path,
                 "",
-                f"{rate:.6g} counts/s is over the {limit:.6g} of this backend;"
-                " lower vmax or take a coarser count",
+                Message(
+                    (
+                        "{rate} counts/s exceeds this backend's limit of {limit}; reduce vmax or use a "
+                        "larger distance per count"
+                    ),
+                    rate=f"{rate:.6g}",
+                    limit=f"{limit:.6g}",
+                ),
                 "broken-rule",
             )
 
@@ -187,7 +251,7 @@ def _renewed(file: FileReading) -> Iterator[Finding]:
     for path in file.terminals:
         wanted = path.startswith("io.out.") and values.has(f"{path}.refresh_ms", f"{path}.safe")
         if wanted and values.number(f"{path}.refresh_ms") and values.found[f"{path}.safe"] is not False:
-            expected = "an output that falls when nobody renews it needs safe = false"
+            expected = "an output that switches off when it is not refreshed needs safe = false"
             yield Finding(
                 f"{path}.refresh_ms",
                 f"{1000 * values.number(f'{path}.refresh_ms'):g}",
@@ -201,7 +265,13 @@ def _guard(file: FileReading) -> Iterator[Finding]:
     named = "io.in.guard" in file.terminals or "io.in.guard.at" in file.values.wrong
     if file.values.has(path) and file.values.flag(path) and not named:
         yield Finding(
-            path, "true", "needs the guard's switch as the input guard, on while it is closed", "broken-rule"
+            path,
+            "true",
+            (
+                "this setting needs an input named guard for the guard switch, which is on "
+                "while the guard is closed"
+            ),
+            "broken-rule",
         )
 
 
@@ -214,5 +284,8 @@ def _ports(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]:
             first = taken.setdefault(port, path)
             if first != path:
                 yield Finding(
-                    path, written(port), f"expected a port of its own; {first} has it", "broken-rule"
+                    path,
+                    written(port),
+                    Message("{first} already uses this port; choose another port", first=first),
+                    "broken-rule",
                 )

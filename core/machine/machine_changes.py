@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
+from core.message import Message
 from core.table_schema import joined, written_openly
 from core.toml_text import toml_tables
 
@@ -19,7 +20,7 @@ class Change(NamedTuple):
     new: str
 
     def __str__(self) -> str:
-        return f"{self.path}: {self.old} → {self.new}"
+        return Message("{path}: {old} → {new}", path=self.path, old=self.old, new=self.new)
 
 
 def changes(old: str, new: str) -> tuple[Change, ...]:

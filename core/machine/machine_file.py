@@ -30,6 +30,7 @@ from core.machine.machine_model import (
 from core.machine.machine_reading import Reading
 from core.machine.mill_kinematics import KinematicsReading
 from core.machine.station_rules import wrong_jog, wrong_palms, wrong_wheel
+from core.message import Message
 from core.table_schema import AT_PENDANT, Driver, FileReading, Finding, MachineFileError
 from core.toml_text import toml_tables
 
@@ -62,11 +63,20 @@ def text_of(path: Path) -> str:
         reason = error.strerror or "cannot be read"
         code = "too-large" if isinstance(error, TooLargeError) else "unreadable"
         raise MachineFileError(
-            [Finding("file", "", f"{reason}; check name and rights", code)], str(path)
+            [
+                Finding(
+                    "file",
+                    "",
+                    Message("{reason}; check the file name and its permissions", reason=reason),
+                    code,
+                )
+            ],
+            str(path),
         ) from error
     except UnicodeDecodeError as error:
         raise MachineFileError(
-            [Finding("file", "", "is not UTF-8 text; save it as such", "not-utf8")], str(path)
+            [Finding("file", "", ("this file is not UTF-8 text; save the file as UTF-8"), "not-utf8")],
+            str(path),
         ) from error
 
 

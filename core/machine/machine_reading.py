@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from core.machine import machine_tables
 from core.machine.driver_tables import children_of
+from core.message import Message
 from core.table_schema import Driver, Field, Finding, Values, joined, read_table, unknown_keys, written
 
 
@@ -45,7 +46,9 @@ class Reading:
         said = self.values.found.get("machine.language") or spoken[0]
         self.values.found["machine.language"] = said
         if said not in spoken:
-            expected = f"a {self.kind} speaks {' or '.join(spoken)}"
+            expected = Message(
+                ("the language must be {spoken} for a {kind}"), kind=self.kind, spoken=" or ".join(spoken)
+            )
             self.findings.append(Finding("machine.language", written(said), expected, "broken-rule"))
 
     def _table(self, path: str, keys: tuple[Field, ...]) -> None:
@@ -57,7 +60,7 @@ class Reading:
     ) -> None:
         if table is None:
             self.findings.append(
-                Finding(f"[{path}]", "", "missing; the control cannot do without this table", "missing")
+                Finding(f"[{path}]", "", ("this table is missing but required by TurnDesk"), "missing")
             )
         else:
             self.findings += read_table(table, keys, path, self.values, children)
@@ -66,7 +69,14 @@ class Reading:
         """A table that holds tables; an empty one where it is none."""
         table = self.data.get(path, {})
         if not isinstance(table, dict):
-            self.findings.append(Finding(path, written(table), f"expected a table, [{path}]", "not-a-table"))
+            self.findings.append(
+                Finding(
+                    path,
+                    written(table),
+                    Message(("this entry must be a table, [{path}]"), path=path),
+                    "not-a-table",
+                )
+            )
             return {}
         self.findings += unknown_keys(table, list(known), path)
         return table
@@ -94,7 +104,9 @@ class Reading:
 
     def _of_a_lathe(self, path: str) -> None:
         if path in self.data:
-            self.findings.append(Finding(f"[{path}]", "", "only a lathe has this; take it out", "lathe-only"))
+            self.findings.append(
+                Finding(f"[{path}]", "", "only a lathe can have this table; remove the table", "lathe-only")
+            )
         else:  # what the control asks of every machine stands still on this one
             self._keys({}, path, machine_tables.TABLES_OF_A_LATHE[path])
 
@@ -132,10 +144,20 @@ def _kind(data: Mapping[str, object]) -> str:
 def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[Finding]:
     findings = []
     for found in unknown_keys(data, list(top), ""):
-        known = f"this version knows {', '.join(f'[{name}]' for name in top)}"
+        known = Message(
+            ("this version of TurnDesk supports the tables {name}"),
+            name=", ".join(f"[{name}]" for name in top),
+        )
         guess = found.expected.removeprefix("unknown key; ")
-        near = f"{guess} " if guess.startswith("did") else ""
-        findings.append(Finding(f"[{found.path}]", "", f"unknown table; {near}{known}", "unknown-table"))
+        near = Message("{guess} ", guess=guess) if guess.startswith("did") else ""
+        findings.append(
+            Finding(
+                Message("[{path}]", path=found.path),
+                "",
+                Message("unknown table; {nearest}{known}", nearest=near, known=known),
+                "unknown-table",
+            )
+        )
     return findings
 
 

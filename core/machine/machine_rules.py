@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from itertools import combinations
 from typing import NamedTuple
 
+from core.message import Message
 from core.table_schema import Finding, Unit, Values, shown
 
 
@@ -33,7 +34,13 @@ def _below(path: str, limit: str, why: str, unit: Unit) -> Rule:
         if value <= bound * (1 + 1e-9):
             return ""
         inch = bool(values.inch)
-        return f"{shown(value, unit, inch)} is over {limit} = {shown(bound, unit, inch)}; {why}"
+        return Message(
+            "{unit} exceeds {limit} = {bound}; {why}",
+            unit=shown(value, unit, inch),
+            limit=limit,
+            bound=shown(bound, unit, inch),
+            why=why,
+        )
 
     return Rule(path, (limit,), wrong)
 
@@ -43,7 +50,7 @@ def _home_inside(axis: str) -> Rule:
 
     def wrong(values: Values) -> str:
         low, high = values.pair(path)
-        return "" if low <= 0.0 <= high else "travel counts from home, so 0 must lie inside it"
+        return "" if low <= 0.0 <= high else ("travel is measured from home, so 0 must be within the travel")
 
     return Rule(path, (), wrong)
 
@@ -54,7 +61,10 @@ def _fixed_points(axis: str) -> Rule:
     def wrong(values: Values) -> str:
         points, (low, high) = values.numbers(path), values.pair(f"axis.{axis}.travel")
         if len(points) > 1 and values.text("machine.kind") != "lathe":
-            return "a mill has one a slide, from which M92 counts; G75 with up to four is of lathes"
+            return (
+                "on a mill, each axis can have only one point, the reference of M92; only a "
+                "lathe can have up to four points for G75"
+            )
         outside = next((point for point in points if not low <= point <= high), None)
         if outside is None:
             return ""
@@ -63,7 +73,12 @@ def _fixed_points(axis: str) -> Rule:
             shown(outside, Unit.LENGTH, inch),
             (shown(end, Unit.LENGTH, inch) for end in (low, high)),
         )
-        return f"{point} lies outside axis.{axis}.travel, {' to '.join(ends)}; the slide cannot go there"
+        return Message(
+            "{point} is outside axis.{axis}.travel ({ends}); the axis cannot move there",
+            point=point,
+            axis=axis,
+            ends=" to ".join(ends),
+        )
 
     return Rule(path, (f"axis.{axis}.travel", "machine.kind"), wrong)
 
@@ -80,7 +95,15 @@ def _jog_run_on(axis: str) -> Rule:
             return ""
         inch = bool(values.inch)
         far, near = shown(run_on, Unit.LENGTH, inch), shown(limit, Unit.LENGTH, inch)
-        return f"lets {axis} run on {far} at vmax, over limits.clearance = {near}; shorten the lease"
+        return Message(
+            (
+                "{axis} would travel {distance} at vmax after the signal of a jog key is lost, "
+                "which exceeds limits.clearance = {nearest}; reduce machine.lease_ms"
+            ),
+            axis=axis,
+            distance=far,
+            nearest=near,
+        )
 
     return Rule("machine.lease_ms", (vmax, amax, "limits.clearance"), wrong)
 
@@ -95,7 +118,12 @@ def _corner_tolerance(axis: str) -> Rule:
             return ""
         inch = bool(values.inch)
         least_shown = shown(least, Unit.LENGTH, inch)
-        return f"rounding to {count} alone takes {least_shown}; state as much or more, or leave it out"
+        return Message(
+            "rounding to {count} already causes a deviation of {least_shown}; enter at least "
+            "this value, or remove the entry",
+            count=count,
+            least_shown=least_shown,
+        )
 
     return Rule(path, (count,), wrong)
 
@@ -106,7 +134,13 @@ def _homing(axis: str) -> Rule:
     def wrong(values: Values) -> str:
         known = values.flag(path) or values.stated(f"axis.{axis}.home.order")
         known = known or (axis == "C" and values.text("machine.kind") == "lathe")  # M19 finds it
-        return "" if known else f"an axis that is not absolute needs axis.{axis}.home = {{ order, speed }}"
+        return (
+            ""
+            if known
+            else Message(
+                "an axis that is not absolute needs axis.{axis}.home = {{ order, speed }}", axis=axis
+            )
+        )
 
     return Rule(path, ("machine.kind",), wrong)
 
@@ -117,7 +151,15 @@ def _home_orders() -> tuple[Rule, ...]:
     def rule(one: str, other: str) -> Rule:
         def wrong(values: Values) -> str:
             same = values.number(f"axis.{one}.home.order") == values.number(f"axis.{other}.home.order")
-            return f"{one} and {other} home one after the other; give them different orders" if same else ""
+            return (
+                Message(
+                    "{one} and {other} must home one after the other; set different values of home.order",
+                    one=one,
+                    other=other,
+                )
+                if same
+                else ""
+            )
 
         return Rule(f"axis.{other}.home.order", (f"axis.{one}.home.order",), wrong)
 
@@ -129,18 +171,29 @@ def _timeout(values: Values) -> str:
     needed += values.number("spindle.at_speed_s")
     if values.number("spindle.timeout_s") > needed:
         return ""
-    return f"reaching the highest speed takes {needed:.3g} s; the time-out must be longer"
+    return Message(
+        "the spindle takes {needed} s to reach its maximum speed; the timeout must be longer",
+        needed=f"{needed:.3g}",
+    )
 
 
 def _stop_below(values: Values) -> str:
     low = values.pair("spindle.rpm")[0]
     below = values.number("spindle.stop_below")
-    return "" if below < low else f"{below:g} rpm counts as stopped, but the spindle may be asked for {low:g}"
+    return (
+        ""
+        if below < low
+        else Message(
+            "a spindle at {below} rpm counts as stopped, but a speed of {low} rpm may be commanded",
+            below=f"{below:g}",
+            low=f"{low:g}",
+        )
+    )
 
 
 def _feedback(values: Values) -> str:
     wanted = values.flag("c_axis.feedback") and not values.flag("axis.C.enabled")
-    return "feedback needs axis.C.enabled = true" if wanted else ""
+    return "C-axis feedback requires axis.C.enabled = true" if wanted else ""
 
 
 def _slide(axis: str) -> tuple[Rule, ...]:
@@ -151,10 +204,15 @@ def _slide(axis: str) -> tuple[Rule, ...]:
         _jog_run_on(axis),
         _corner_tolerance(axis),
         _homing(axis),
-        _below("limits.max_feed", f"{path}.vmax", "no slide goes faster than its vmax", Unit.FEED),
-        _below("limits.manual_rapid", f"{path}.vmax", "no slide goes faster than its vmax", Unit.FEED),
-        _below(f"{path}.home.speed", f"{path}.vmax", "no slide goes faster than its vmax", Unit.FEED),
-        _below(f"{path}.count", "limits.resolution", "a step must be a count at least", Unit.LENGTH),
+        _below("limits.max_feed", f"{path}.vmax", "an axis cannot move faster than its vmax", Unit.FEED),
+        _below("limits.manual_rapid", f"{path}.vmax", "an axis cannot move faster than its vmax", Unit.FEED),
+        _below(f"{path}.home.speed", f"{path}.vmax", "an axis cannot move faster than its vmax", Unit.FEED),
+        _below(
+            f"{path}.count",
+            "limits.resolution",
+            ("one step of limits.resolution must be at least one count"),
+            Unit.LENGTH,
+        ),
         *_windows(axis, Unit.LENGTH),
     )
 
@@ -165,10 +223,25 @@ def _windows(axis: str, unit: Unit) -> tuple[Rule, ...]:
         f"axis.{axis}.{key}" for key in ("count", "in_pos", "still_window", "fe_window")
     )
     return (
-        _below(count, arrived, "in position must be a count at least", unit),
-        _below(arrived, window, "in position lies inside the fault window", unit),
-        _below(arrived, still, "in position lies inside what it may be off", unit),
-        _below(still, window, "at rest it trails behind nothing", unit),
+        _below(count, arrived, "the in-position window must be at least one count", unit),
+        _below(
+            arrived,
+            window,
+            ("the in-position window must not be larger than the following error window"),
+            unit,
+        ),
+        _below(
+            arrived,
+            still,
+            ("the in-position window must not be larger than the window allowed at rest"),
+            unit,
+        ),
+        _below(
+            still,
+            window,
+            ("the window allowed at rest must not be larger than the following error window"),
+            unit,
+        ),
     )
 
 
@@ -176,7 +249,7 @@ def _rotary(axis: str) -> tuple[Rule, ...]:
     return _home_inside(axis), _homing(axis), *_windows(axis, Unit.DEGREES)
 
 
-_QUEUE = "the queue would run dry"
+_QUEUE = "the setpoint queue would run empty"
 
 
 def _indexes(values: Values) -> str:
@@ -196,11 +269,26 @@ RULES = (
     *_rotary("B"),
     *_rotary("C"),
     *_home_orders(),
-    _below("machine.setpoint_ms", "machine.commit_ms", "a setpoint cannot last longer", Unit.MILLISECONDS),
+    _below(
+        "machine.setpoint_ms",
+        "machine.commit_ms",
+        "a setpoint cannot last longer than machine.commit_ms",
+        Unit.MILLISECONDS,
+    ),
     _below("machine.commit_ms", "machine.low_water_ms", _QUEUE, Unit.MILLISECONDS),
     _below("machine.low_water_ms", "machine.lookahead_ms", _QUEUE, Unit.MILLISECONDS),
-    _below("machine.lease_ms", "machine.lookahead_ms", "a jog is never queued further", Unit.MILLISECONDS),
-    _below("machine.commit_ms", "machine.lease_ms", "a renewal would come too late", Unit.MILLISECONDS),
+    _below(
+        "machine.lease_ms",
+        "machine.lookahead_ms",
+        "jog motion is never queued further ahead than machine.lookahead_ms",
+        Unit.MILLISECONDS,
+    ),
+    _below(
+        "machine.commit_ms",
+        "machine.lease_ms",
+        ("the jog watchdog time would expire before it is renewed"),
+        Unit.MILLISECONDS,
+    ),
     Rule("spindle.timeout_s", ("spindle.rpm", "spindle.accel_rpm_s", "spindle.at_speed_s"), _timeout),
     Rule("spindle.stop_below", ("spindle.rpm",), _stop_below),
     Rule("tooling.kind", (), _indexes),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from core.message import Message
 from core.table_schema import Field, Finding, Kind, Triple, Unit, Values, read_table, written
 
 TABLE = "kinematics"
@@ -19,15 +20,64 @@ _DIRECTIONS: dict[str, Triple] = {
 }
 _ALONG = {"A": "X", "B": "Y", "C": "Z"}
 WORKPIECE = (
-    Field("origin", Kind.TRIPLE, Unit.LENGTH, -5000.0, 5000.0),
-    Field("basic_rotation", Kind.NUMBER, Unit.DEGREES, -180.0, 180.0, default=0.0),
+    Field(
+        "origin",
+        Kind.TRIPLE,
+        Unit.LENGTH,
+        -5000.0,
+        5000.0,
+        meaning="Machine position of the workpiece zero with all rotary axes at 0.",
+    ),
+    Field(
+        "basic_rotation",
+        Kind.NUMBER,
+        Unit.DEGREES,
+        -180.0,
+        180.0,
+        default=0.0,
+        meaning="Rotation of the workpiece about Z against the machine.",
+    ),
 )
 ROTARY = (
-    Field("side", Kind.CHOICE, choices=("table", "head")),
-    Field("order", Kind.WHOLE, low=1, high=9),
-    Field("direction", Kind.CHOICE, choices=tuple(_DIRECTIONS)),
-    Field("point", Kind.TRIPLE, Unit.LENGTH, -5000.0, 5000.0),
-    Field("modulo", Kind.FLAG, default=False),
+    Field(
+        "side",
+        Kind.CHOICE,
+        choices=("table", "head"),
+        meaning="Whether the axis turns the table or the head.",
+    ),
+    Field(
+        "order",
+        Kind.WHOLE,
+        low=1,
+        high=9,
+        meaning=(
+            "Position in the chain from the workpiece to the tool, the lowest number first; tables "
+            "come before heads."
+        ),
+    ),
+    Field(
+        "direction",
+        Kind.CHOICE,
+        choices=tuple(_DIRECTIONS),
+        meaning="Direction of the axis of rotation with all rotary axes at 0.",
+    ),
+    Field(
+        "point",
+        Kind.TRIPLE,
+        Unit.LENGTH,
+        -5000.0,
+        5000.0,
+        meaning=(
+            "Any point on the axis of rotation: in machine positions for a table, counted from the "
+            "spindle nose for a head."
+        ),
+    ),
+    Field(
+        "modulo",
+        Kind.FLAG,
+        default=False,
+        meaning="true: the axis shows 0° to 360° and takes the shorter direction; it must not have `travel`.",
+    ),
 )
 
 
@@ -82,15 +132,20 @@ class KinematicsReading:
         self.findings += read_table(table, WORKPIECE, TABLE, self._values, tuple(rotary))
         if kind != "mill":
             self.findings.append(
-                Finding(f"[{TABLE}]", "", "only a mill has one; set machine.kind", "mill-only")
+                Finding(f"[{TABLE}]", "", "only a mill can have this table; set machine.kind", "mill-only")
             )
         if not isinstance(table, dict):
             return
         for name in rotary:
-            path = f"{TABLE}.{name}"
+            path = Message("{table}.{name}", table=TABLE, name=name)
             if name not in table:
                 self.findings.append(
-                    Finding(f"[{path}]", "", f"missing; axis.{name} has to lie somewhere", "missing")
+                    Finding(
+                        Message("[{path}]", path=path),
+                        "",
+                        Message("this table is missing; define where axis.{name} is located", name=name),
+                        "missing",
+                    )
                 )
                 continue
             found = read_table(table[name], ROTARY, path, self._values)
@@ -100,7 +155,7 @@ class KinematicsReading:
         self.findings += [*self._broken()]
 
     def _rotary(self, name: str) -> RotaryModel:
-        values, path = self._values, f"{TABLE}.{name}"
+        values, path = self._values, Message("{table}.{name}", table=TABLE, name=name)
         return values.model(
             RotaryModel,
             path,
@@ -114,23 +169,36 @@ class KinematicsReading:
         values = self._values
         if len(self._names) > MOST_ROTARIES:
             yield Finding(
-                f"[{TABLE}]", "", f"at most {MOST_ROTARIES} rotary axes can be solved", "broken-rule"
+                Message("[{table}]", table=TABLE),
+                "",
+                Message("at most {most_rotaries} rotary axes are supported", most_rotaries=MOST_ROTARIES),
+                "broken-rule",
             )
         orders: dict[float, str] = {}
         for name in self._names:
-            path = f"{TABLE}.{name}"
+            path = Message("{table}.{name}", table=TABLE, name=name)
             direction, order = values.text(f"{path}.direction"), values.number(f"{path}.order")
             if direction.removeprefix("-") != _ALONG[name]:
-                expected = f"expected {_ALONG[name]} or -{_ALONG[name]}: {name} turns about that axis"
+                expected = Message(
+                    "the direction must be {along} or -{along2}, because {name} rotates about that axis",
+                    along=_ALONG[name],
+                    along2=_ALONG[name],
+                    name=name,
+                )
                 yield Finding(f"{path}.direction", written(direction), expected, "broken-rule")
             if order in orders:
-                expected = f"expected a place of its own; {orders[order]} has this one"
+                expected = Message(
+                    "{orders} already has this order number; choose another number",
+                    orders=orders[order],
+                )
                 yield Finding(f"{path}.order", written(int(order)), expected, "broken-rule")
             orders[order] = name
             if values.flag(f"{path}.modulo") and values.has(f"axis.{name}.travel"):
                 low, _ = values.pair(f"axis.{name}.travel")
                 if abs(low) != float("inf"):
-                    expected = f"a modulo axis has no ends; take axis.{name}.travel out"
+                    expected = Message(
+                        "a modulo axis has no travel limits; remove axis.{name}.travel", name=name
+                    )
                     yield Finding(f"{path}.modulo", "true", expected, "broken-rule")
         yield from self._heads_last(orders)
 
@@ -139,6 +207,8 @@ class KinematicsReading:
         for _, name in sorted(orders.items()):
             table = self._values.text(f"{TABLE}.{name}.side") == "table"
             if table and head:
-                expected = "expected tables before heads: the order goes from the workpiece to the tool"
+                expected = (
+                    "tables must come before heads, because the order goes from the workpiece to the tool"
+                )
                 yield Finding(f"{TABLE}.{name}.order", "", expected, "broken-rule")
             head = head or not table

@@ -7,17 +7,61 @@ from dataclasses import dataclass
 from core.table_schema import Driver, DriverTable, Field, Kind
 
 _FIELDS = (
-    Field("port", Kind.TEXT),
-    Field("baud", Kind.WHOLE, low=110, high=1_000_000, default=9600),
-    Field("bits", Kind.WHOLE, low=7, high=8, default=8),
-    Field("parity", Kind.CHOICE, choices=("N", "E", "O"), default="N"),
-    Field("stop", Kind.WHOLE, low=1, high=2, default=1),
-    Field("flow", Kind.CHOICE, choices=("xonxoff", "rtscts", "none"), default="xonxoff"),
-    Field("wrap", Kind.CHOICE, choices=("%", ""), default="%"),
-    Field("eol", Kind.CHOICE, choices=("\r\n", "\n", "\r"), default="\r\n"),
-    Field("dc_codes", Kind.FLAG, default=False),
-    Field("wait", Kind.FLAG, default=False),
-    Field("leader", Kind.WHOLE, low=0, high=2000, default=0),
+    Field("port", Kind.TEXT, meaning="Serial port, such as `/dev/serial/by-id/…`."),
+    Field("baud", Kind.WHOLE, low=110, high=1_000_000, default=9600, meaning="Bit rate of the line."),
+    Field("bits", Kind.WHOLE, low=7, high=8, default=8, meaning="Data bits of a character."),
+    Field(
+        "parity",
+        Kind.CHOICE,
+        choices=("N", "E", "O"),
+        default="N",
+        meaning="Parity: none (N), even (E) or odd (O).",
+    ),
+    Field("stop", Kind.WHOLE, low=1, high=2, default=1, meaning="Stop bits of a character."),
+    Field(
+        "flow",
+        Kind.CHOICE,
+        choices=("xonxoff", "rtscts", "none"),
+        default="xonxoff",
+        meaning="Flow control of the line.",
+    ),
+    Field(
+        "wrap",
+        Kind.CHOICE,
+        choices=("%", ""),
+        default="%",
+        meaning='Line before and after a program. "": none; a pause then ends a received program.',
+    ),
+    Field(
+        "eol",
+        Kind.CHOICE,
+        choices=("\r\n", "\n", "\r"),
+        default="\r\n",
+        meaning="Line ending of the programs that TurnDesk sends.",
+    ),
+    Field(
+        "dc_codes",
+        Kind.FLAG,
+        default=False,
+        meaning=(
+            "true: TurnDesk sends DC2 before and DC4 after a program, and DC1 before and DC3 after "
+            "it receives one."
+        ),
+    ),
+    Field(
+        "wait",
+        Kind.FLAG,
+        default=False,
+        meaning="true: TurnDesk sends a program only after the other side has sent DC1.",
+    ),
+    Field(
+        "leader",
+        Kind.WHOLE,
+        low=0,
+        high=2000,
+        default=0,
+        meaning="Number of NUL characters before and after a program that is sent.",
+    ),
 )
 
 
@@ -38,5 +82,11 @@ class DncModel:
     leader: int = 0  # NULs before and behind what is sent
 
 
-_TABLE = DriverTable("dnc", _FIELDS, lambda file: file.values.model(DncModel, "dnc"), port="dnc.port")
+_TABLE = DriverTable(
+    "dnc",
+    _FIELDS,
+    lambda file: file.values.model(DncModel, "dnc"),
+    port="dnc.port",
+    purpose="The serial line over which programs are sent and received.",
+)
 DRIVER = Driver(tables=(_TABLE,))

@@ -5,19 +5,73 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from core.message import Message
 from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, shown
 
 PROBE_INPUT = "io.in.probe"
 SEES = 0.1  # s that may go by from the touch to the command to brake
 _FIELDS = (
-    Field("x", Kind.NUMBER, Unit.LENGTH, -1000.0, 1000.0),
-    Field("z", Kind.NUMBER, Unit.LENGTH, -3000.0, 3000.0),
-    Field("width", Kind.NUMBER, Unit.LENGTH, 0.2, 100.0),
-    Field("overtravel", Kind.NUMBER, Unit.LENGTH, 0.1, 50.0),
-    Field("speed", Kind.NUMBER, Unit.FEED, 0.05, 50.0),
-    Field("slow", Kind.NUMBER, Unit.FEED, 0.002, 5.0),
-    Field("search", Kind.NUMBER, Unit.LENGTH, 0.5, 200.0, default=12.7),
-    Field("back_off", Kind.NUMBER, Unit.LENGTH, 0.05, 20.0, default=1.27),
+    Field(
+        "x",
+        Kind.NUMBER,
+        Unit.LENGTH,
+        -1000.0,
+        1000.0,
+        meaning="X position of the middle of the stylus, a radius counted from the spindle axis.",
+    ),
+    Field(
+        "z",
+        Kind.NUMBER,
+        Unit.LENGTH,
+        -3000.0,
+        3000.0,
+        meaning="Z position of the middle of the stylus, counted from part zero.",
+    ),
+    Field(
+        "width", Kind.NUMBER, Unit.LENGTH, 0.2, 100.0, meaning="Width of the stylus; of a ball its diameter."
+    ),
+    Field(
+        "overtravel",
+        Kind.NUMBER,
+        Unit.LENGTH,
+        0.1,
+        50.0,
+        meaning="Distance by which the stylus may be pushed. The tool must be able to stop within it.",
+    ),
+    Field(
+        "speed",
+        Kind.NUMBER,
+        Unit.FEED,
+        0.05,
+        50.0,
+        meaning="Speed at which the tool searches for the stylus.",
+    ),
+    Field(
+        "slow",
+        Kind.NUMBER,
+        Unit.FEED,
+        0.002,
+        5.0,
+        meaning="Speed of the second touch, which is measured; not above `speed`.",
+    ),
+    Field(
+        "search",
+        Kind.NUMBER,
+        Unit.LENGTH,
+        0.5,
+        200.0,
+        default=12.7,
+        meaning="Distance within which the tool searches for the stylus.",
+    ),
+    Field(
+        "back_off",
+        Kind.NUMBER,
+        Unit.LENGTH,
+        0.05,
+        20.0,
+        default=1.27,
+        meaning="Distance by which the tool retracts between the two touches.",
+    ),
 )
 
 
@@ -49,16 +103,24 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     values, here = file.values, "setter" in file.tables
     there = PROBE_INPUT in file.terminals
     if here and not there and f"{PROBE_INPUT}.at" not in values.wrong:
-        yield Finding(PROBE_INPUT, "", "missing; [setter] needs its input, on while it is touched", "missing")
+        yield Finding(
+            PROBE_INPUT,
+            "",
+            "this input is missing; [setter] needs an input that is on while the setter is touched",
+            "missing",
+        )
     if not here:
         return
     if values.text("machine.kind") != "lathe":
-        yield Finding("[setter]", "", "only a lathe has this; take it out", "lathe-only")
+        yield Finding("[setter]", "", "only a lathe can have this table; remove the table", "lathe-only")
     inch = bool(values.inch)
     both = values.has("setter.slow", "setter.speed")
     if both and values.number("setter.slow") > values.number("setter.speed"):
         yield Finding(
-            "setter.slow", "", "is faster than setter.speed; the second touch is the slow one", "broken-rule"
+            "setter.slow",
+            "",
+            "this speed is higher than setter.speed; the second touch must not be faster than the first",
+            "broken-rule",
         )
     keys = ("setter.speed", "setter.overtravel", "axis.X.amax", "axis.Z.amax", "machine.commit_ms")
     if values.has(*keys):
@@ -67,7 +129,13 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         needed = runs_on(speed, accel, values.number("machine.commit_ms"))
         if needed > over * (1 + 1e-9):
             far = shown(needed, Unit.LENGTH, inch)
-            why = f"runs on {far} behind the touch, over setter.overtravel; go slower"
+            why = Message(
+                (
+                    "the tool travels {distance} after the touch, which exceeds setter.overtravel; "
+                    "reduce the speed"
+                ),
+                distance=far,
+            )
             yield Finding("setter.speed", "", why, "broken-rule")
 
 
@@ -78,6 +146,13 @@ def runs_on(speed: float, accel: float, commit: float) -> float:
 
 DRIVER = Driver(
     tables=(
-        DriverTable("setter", _FIELDS, lambda file: file.values.model(SetterModel, "setter"), rules=_rules),
+        DriverTable(
+            "setter",
+            _FIELDS,
+            lambda file: file.values.model(SetterModel, "setter"),
+            rules=_rules,
+            purpose="A tool setter, or a probe at a fixed place, for touching off the tools of a lathe. "
+            "It needs the input `probe`.",
+        ),
     )
 )

@@ -5,16 +5,40 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from core.message import Message
 from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, written
 
 KINDS = ("folder", "git", "postgresql")
 _LONGEST = 40  # letters of a desk's name
 _FIELDS = (
-    Field("folder", Kind.TEXT, default=""),
-    Field("git", Kind.TEXT, default=""),
-    Field("postgresql", Kind.TEXT, default=""),
-    Field("desk", Kind.TEXT, default=""),
-    Field("look", Kind.NUMBER, Unit.SECONDS, 2.0, 3600.0, default=30.0),
+    Field("folder", Kind.TEXT, default="", meaning="Shared folder, mounted on every computer."),
+    Field(
+        "git",
+        Kind.TEXT,
+        default="",
+        meaning="Address of a git repository, in which TurnDesk uses the branch `turndesk`.",
+    ),
+    Field(
+        "postgresql",
+        Kind.TEXT,
+        default="",
+        meaning="Connection string of a PostgreSQL database, as libpq reads it.",
+    ),
+    Field(
+        "desk",
+        Kind.TEXT,
+        default="",
+        meaning="Name of this machine among the others, at most 40 characters. Default: `machine.name`.",
+    ),
+    Field(
+        "look",
+        Kind.NUMBER,
+        Unit.SECONDS,
+        2.0,
+        3600.0,
+        default=30.0,
+        meaning="Time between two checks for new versions.",
+    ),
 )
 
 
@@ -40,18 +64,39 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     named = [kind for kind in KINDS if values.text(f"sharing.{kind}")]
     if len(named) != 1:
         said = " and ".join(named) if named else "none"
-        yield Finding("sharing", said, f"one place: {', '.join(KINDS[:-1])} or {KINDS[-1]}", "many-places")
+        yield Finding(
+            "sharing",
+            said,
+            Message(
+                "specify exactly one of the keys {kinds} or {kinds2}",
+                kinds=", ".join(KINDS[:-1]),
+                kinds2=KINDS[-1],
+            ),
+            "many-places",
+        )
     git, desk = values.text("sharing.git"), values.text("sharing.desk")
     if git.startswith("-"):
-        yield Finding("sharing.git", written(git), "the address of a repository", "git-address")
+        yield Finding(
+            "sharing.git", written(git), ("this value must be the address of a Git repository"), "git-address"
+        )
     if desk.strip() != desk or len(desk) > _LONGEST or not desk.isprintable():
-        yield Finding("sharing.desk", written(desk), f"a name of {_LONGEST} letters at most", "name-too-long")
+        yield Finding(
+            "sharing.desk",
+            written(desk),
+            Message("this value must be a name of at most {longest} characters", longest=_LONGEST),
+            "name-too-long",
+        )
 
 
 DRIVER = Driver(
     tables=(
         DriverTable(
-            "sharing", _FIELDS, lambda file: file.values.model(SharingTable, "sharing"), rules=_rules
+            "sharing",
+            _FIELDS,
+            lambda file: file.values.model(SharingTable, "sharing"),
+            rules=_rules,
+            purpose="The place through which machines share their programs: exactly one of `folder`, `git` "
+            "and `postgresql`.",
         ),
     )
 )

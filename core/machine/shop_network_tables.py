@@ -7,25 +7,75 @@ from dataclasses import dataclass, field
 from ipaddress import ip_address
 from urllib.parse import urlsplit
 
+from core.message import Message
 from core.table_schema import HIDDEN, Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, written
 
 LEAST_TOKEN = 12  # characters
 _WEB = ("http://", "https://")
 _PAGE_FIELDS = (
-    Field("enabled", Kind.FLAG, default=False),
-    Field("bind", Kind.TEXT, default="127.0.0.1"),
-    Field("port", Kind.WHOLE, low=1, high=65535, default=8317),
-    Field("token", Kind.TEXT, default=""),
-    Field("desks", Kind.WORDS, default=""),
-    Field("agents", Kind.WORDS, default=""),
+    Field("enabled", Kind.FLAG, default=False, meaning="true: TurnDesk serves the office page."),
+    Field(
+        "bind",
+        Kind.TEXT,
+        default="127.0.0.1",
+        meaning=(
+            'Address at which the page is served. "127.0.0.1": only to this computer; "0.0.0.0": to '
+            "all computers, which needs a token."
+        ),
+    ),
+    Field("port", Kind.WHOLE, low=1, high=65535, default=8317, meaning="TCP port of the page."),
+    Field(
+        "token",
+        Kind.TEXT,
+        default="",
+        meaning=(
+            "Password in the address of the page: letters, digits, - and _. At least 12 characters "
+            "if other computers can connect."
+        ),
+    ),
+    Field(
+        "desks",
+        Kind.WORDS,
+        default="",
+        meaning=(
+            "Addresses of the office pages of other machines, with their tokens, to be shown on the "
+            "same page."
+        ),
+    ),
+    Field(
+        "agents",
+        Kind.WORDS,
+        default="",
+        meaning=(
+            "Addresses of MTConnect agents with the device, such as `http://shop-pc:5000/MILL4`, "
+            "whose machines are shown on the same page."
+        ),
+    ),
 )
 _ANNOUNCE_FIELDS = (
-    Field("mqtt", Kind.TEXT, default=""),
-    Field("topic", Kind.TEXT, default="turndesk"),
-    Field("user", Kind.TEXT, default=""),
-    Field("password", Kind.TEXT, default=""),
-    Field("hook", Kind.TEXT, default=""),
-    Field("again", Kind.NUMBER, Unit.SECONDS, 1.0, 3600.0, default=10.0),
+    Field(
+        "mqtt",
+        Kind.TEXT,
+        default="",
+        meaning="MQTT broker as `host` or `host:port`; the default port is 1883. Default: no broker.",
+    ),
+    Field(
+        "topic", Kind.TEXT, default="turndesk", meaning="Topic before `/available`, `/state` and `/event`."
+    ),
+    Field("user", Kind.TEXT, default="", meaning="User name at the broker."),
+    Field("password", Kind.TEXT, default="", meaning="Password at the broker."),
+    Field(
+        "hook", Kind.TEXT, default="", meaning="Web address that receives each event by POST. Default: none."
+    ),
+    Field(
+        "again",
+        Kind.NUMBER,
+        Unit.SECONDS,
+        1.0,
+        3600.0,
+        default=10.0,
+        meaning="Time after which TurnDesk retries a broker or web address that did not respond.",
+    ),
 )
 
 
@@ -104,16 +154,26 @@ def _page_rules(file: FileReading) -> Iterator[Finding]:
         return
     bind, token = values.text("status_page.bind"), values.text("status_page.token")
     if token and not (token.isascii() and token.replace("-", "").replace("_", "").isalnum()):
-        yield Finding("status_page.token", "", "letters, figures, - and _ only", "broken-rule")
+        yield Finding("status_page.token", "", "use only letters, digits, - and _", "broken-rule")
     elif not loopback(bind) and len(token) < LEAST_TOKEN:
-        why = f"other computers can ask at {bind}: a token of {LEAST_TOKEN} characters or more is needed"
+        why: str = Message(
+            "other computers can connect to {bind}, so a token of at least {least_token} "
+            "characters is needed",
+            bind=bind,
+            least_token=LEAST_TOKEN,
+        )
         yield Finding("status_page.token", "", why, "broken-rule")
     for address in values.text("status_page.desks").split():
         if not is_web_address(address):
-            yield Finding("status_page.desks", HIDDEN, "an address that begins with http://", "broken-rule")
+            yield Finding(
+                "status_page.desks",
+                HIDDEN,
+                ("each entry must be an address that begins with http://"),
+                "broken-rule",
+            )
     for address in values.text("status_page.agents").split():
         if not is_web_address(address) or not urlsplit(address).path.strip("/"):
-            why = "the agent's address and the device, such as http://shop-pc:5000/LATHE2"
+            why = "each entry must be an agent's address and a device, such as http://shop-pc:5000/LATHE2"
             yield Finding("status_page.agents", HIDDEN, why, "broken-rule")
 
 
@@ -129,19 +189,22 @@ def _announce_rules(file: FileReading) -> Iterator[Finding]:
         yield Finding(
             "announce.mqtt",
             written(broker.rpartition("@")[2]),
-            'the address of the broker, such as "shop-pc:1883"',
+            'this value must be the address of the MQTT broker, such as "shop-pc:1883"',
             "broken-rule",
         )
     if hook and not is_web_address(hook):
         yield Finding(
-            "announce.hook", HIDDEN, "an address that begins with http:// or https://", "broken-rule"
+            "announce.hook",
+            HIDDEN,
+            ("this value must be an address that begins with http:// or https://"),
+            "broken-rule",
         )
     topic = values.text("announce.topic")
     if topic.startswith("/") or any(sign in topic for sign in "+# "):
         yield Finding(
             "announce.topic",
             written(topic),
-            "a topic without + # and blanks, such as shop/lathe3",
+            "this value must be a topic without +, # or blanks, such as shop/lathe3",
             "broken-rule",
         )
 
@@ -153,12 +216,14 @@ DRIVER = Driver(
             _PAGE_FIELDS,
             lambda file: file.values.model(StatusPageTable, "status_page"),
             rules=_page_rules,
+            purpose="The office page: a web page that shows the state of the machine to other computers.",
         ),
         DriverTable(
             "announce",
             _ANNOUNCE_FIELDS,
             lambda file: file.values.model(AnnounceTable, "announce"),
             rules=_announce_rules,
+            purpose="Where TurnDesk reports the state of the machine: an MQTT broker, a web hook, or both.",
         ),
     )
 )

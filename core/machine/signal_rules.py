@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from core.machine.machine_reading import Reading
 from core.machine.machine_tables import FIXED_M_CODES, LANGUAGES
 from core.machine.signal_table import LAMPS, PREFIX, RED
+from core.message import Message
 from core.table_schema import Finding, written
 
 # Codes of the language and the outputs they switch.
-NEEDED_OUTPUTS = {"coolant": "M08 and M09 switch it", "collet": "M12 and M13 switch it"}
+NEEDED_OUTPUTS = {"coolant": "M08 and M09 switch this output", "collet": "M12 and M13 switch this output"}
 ESTOP = "estop"
 _NUMBERS = frozenset(str(number) for number in range(1000))
 
@@ -37,20 +38,28 @@ def _needed(reading: Reading) -> Iterator[Finding]:
             yield Finding(
                 f"io.out.{name}",
                 "",
-                f'missing; {why}. Where the machine has none: {{ at = "none" }}',
+                Message(
+                    (
+                        "this output is missing; {why}. If the machine does not have this output, "
+                        'write {{ at = "none" }}'
+                    ),
+                    why=why,
+                ),
                 "missing",
             )
-    needed = {ESTOP: "the control mirrors it"}
+    needed = {ESTOP: "TurnDesk monitors this input"}
     values = reading.values
     if values.has("interlocks.two_hand_start") and values.flag("interlocks.two_hand_start"):
-        needed["start"] = "interlocks.two_hand_start needs the two-hand relay's output"
+        needed["start"] = "interlocks.two_hand_start needs the output of the two-hand relay"
     if values.has("interlocks.spindle_with_collet_open") and not values.flag(
         "interlocks.spindle_with_collet_open"
     ):
-        needed["collet_closed"] = "refusing a spindle start with the collet open needs it"
+        needed["collet_closed"] = "TurnDesk needs this input to reject a spindle start with the collet open"
     for name, why in needed.items():
         if name not in reading.inputs:
-            yield Finding(f"io.in.{name}", "", f"missing; {why}", "missing")
+            yield Finding(
+                Message("io.in.{name}", name=name), "", Message("missing; {why}", why=why), "missing"
+            )
 
 
 def _m_codes(reading: Reading) -> Iterator[Finding]:
@@ -58,11 +67,17 @@ def _m_codes(reading: Reading) -> Iterator[Finding]:
         path = f"m_codes.{code}"
         if code not in _NUMBERS:
             yield Finding(
-                path, "", "expected the number of an M code, 0…999 without a leading zero", "broken-rule"
+                path,
+                "",
+                ("this key must be the number of an M code, 0…999, without a leading zero"),
+                "broken-rule",
             )
         elif int(code) in FIXED_M_CODES[_language(reading)]:
             yield Finding(
-                path, "", f"M{int(code):02d} has a meaning of its own; expected a free M code", "broken-rule"
+                path,
+                "",
+                Message("M{code} has a fixed meaning; use a free M code", code=f"{int(code):02d}"),
+                "broken-rule",
             )
         elif reading.values.has(f"{path}.output"):
             output = reading.values.text(f"{path}.output")
@@ -71,7 +86,7 @@ def _m_codes(reading: Reading) -> Iterator[Finding]:
                 yield Finding(
                     f"{path}.output",
                     written(output),
-                    f"expected an output of [io.out]: {known}",
+                    Message("this value must be an output in [io.out]: {known}", known=known),
                     "broken-rule",
                 )
 
@@ -117,7 +132,13 @@ def _never_off(reading: Reading) -> Iterator[Finding]:
     off = {output for _, output, on in codes if not on} | set(NEEDED_OUTPUTS)
     for code, output, on in codes:
         if on and output not in off:
-            expected = f"switches {output} on and no M code switches it off; expected one with on = false"
+            expected = Message(
+                (
+                    "this M code switches {output} on, but no M code switches this output off; add "
+                    "an M code with on = false"
+                ),
+                output=output,
+            )
             yield Finding(f"m_codes.{code}", "", expected, "broken-rule")
 
 
@@ -129,21 +150,29 @@ def _lamps(reading: Reading) -> Iterator[Finding]:
             yield Finding(
                 path,
                 "",
-                f"a lamp of the signal tower is {', '.join(LAMPS)}; expected one of these",
+                Message(
+                    "a signal tower has the lamps {lamps}; use one of these names",
+                    lamps=", ".join(LAMPS),
+                ),
                 "broken-rule",
             )
         elif reading.values.has(f"{path}.safe"):
             safe = reading.values.found[f"{path}.safe"]
             if safe == "keep" or (safe is True and name != RED):
                 told = "true or false" if name == RED else "false"
-                why = "what it shows when nobody drives it must be no promise"
-                yield Finding(f"{path}.safe", written(safe), f"expected {told}: {why}", "broken-rule")
+                why = "while TurnDesk does not control the lamp, the lamp must not indicate normal operation"
+                yield Finding(
+                    Message("{path}.safe", path=path),
+                    written(safe),
+                    Message("this value must be {details}; {why}", details=told, why=why),
+                    "broken-rule",
+                )
     for code in reading.m_codes:
         path = f"m_codes.{code}.output"
         if reading.values.has(path) and reading.values.text(path) in LAMPS:
             yield Finding(
                 path,
                 written(reading.values.text(path)),
-                "the control lights it by itself, no M code",
+                "TurnDesk switches this lamp automatically; an M code cannot switch it",
                 "broken-rule",
             )

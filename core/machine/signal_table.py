@@ -27,7 +27,7 @@ class Signal(NamedTuple):
 SIGNALS = {
     "estop": Signal(RED, False, 0.0, (440, 440), "E-STOP"),
     "alarm": Signal(RED, True, 3.0, (880, 440, 880, 440), "ALARM"),
-    "tool-life": Signal(AMBER, True, 1.0, (660, 660), "TOOL LIFE USED UP, OR PARTS TO MEASURE"),
+    "tool-life": Signal(AMBER, True, 1.0, (660, 660), "TOOL LIFE USED UP, OR PART MEASUREMENT DUE"),
     "stop": Signal(AMBER, True, 1.0, (660, 440), "STOP: FEED HOLD, M00, SINGLE BLOCK"),
     "part": Signal(AMBER, False, 0.5, (523, 659, 784), "PART FINISHED, NO CYCLE RUNNING"),
     "runs": Signal(GREEN, False, 0.0, (), "CYCLE RUNNING"),

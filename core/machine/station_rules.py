@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from core.message import Message
 from core.table_schema import FileReading, Finding, written
 
 WHEEL = "handwheel"
@@ -29,7 +30,12 @@ def wrong_jog(file: FileReading) -> Iterator[Finding]:
     known = [JOG_RAPID, *(jog_button(axis, sign) for axis in file.axes for sign in (1, -1))]
     for name in file.names("io.in"):
         if name.startswith("jog_") and name not in known:
-            yield Finding(f"io.in.{name}", "", f"no jog button: one of {', '.join(known)}", "broken-rule")
+            yield Finding(
+                Message("io.in.{name}", name=name),
+                "",
+                Message("this input is not a jog button; use one of {known}", known=", ".join(known)),
+                "broken-rule",
+            )
 
 
 def wrong_wheel(file: FileReading) -> Iterator[Finding]:
@@ -41,29 +47,42 @@ def wrong_wheel(file: FileReading) -> Iterator[Finding]:
             yield Finding(
                 path,
                 "0",
-                "expected counts, negative where the wheel turns the other way round",
+                (
+                    "this value must be a number of counts, negative if the handwheel turns in the "
+                    "opposite direction"
+                ),
                 "broken-rule",
             )
         if values.has(path) and name != WHEEL and values.number(path) != 1:
-            yield Finding(path, f"{values.number(path):g}", "a pot has no clicks; take it out", "broken-rule")
+            yield Finding(
+                path,
+                f"{values.number(path):g}",
+                ("an override pot has no clicks; remove this key"),
+                "broken-rule",
+            )
     selectors = [selector(axis) for axis in file.axes]
     known = [ENABLE, *FACTORS, *selectors, AXIS_BUTTON, STEP_BUTTON]
     there = file.names("io.in")
     for button, switches in ((AXIS_BUTTON, selectors), (STEP_BUTTON, list(FACTORS))):
         if button in there and (also := [name for name in switches if name in there]):
-            why = f"{also[0]} says that already: a button or switches, not both"
+            why = Message(
+                "{also} already makes this selection; use a button or switches, not both", also=also[0]
+            )
             yield Finding(f"io.in.{button}", "", why, "broken-rule")
     for name in there:
         if name.startswith("wheel_") and name not in known:
             yield Finding(
-                f"io.in.{name}", "", f"no switch of a handwheel: one of {', '.join(known)}", "broken-rule"
+                Message("io.in.{name}", name=name),
+                "",
+                Message("this input is not a handwheel switch; use one of {known}", known=", ".join(known)),
+                "broken-rule",
             )
         elif name.startswith("wheel_") and WHEEL not in analog:
             at = written(values.text(f"io.in.{name}.at")) if values.has(f"io.in.{name}.at") else ""
             yield Finding(
                 f"io.in.{name}",
                 at,
-                "a switch of the handwheel; expected [io.analog] handwheel",
+                "this input is a handwheel switch; add [io.analog] handwheel",
                 "broken-rule",
             )
 
@@ -75,8 +94,9 @@ _PALM = re.compile(
     r"(left|right)?_?palms?_?(left|right|\d)?|(left|right)_start|start_?(left|right|\d)", re.IGNORECASE
 )
 WHY = (
-    "palm buttons are not wired to the control: a two-hand relay tells whether both came within 0.5 s and"
-    " were let go in between; its one output is the input start"
+    "do not wire palm buttons to the control; use a two-hand relay, which checks "
+    "that both buttons are pressed within 0.5 s of each other and released between "
+    "starts; wire the single output of the relay to the input start"
 )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 
+from core.message import Message
 from core.table_schema import Driver, FileReading, Finding, Values, written
 
 STATION_SWITCH = "spindle_auto"  # the AUTO/OFF switch of an operator station
@@ -20,7 +21,7 @@ def shared(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
         owner = place.removesuffix(".at")
         first = taken.setdefault(_same(file, drivers, terminal), owner)
         if first != owner:
-            expected = f"expected a terminal of its own; {first} is on this one"
+            expected = Message("{first} already uses this terminal; choose another terminal", first=first)
             yield Finding(place, written(terminal), expected, "broken-rule")
 
 
@@ -41,8 +42,8 @@ def pots(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
             if not 0.0 <= low < high <= top:
                 yield Finding(
                     f"{path}.range",
-                    f"[{low:g}, {high:g}]",
-                    f"expected fractions within 0…{top:g}",
+                    Message("[{low}, {high}]", low=f"{low:g}", high=f"{high:g}"),
+                    Message("the fractions must be between 0 and {top}", top=f"{top:g}"),
                     "broken-rule",
                 )
 
@@ -65,7 +66,14 @@ def _line_to_add(file: FileReading, drivers: Sequence[Driver], switch: str) -> s
     backend = _backend(file.values, drivers)
     terminal = _free_input(file, drivers, backend) if backend is not None else "IN-…"
     key = switch if switch.replace("_", "").isalnum() else written(switch)
-    return f'expected an input of [io.in]; add there the line: {key} = {{ at = "{terminal}" }}'
+    return Message(
+        (
+            "this switch must be an input in [io.in]; add this line to that table: {key} = "
+            '{{ at = "{terminal}" }}'
+        ),
+        key=key,
+        terminal=terminal,
+    )
 
 
 def _free_input(file: FileReading, drivers: Sequence[Driver], backend: Driver) -> str:

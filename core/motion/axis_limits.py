@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.coded_error import CodedError
+from core.message import Message
 
 
 class MotionError(CodedError):
@@ -58,11 +59,15 @@ class MotionLimits:
     def __post_init__(self) -> None:
         for name in (f.name for f in fields(self) if f.name in {"vmax", "amax"}):
             for number, value in enumerate(getattr(self, name), start=1):
-                _demand_positive(f"{name} of axis {number}", value)
+                _demand_positive(Message("{name} of axis {number}", name=name, number=number), value)
         _demand_positive("interval", self.interval)
         if not 0.0 <= self.grain < math.inf:
             raise MotionError(
-                f"The rounding step of the axes is {self.grain} mm. Enter 0 or a positive number.", "grain"
+                Message(
+                    "The rounding step of the axes is {grain} mm. Enter 0 or a positive number.",
+                    grain=self.grain,
+                ),
+                "grain",
             )
 
     @classmethod
@@ -103,5 +108,10 @@ class MotionLimits:
 def _demand_positive(what: str, value: float) -> None:
     if not (math.isfinite(value) and value > 0.0):
         raise MotionError(
-            f"Motion limit {what} is {value}. Enter a positive number in the machine file.", "axis-limit"
+            Message(
+                "Motion limit {what} is {value}. Enter a positive number in the machine file.",
+                what=what,
+                value=value,
+            ),
+            "axis-limit",
         )

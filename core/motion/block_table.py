@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeGuard
 
 import numpy as np
 
+from core.message import Message
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError
 
 if TYPE_CHECKING:
@@ -163,7 +164,8 @@ def _travels(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, Flo
     travels = [block.travel for block in blocks if block.travel is not None]
     if len(travels) != len(blocks):
         raise MotionError(
-            f"Block {blocks[0].n} specifies all axes, but another block after it does not.", "axes-differ"
+            Message("Block {number} specifies all axes, but a later block does not.", number=blocks[0].n),
+            "axes-differ",
         )
     start, end = (np.array([getattr(t, name) for t in travels], order="F") for name in ("start", "end"))
     return start, end, np.array([t.length for t in travels])
@@ -175,7 +177,12 @@ def _kinds(blocks: Sequence[MotionBlock]) -> FloatArray:
     except KeyError:
         block = next(b for b in blocks if b.kind not in KINDS)
         raise MotionError(
-            f"Block {block.n}: a {block.kind} block cannot be planned as a motion.", "no-time-law"
+            Message(
+                "Block {number}: a {kind} block cannot be planned as a motion.",
+                number=block.n,
+                kind=block.kind,
+            ),
+            "no-time-law",
         ) from None
 
 
@@ -185,7 +192,12 @@ def _demand_finite(table: FloatArray) -> None:
         row = table[bad.argmax()]
         names = (*_COLUMNS, "per_rev", "clockwise", "offset_c", "c_locked")
         name = names[int(np.argmax(~np.isfinite(row)))]
-        raise MotionError(f"Block {row[0]:.0f}: {name} is not a number; correct the block.", "not-a-number")
+        raise MotionError(
+            Message(
+                "Block {row}: {name} is not a number; correct the block.", row=f"{row[0]:.0f}", name=name
+            ),
+            "not-a-number",
+        )
 
 
 def _surface(blocks: Sequence[MotionBlock], rpm_max: float) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -195,7 +207,14 @@ def _surface(blocks: Sequence[MotionBlock], rpm_max: float) -> tuple[FloatArray,
         if block.css is not None:
             if not 0.0 <= block.css < math.inf:
                 raise MotionError(
-                    f"Block {block.n}: css is {block.css} mm/s. Program a surface speed with S.",
+                    Message(
+                        (
+                            "Block {number}: surface speed css = {css} mm/s is not valid. Program a "
+                            "surface speed with S."
+                        ),
+                        number=block.n,
+                        css=block.css,
+                    ),
                     "surface-speed",
                 )
             surface[i], lo[i] = block.css, block.modal.css_min

@@ -2,7 +2,7 @@
 
 The path of such a piece is measured as its feed is, along the mill's way or along the slide's; what X, Z and
 C do is its ``direction``. So limits, corners, look-ahead and holds are those of any other line. A curved way
-becomes chords in X, Z and C; the reasons are in docs/decisions/0010-c-axis-and-planes.md.
+becomes chords in X, Z and C; the reasons are in docs/decisions/0005-c-axis-and-virtual-mill.md.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from core.message import Message
 from core.motion.axis_limits import (
     CENTRIPETAL_SHARE,
     OVERRIDE_MAX,
@@ -144,8 +145,15 @@ def _slide_by_c(piece: Pieces, table: BlockTable, index: int) -> Pieces:
     if abs(turn) < needed * (1.0 - _ROUNDING):
         raise MotionError(
             (
-                f"Block {table.n[index]:.0f}: the move needs {needed:g} degrees of C, but C turns "
-                f"{abs(turn):g} degrees."
+                Message(
+                    (
+                        "Block {number}: the move needs {needed} degrees of C rotation, but C turns "
+                        "only {turn} degrees."
+                    ),
+                    number=f"{table.n[index]:.0f}",
+                    needed=f"{needed:g}",
+                    turn=f"{abs(turn):g}",
+                )
             ),
             "rotary-range",
         )

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from core.message import Message
 from core.motion.axis_limits import BoolArray, FloatArray, MotionError
 from core.motion.block_table import BlockTable
 from core.motion.path_pieces import Pieces
@@ -19,14 +20,14 @@ def constant_rates(table: BlockTable) -> FloatArray:
 
     Raises MotionError for a feed that is not positive and for a feed per revolution with the spindle still.
     """
-    _refuse(table, ~(table.feed > 0.0), "the feed is not above zero; program an F word", "no-feed")
+    _refuse(table, ~(table.feed > 0.0), "the feed must be greater than 0; program an F word", "no-feed")
     surface = by_radius(table)
     middle = 0.5 * (table.start[:, 0] + table.end[:, 0]) - table.axis
     rpm = np.where(surface, surface_rpms(table, middle), table.rpm)
     _refuse(
         table,
         table.per_rev & ~(rpm > 0.0),
-        "feed per revolution with the spindle stopped; start the spindle first",
+        "the feed is per revolution, but the spindle is stopped; start the spindle first",
         "spindle-stopped",
     )
     on_axis = (table.start[:, 0] - table.axis) * (table.end[:, 0] - table.axis) <= 0.0
@@ -34,7 +35,10 @@ def constant_rates(table: BlockTable) -> FloatArray:
     _refuse(
         table,
         endless,
-        "the spindle speed at the axis has no upper limit; program one, or set rpm_max",
+        (
+            "the spindle speed has no upper limit at the spindle centerline; program a "
+            "speed limit, or set rpm_max"
+        ),
         "no-speed-limit",
     )
     rate = np.where(table.per_rev, table.feed * rpm / 60.0, table.feed)
@@ -68,7 +72,9 @@ def surface_rpms(table: BlockTable, radius: FloatArray) -> FloatArray:
 
 def _refuse(table: BlockTable, wrong: BoolArray, why: str, code: str) -> None:
     if wrong.any():
-        raise MotionError(f"Block {table.n[wrong.argmax()]:.0f}: {why}.", code)
+        raise MotionError(
+            Message("Block {number}: {why}.", number=f"{table.n[wrong.argmax()]:.0f}", why=why), code
+        )
 
 
 def split_by_radius(pieces: Pieces, table: BlockTable, index: int) -> Pieces:

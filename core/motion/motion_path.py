@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.message import Message
 from core.motion.axis_limits import FloatArray, IntArray, MotionError, MotionLimits
 from core.motion.block_table import BlockTable, MotionBlock, Part, table_of
 from core.motion.chord_smoothing import SUPPORT, ends_in_chord, regrown, unrounded
@@ -58,7 +59,9 @@ class Path:
         """Distances at which block ``n`` starts and ends. Raises MotionError when it is not on this path."""
         i = int(np.searchsorted(self.blocks, n))
         if i == len(self.blocks) or self.blocks[i] != n:
-            raise MotionError(f"Block {n} is not on the planned path.", "block-not-on-path")
+            raise MotionError(
+                Message("Block {number} is not on the planned path.", number=n), "block-not-on-path"
+            )
         return float(self.s[self.first[i]]), float(self.s[self.first[i + 1]])
 
     def piece_at(self, s: FloatArray) -> IntArray:
@@ -116,7 +119,11 @@ class PathBuilder:
         table = table_of(batch, self.rpm_max)
         if self._closed:
             raise MotionError(
-                f"Block {table.n[0]:.0f} comes after the end of the path. Begin a new path.", "path-ended"
+                Message(
+                    "Block {number} comes after the end of the path. Begin a new path.",
+                    number=f"{table.n[0]:.0f}",
+                ),
+                "path-ended",
             )
         _demand_unbroken(table, self._end)
         pieces, counts = _pieces(table, self._limits)
@@ -213,8 +220,12 @@ def _demand_unbroken(table: BlockTable, end: FloatArray | None) -> None:
         i = int(gap.max(axis=1).argmax()) + len(table.n) - len(before)
         raise MotionError(
             (
-                f"Block {table.n[i]:.0f} starts {gap.max():.4f} mm from the end of the previous "
-                "block. Plan it from the current machine position."
+                Message(
+                    "Block {number} starts {max} mm from the end of the previous block. Plan the block from "
+                    "the current machine position.",
+                    number=f"{table.n[i]:.0f}",
+                    max=f"{gap.max():.4f}",
+                )
             ),
             "broken-path",
         )

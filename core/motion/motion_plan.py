@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.message import Message
 from core.motion.axis_limits import OVERRIDE_MAX, FloatArray, MotionError
 from core.motion.motion_path import Path
 from core.motion.motion_profile import Phases, Profile
@@ -274,8 +275,14 @@ def _braked_into(run: _Run, allowed: FloatArray, square: float, slack: float) ->
     if not len(fits):
         raise MotionError(
             (
-                f"The axes cannot stop from {math.sqrt(square):.3f} mm/s within the remaining "
-                f"{run.length.sum():.4f} mm. Plan from a state of this path."
+                Message(
+                    (
+                        "At {square} mm/s, the axes cannot stop within the remaining {sum} mm. Start "
+                        "from a position on this path, at a lower speed."
+                    ),
+                    square=f"{math.sqrt(square):.3f}",
+                    sum=f"{run.length.sum():.4f}",
+                )
             ),
             "cannot-stop",
         )
@@ -292,8 +299,12 @@ def _demand_passable(braked: FloatArray, hard: FloatArray, slack: float) -> None
         i = int(over.argmax())
         raise MotionError(
             (
-                f"A speed of {math.sqrt(braked[i]):.3f} mm/s is too high for the rest of the path, "
-                f"which allows {math.sqrt(hard[i]):.3f} mm/s. Plan from a state of this path."
+                Message(
+                    "A speed of {braked} mm/s is too high for the rest of the path, which allows {hard} "
+                    "mm/s. Plan from a position and speed on this path.",
+                    braked=f"{math.sqrt(braked[i]):.3f}",
+                    hard=f"{math.sqrt(hard[i]):.3f}",
+                )
             ),
             "too-fast",
         )
@@ -326,8 +337,11 @@ def _rest(path: Path, v: float) -> Profile:
     if v * v > 2.0 * NEAR * float(path.a.max(initial=1.0)):
         raise MotionError(
             (
-                f"The axes cannot stop from {v:.3f} mm/s at the end of the path. Plan before the end "
-                "of the path."
+                Message(
+                    "At {value} mm/s, the axes cannot stop at the end of the path. Start planning before the "
+                    "end of the path.",
+                    value=f"{v:.3f}",
+                )
             ),
             "cannot-stop-at-end",
         )
@@ -338,7 +352,14 @@ def _start(path: Path, start_s: float | None) -> float:
     at = float(path.s[0]) if start_s is None else start_s
     if not path.s[0] - NEAR <= at <= path.s[-1] + NEAR:
         raise MotionError(
-            (f"Distance {at} is not on the path, which runs from {path.s[0]:.6f} to {path.s[-1]:.6f} mm."),
+            (
+                Message(
+                    "Distance {position} mm is not on the path, which runs from {s} to {s2} mm.",
+                    position=at,
+                    s=f"{path.s[0]:.6f}",
+                    s2=f"{path.s[-1]:.6f}",
+                )
+            ),
             "not-on-path",
         )
     return min(max(at, float(path.s[0])), float(path.s[-1]))
@@ -346,10 +367,18 @@ def _start(path: Path, start_s: float | None) -> float:
 
 def _demand_sane(start_v: float, feed_scale: float, rapid_scale: float) -> None:
     if not (math.isfinite(start_v) and start_v >= 0.0):
-        raise MotionError(f"The current speed is {start_v}; it must be zero or above.", "negative-speed")
+        raise MotionError(
+            Message("The current speed is {start_v}; it must be zero or above.", start_v=start_v),
+            "negative-speed",
+        )
     for name, scale in (("feed", feed_scale), ("rapid", rapid_scale)):
         if not 0.0 <= scale <= OVERRIDE_MAX:
             raise MotionError(
-                f"The {name} override is {scale}; it must be between 0 and {OVERRIDE_MAX}.",
+                Message(
+                    "The {name} override is {scale}; it must be between 0 and {override_max}.",
+                    name=name,
+                    scale=scale,
+                    override_max=OVERRIDE_MAX,
+                ),
                 f"{name}-override",
             )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from core.message import Message
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError
 from core.motion.block_table import BlockTable
 
@@ -142,9 +143,13 @@ def _settled_centre(table: BlockTable, arc: IntArray) -> FloatArray:
         worst = int(off.argmax())
         raise MotionError(
             (
-                f"Block {table.n[arc[worst]]:.0f}: the start of the arc is {radii[0][worst]:.4f} mm "
-                f"and its end {radii[1][worst]:.4f} mm from its center. Correct the center or the end "
-                "point."
+                Message(
+                    "Block {number}: the arc starts {radii} mm and ends {radii2} mm from its center. Correct "
+                    "the center or the end point.",
+                    number=f"{table.n[arc[worst]]:.0f}",
+                    radii=f"{radii[0][worst]:.4f}",
+                    radii2=f"{radii[1][worst]:.4f}",
+                )
             ),
             "arc-radii-differ",
         )

@@ -5,7 +5,7 @@ every joint far more than the curve does. An axis never sees these turns: betwee
 sum. What it is asked for is the second difference of the setpoints, |P(s+r) - 2·P(s) + P(s-r)| / interval²
 with r the way of one interval, and that is what is held against its limit here.
 
-The formulas and their reasons: docs/decisions/0003-time-law.md. Nothing here depends on an override, so that
+The formulas and their reasons: docs/decisions/0014-time-law.md. Nothing here depends on an override, so that
 a plan made from a moving state meets the same limits as the plan it replaces.
 """
 

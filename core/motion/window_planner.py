@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from core.message import Message
 from core.motion.axis_limits import FloatArray, IntArray, MotionError, MotionLimits
 from core.motion.block_table import MotionBlock, Row, batches
 from core.motion.motion_path import PathBuilder
@@ -40,7 +41,10 @@ class ChunkPlanner:
     def __init__(self, limits: MotionLimits, *, rpm_max: float = math.inf, window: int = 20_000) -> None:
         if window < 1:
             raise MotionError(
-                f"A planning window of {window} blocks is too small. Set at least 1.", "empty-window"
+                Message(
+                    "A planning window of {window} blocks is too small. Set at least 1 block.", window=window
+                ),
+                "empty-window",
             )
         self._limits = limits
         self._rpm_max = rpm_max
@@ -115,7 +119,8 @@ def sample_positions(
     """
     if not dt > 0.0:
         raise MotionError(
-            f"A sampling interval of {dt} s gives no samples. Set a time above zero.", "sampling-interval"
+            Message("A sampling interval of {dt} s gives no samples. Set a time above zero.", dt=dt),
+            "sampling-interval",
         )
     count = max(math.ceil((profile.duration - t_offset) / dt), 0)
     t: FloatArray = t_offset + dt * np.arange(count, dtype=np.float64)

@@ -15,6 +15,7 @@ from itertools import pairwise
 from math import radians, sin, tan
 
 from core.coded_error import CodedError
+from core.message import Message
 
 MM_PER_INCH = 25.4
 
@@ -61,7 +62,7 @@ _LETTERS: tuple[tuple[str, Iterable[str]], ...] = (
     ("shape", CORNERS),
     ("clearance", _CLEARANCES),
     ("tolerance class", "ACEFGHJKLMNU"),
-    ("type of hole and chip breaker", "ABCFGHJMNQRTUWX"),
+    ("insert type (hole and chip breaker)", "ABCFGHJMNQRTUWX"),
 )
 
 # --- ISO 1832, symbols 5 to 7 ------------------------------------------------------------------------------
@@ -180,13 +181,23 @@ def _check_letters(code: str, head: str, *, older: bool) -> None:
             if older:
                 return
             raise InsertCodeError(
-                f"{code}: character {place} is missing; it specifies the {what}", "character-missing"
+                Message(
+                    "{code}: character {place} is missing; it specifies the {what}",
+                    code=code,
+                    place=place,
+                    what=what,
+                ),
+                "character-missing",
             )
         if head[place - 1] not in known:
             raise _meaningless(code, place, head[place - 1], what, known)
     if len(head) > len(_LETTERS):
         raise InsertCodeError(
-            f"{code}: character 5, {head[4]}, is not valid; the size begins at this position",
+            Message(
+                "{code}: character 5 ({head}) is not valid; the insert size begins at this position",
+                code=code,
+                head=head[4],
+            ),
             "unknown-character",
         )
 
@@ -205,7 +216,15 @@ class _Size:
         if not found or len(found) < len(min(known, key=len)):
             place, figures = self.place + len(found) + 1, " ".join(sorted(known))
             raise InsertCodeError(
-                (f"{self.code}: character {place} is missing; it specifies the {what}, one of: {figures}"),
+                (
+                    Message(
+                        "{code}: character {place} is missing; it specifies the {what}, one of: {values}",
+                        code=self.code,
+                        place=place,
+                        what=what,
+                        values=figures,
+                    )
+                ),
                 "character-missing",
             )
         if found not in known:
@@ -216,24 +235,43 @@ class _Size:
 
 
 def _meaningless(code: str, place: int, found: str, what: str, known: Iterable[str]) -> InsertCodeError:
-    where = f"character {place}, {found}, is"
+    where = Message("character {place} ({value})", place=place, value=found)
     if len(found) > 1:
-        where = f"characters {place} and {place + len(found) - 1}, {found}, are"
+        where = Message(
+            "characters {place} and {place2} ({value})",
+            place=place,
+            place2=place + len(found) - 1,
+            value=found,
+        )
     return InsertCodeError(
-        f"{code}: {where} not a valid {what}; use one of: {' '.join(sorted(known))}", "unknown-character"
+        Message(
+            "{code}: invalid {what} in {place}; use one of: {known}",
+            code=code,
+            place=where,
+            what=what,
+            known=" ".join(sorted(known)),
+        ),
+        "unknown-character",
     )
 
 
 def _metric(size: _Size) -> tuple[float, float, float]:
     """Inscribed circle, thickness and nose radius, mm."""
     edge = size.left[:2]
-    circle = size.take(edge, f"size of insert shape {size.shape}", metric_sizes(size.shape))
+    circle = size.take(
+        edge, Message("size for insert shape {shape}", shape=size.shape), metric_sizes(size.shape)
+    )
     if size.shape == "C":
         circle = _THIN.get((edge, size.left[:2]), circle)
     thickness = size.take(size.left[:2], "thickness", _THICKNESS)
     if size.shape != "R":
         return circle, thickness, size.take(size.left[:2], "corner radius (tenths of a mm)", _CORNER)
-    if size.take(size.left[:2], "corner of a round insert", {"00": 0.0, "M0": 1.0}) and edge == "12":
+    if (
+        size.take(
+            size.left[:2], ("round-insert code (in place of the corner radius)"), {"00": 0.0, "M0": 1.0}
+        )
+        and edge == "12"
+    ):
         circle = _METRIC_ROUND
     return circle, thickness, circle / 2.0
 
@@ -244,15 +282,20 @@ _CORNER_FRACTION = re.compile(r"0?\.[25]|\d?")
 
 def _inch(size: _Size) -> tuple[float, float, float]:
     """Inscribed circle, thickness and nose radius, mm."""
-    circle = size.take(_next(size, _FRACTION), "size (eighths of an inch)", _EIGHTHS)
-    thickness = size.take(_next(size, _FRACTION), "thickness (sixteenths of an inch)", _SIXTEENTHS)
+    circle = size.take(_next(size, _FRACTION), "insert size (eighths of an inch)", _EIGHTHS)
+    thickness = size.take(_next(size, _FRACTION), "insert thickness (sixteenths of an inch)", _SIXTEENTHS)
     corner = _next(size, _CORNER_FRACTION)
     if size.shape == "R" and corner in {"", "0"}:  # a round insert needs no corner
         return circle * MM_PER_INCH, thickness * MM_PER_INCH, circle * MM_PER_INCH / 2.0
     nose = size.take(corner, "corner radius (1/64 in)", _SIXTY_FOURTHS)
     if size.left[:1].isdigit():
         raise InsertCodeError(
-            f"{size.code}: character {size.place + 1}, {size.left[0]}, is one digit too many",
+            Message(
+                "{code}: character {place} ({left}) is one digit too many",
+                code=size.code,
+                place=size.place + 1,
+                left=size.left[0],
+            ),
             "too-many-characters",
         )
     return circle * MM_PER_INCH, thickness * MM_PER_INCH, nose * MM_PER_INCH

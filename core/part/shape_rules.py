@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
+from core.message import Message
 from core.part.holder_codes import holder_of
 from core.part.insert_codes import InsertCodeError, decoded
 from core.part.part_errors import PartError
@@ -54,7 +55,9 @@ def _insert(shape: ToolShape) -> Iterator[ShapeMistake]:
         return
     if insert.corners and 2.0 * shape.nose_radius >= insert.inscribed_circle:
         yield ShapeMistake(
-            "nose_radius", f"the nose radius is too large for insert {shape.insert}", "nose-too-large"
+            "nose_radius",
+            Message("the nose radius is too large for insert {insert}", insert=shape.insert),
+            "nose-too-large",
         )
     yield from _entry(shape, insert.shape, insert.point_angle)
 
@@ -67,24 +70,38 @@ def _entry(shape: ToolShape, letter: str, point: float) -> Iterator[ShapeMistake
     usual = 0.0 if neutral else (BORING_ENTRIES if shape.internal else ENTRIES).get(letter, 0.0)
     angle = shape.entry or coded or usual
     if angle + point > 180.0:
-        text = (
-            f"an entering angle of {angle:g}° leaves no clearance for a point angle of {point:g}"
-            f"°; use at most {180 - point:g}°"
+        text = Message(
+            "an entering angle of {angle}° leaves no clearance for a point angle of {point}°; "
+            "use at most {point2}°",
+            angle=f"{angle:g}",
+            point=f"{point:g}",
+            point2=f"{180 - point:g}",
         )
         yield ShapeMistake("entry", text, "no-clearance")
 
 
 def _tip(shape: ToolShape) -> Iterator[ShapeMistake]:
     if shape.turns_itself and 0 not in TIP_DIRECTIONS[shape.tip]:
-        text = (
-            f"tip {shape.tip} does not fit a rotating tool; use 7 (along the spindle), 8 (across "
-            "it) or 6 (from the rear)"
+        text = Message(
+            (
+                "tip quadrant {tip} does not fit a rotating tool; use 7 (along the spindle), 8 "
+                "(across the spindle) or 6 (from the rear)"
+            ),
+            tip=shape.tip,
         )
         yield ShapeMistake("tip", text, "not-an-end")
     across = TIP_DIRECTIONS[shape.tip][1]
     if shape.rear and across and not shape.turns_itself and (across > 0) is shape.internal:
         where, which = ("X−", "3, 4 or 8") if shape.internal else ("X+", "1, 2 or 6")
-        text = f"tip {shape.tip} is for a front tool; on a rear tool the tip is at {where}: use {which}"
+        text = Message(
+            (
+                "tip quadrant {tip} is for a front tool; the tip of a rear tool is on the "
+                "{place} side: use quadrant {which}"
+            ),
+            tip=shape.tip,
+            place=where,
+            which=which,
+        )
         yield ShapeMistake("tip", text, "tool-in-front")
 
 
@@ -93,7 +110,7 @@ def _sizes(shape: ToolShape) -> Iterator[ShapeMistake]:
     if groove and shape.width and 2.0 * shape.nose_radius > shape.width:
         yield ShapeMistake(
             "nose_radius",
-            "two corners with this nose radius are wider than the cutting edge",
+            "the nose radius is more than half the width of the cutting edge",
             "corners-too-wide",
         )
     if shape.kind is ToolKind.END_MILL and shape.diameter and 2.0 * shape.nose_radius > shape.diameter:
@@ -101,9 +118,15 @@ def _sizes(shape: ToolShape) -> Iterator[ShapeMistake]:
             "nose_radius", "the corner radius is larger than half the diameter", "nose-too-large"
         )
     if shape.turns_itself and shape.stick_out and shape.length > shape.stick_out:
-        yield ShapeMistake("length", "the cutting length is more than the stick-out of the tool", "too-long")
+        yield ShapeMistake(
+            "length", ("the cutting length is longer than the stick-out of the tool"), "too-long"
+        )
     if shape.kind is ToolKind.CENTRE_DRILL and shape.diameter and shape.width >= shape.diameter:
-        yield ShapeMistake("width", "the pilot is as thick as the center drill", "pilot-too-thick")
+        yield ShapeMistake(
+            "width",
+            "the pilot diameter must be less than the diameter of the center drill",
+            "pilot-too-thick",
+        )
     if shape.kind is ToolKind.TAP and shape.diameter and 2.0 * shape.pitch >= shape.diameter:
         yield ShapeMistake("pitch", "the pitch is too coarse for the tap diameter", "pitch-too-coarse")
 
@@ -121,7 +144,7 @@ def _outlines(shape: ToolShape) -> Iterator[ShapeMistake]:
             continue
         if not pieces:
             yield ShapeMistake(
-                field, "an outline needs three points that are not on one line", "too-few-points"
+                field, "an outline needs three points that are not on a straight line", "too-few-points"
             )
 
 

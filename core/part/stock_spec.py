@@ -15,6 +15,7 @@ from itertools import pairwise
 
 from core.coded_error import CodedError
 from core.input_file import failures_as
+from core.message import Message
 from core.part.stock import Point, Stock
 from core.part.stock_forms import FORMS
 
@@ -62,12 +63,19 @@ def stock_spec(text: str) -> StockSpec:
     kind, _, rest = text.strip().partition(":")
     if kind in {"profile", "after"}:
         if not rest:
-            raise StockError(f"{text!r} has no file name; write {kind}:FILE", "no-file")
+            raise StockError(
+                Message("{text} has no file name; write {kind}:FILE", text=f"{text!r}", kind=kind), "no-file"
+            )
         name, allowance = _file_and_allowance(rest)
         return StockSpec(text, allowance=allowance, **{kind: name})  # type: ignore[arg-type]
     if kind not in {"bar", "tube"}:
         raise StockError(
-            f"{text!r} is not a stock specification; use one of these forms: {FORMS}", "unknown-form"
+            Message(
+                "{text} is not a stock specification; use one of these forms: {forms}",
+                text=f"{text!r}",
+                forms=FORMS,
+            ),
+            "unknown-form",
         )
     sizes, plus, extra = rest.partition("+")
     allowance = _length(extra, text) if plus else 0.0
@@ -78,19 +86,38 @@ def stock_spec(text: str) -> StockSpec:
 def _round_stock(text: str, kind: str, lengths: list[float], allowance: float) -> StockSpec:
     diameters = 1 if kind == "bar" else 2
     if not diameters <= len(lengths) <= diameters + 1:
-        raise StockError(f"{text!r} has {len(lengths)} sizes; use one of these forms: {FORMS}", "size-count")
+        raise StockError(
+            Message(
+                "{text} has {lengths_count} dimensions; use one of these forms: {forms}",
+                text=f"{text!r}",
+                lengths_count=len(lengths),
+                forms=FORMS,
+            ),
+            "size-count",
+        )
     diameter, bore = lengths[0], lengths[1] if kind == "tube" else 0.0
     if not 0.0 < diameter <= _LARGEST:
         raise StockError(
-            f"{text!r}: a diameter must be more than 0 and at most {_LARGEST / _INCH:.0f} in", "diameter"
+            Message(
+                "{text}: a diameter must be more than 0 and at most {largest} in",
+                text=f"{text!r}",
+                largest=f"{_LARGEST / _INCH:.0f}",
+            ),
+            "diameter",
         )
     if kind == "tube" and not 0.0 < bore < diameter:
         raise StockError(
-            (f"{text!r}: the bore of a tube must be more than 0 and less than its diameter"), "bore"
+            (
+                Message(
+                    "{text}: the bore of a tube must be more than 0 and less than its diameter",
+                    text=f"{text!r}",
+                )
+            ),
+            "bore",
         )
     length = lengths[diameters] if len(lengths) > diameters else 0.0
     if len(lengths) > diameters and not 0.0 < length <= 10.0 * _LARGEST:
-        raise StockError(f"{text!r}: a length must be more than 0", "length")
+        raise StockError(Message("{text}: a length must be more than 0", text=f"{text!r}"), "length")
     return StockSpec(text, diameter, bore, length, allowance)
 
 
@@ -106,7 +133,14 @@ def _length(text: str, whole: str) -> float:
     """mm."""
     found = _LENGTH.fullmatch(text.strip())
     if found is None:
-        raise StockError(f"{whole!r}: {text!r} is not a length; write 1.25 (inches) or 30mm", "not-a-length")
+        raise StockError(
+            Message(
+                "{whole}: {text} is not a length; write 1.25 (inches) or 30mm",
+                whole=f"{whole!r}",
+                text=f"{text!r}",
+            ),
+            "not-a-length",
+        )
     return float(found[1]) * (1.0 if (found[2] or "").lower() == "mm" else _INCH)
 
 
@@ -114,10 +148,10 @@ def profile_stock(given: str, text: str, scale: float, allowance: float) -> Stoc
     """A blank by the points of a CSV text: Z, r (, bore r) in units of ``scale`` mm. Raises StockError."""
     rows = _rows(text)
     if len(rows) < 2:
-        raise StockError("a profile needs at least two points: z, r in each row", "too-few-points")
+        raise StockError("a profile needs at least two points, with z, r in each row", "too-few-points")
     if len({len(row) for row in rows}) > 1:
         raise StockError(
-            "all rows of a profile must have the same columns: z, r or z, r, bore", "rows-differ"
+            "all rows of a profile must have the same columns, either z, r or z, r, bore", "rows-differ"
         )
     if rows[0][0] > rows[-1][0]:
         rows.reverse()
@@ -125,7 +159,11 @@ def profile_stock(given: str, text: str, scale: float, allowance: float) -> Stoc
         raise StockError("the points of a profile must run in one direction along Z", "turns-back")
     if any(row[1] < 0.0 for row in rows) or any(len(row) > 2 and not 0.0 <= row[2] <= row[1] for row in rows):
         raise StockError(
-            ("profile radii cannot be negative, and the bore cannot be larger than the outside"), "radius"
+            (
+                "profile radii cannot be negative, and the bore radius cannot be larger than "
+                "the outside radius"
+            ),
+            "radius",
         )
     outside: tuple[Point, ...] = tuple((row[0] * scale + allowance, row[1] * scale) for row in rows)
     bore: tuple[Point, ...] = tuple(
@@ -161,14 +199,31 @@ def _numbers(row: list[str], number: int) -> list[float]:
         values = [math.nan]
     if not all(map(math.isfinite, values)):
         shown = " ".join(",".join(row).split())[:80]
-        raise StockError(f"row {number} of the profile is not all numbers: {shown}", "not-numbers")
+        raise StockError(
+            Message(
+                "row {number} of the profile must contain only numbers: {value}", number=number, value=shown
+            ),
+            "not-numbers",
+        )
     if max(map(abs, values)) > 10.0 * _LARGEST:
         raise StockError(
-            f"row {number} of the profile is too far from the others; check its unit", "too-far-out"
+            Message(
+                ("row {number} of the profile has a value that is too large; check the unit"), number=number
+            ),
+            "too-far-out",
         )
     if not 2 <= len(values) <= 3:
         raise StockError(
-            (f"row {number} of the profile has {len(values)} numbers; it must have z, r or z, r, bore"),
+            (
+                Message(
+                    (
+                        "row {number} of the profile has {values_count} numbers; write either z, r or "
+                        "z, r, bore in each row"
+                    ),
+                    number=number,
+                    values_count=len(values),
+                )
+            ),
             "number-count",
         )
     return values

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from core.interpreter.elementary_blocks import Kind
+from core.message import Message
 from core.part.cutter import Cutter, Side
 from core.part.stock import Stock
 from core.part.swept_edge import Point
@@ -59,7 +60,7 @@ class AirChecks:
             return
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
         if self._went_in is not None and z1 > self.stock.front:
-            text = "This rapid moves in alongside the part, but the tool retracts without cutting."
+            text = "After this rapid alongside the part, the tool retracts without cutting."
             yield Found("unmade-cut", text, self._went_in)
             self._went_in = None
         beside = min(abs(r0), abs(r1)) < self.stock.radius + _BESIDE
@@ -122,7 +123,7 @@ class AirChecks:
             yield Found("unmade-cut", ("A drill feeds into an existing hole."), in_hole)
         if fed is not None and not has_cut and length >= _LEAST:
             what = "A thread is cut" if fed.kind is Kind.THREAD else "A tool feeds"
-            yield Found("unmade-cut", f"{what} only in air between two rapids.", fed)
+            yield Found("unmade-cut", Message("{what} only in air between two rapids.", what=what), fed)
 
     def _comes_near(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> bool:
         middle = move.points[len(move.points) // 2]
@@ -139,7 +140,7 @@ class AirChecks:
             yield Found("unmade-cut", text, gone)
         elif move.length >= _AWAY and not near(cutter, part, move.points[-1]):
             if self._out_of_part(move, cutter, fresh=fresh):
-                text = "This move feeds out in front of the part face, inside the stock diameter."
+                text = "This move feeds along Z out past the part face, inside the stock diameter."
                 yield Found("unmade-cut", text)
             elif near(cutter, part, move.points[0]) and not self._cut_before:  # behind a cut it is a retract
                 self._left_part = move
@@ -168,10 +169,18 @@ class AirChecks:
         share = _share_in_air(cutter, part, move)
         before, self._air = self._air, self._air + move.seconds * share
         if move.seconds * share >= _AIR_TIME and move.length * share >= _AIR_WAY:
-            text = f"This move feeds through air for {move.seconds * share:.0f} s."
+            text = Message(
+                "This move feeds through air for {seconds} s.", seconds=f"{move.seconds * share:.0f}"
+            )
             yield Found("cuts-air", text)
         elif before < _LONG_AIR <= self._air:
-            yield Found("cuts-air", f"Tools have fed through air for {_LONG_AIR:.0f} s up to this move.")
+            yield Found(
+                "cuts-air",
+                Message(
+                    "Tools have fed through air for {long_air} s up to this move.",
+                    long_air=f"{_LONG_AIR:.0f}",
+                ),
+            )
 
     def _outside_stock(self, move: TipMove) -> bool:
         """Whether it cuts along Z beside the stock, and further out."""

@@ -12,11 +12,12 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from core.interpreter.elementary_blocks import Block, Kind
+from core.message import Message
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.proving.tip_moves import QUICK, LiveStep, TipMove
 from core.tool_edges import edge_name
 
-_BY_MOVES = "based on its moves"
+_BY_MOVES = "based on the tool moves"
 _ON_AXIS = 0.05  # mm; a tool that feeds along Z no further off it is a drill
 _SQUARE = 0.02  # mm of Z, in a plunge
 _NAMES = {
@@ -143,7 +144,9 @@ class Assumed:
         bore = bore if shape.kind in OPENS else ()
         inside = [abs(r) for m in bore if not m.quick for z, r in m.points if z < -_SQUARE]
         diameter = max(2.0 * min(inside) - _ALLOWANCE, _SMALLEST) if inside else _USUAL
-        words = f"{self.words}, assumed diameter {_size(diameter, use)}"
+        words = Message(
+            "{words}, assumed diameter {diameter}", words=self.words, diameter=_size(diameter, use)
+        )
         return replace(self, shape=replace(shape, diameter=diameter), words=words, sized=True)
 
     def with_width(self, use: ToolUse, threads: Sequence[TipMove]) -> Assumed:
@@ -152,7 +155,7 @@ class Assumed:
         if shape is None or shape.kind not in GROOVERS or shape.width:
             return self
         width = groove_width(shape, use.moves, threads)
-        words = f"{self.words}, assumed width {_size(width, use)}"
+        words = Message("{words}, assumed width {width}", words=self.words, width=_size(width, use))
         return replace(self, shape=replace(shape, width=width), words=words)
 
 
@@ -172,11 +175,16 @@ def groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[T
 
 def assumed_tool(use: ToolUse, said: ToolShape | None = None) -> Assumed:
     """The shape to be taken for a tool that has none, or for one that lacks a size, and a sentence of it."""
-    kind, why = (said.kind, "based on its shape") if said is not None else _kind(use)
+    kind, why = (said.kind, "based on the tool shape") if said is not None else _kind(use)
     if kind is None:
-        return Assumed(None, f"{edge_name(use.number)} is treated as a bar stop")
+        return Assumed(None, Message("{number} is treated as a bar stop", number=edge_name(use.number)))
     shape = said or _shape(kind, use)
-    words = f"{edge_name(use.number)} is treated as {_names(kind, shape, use)} ({why})"
+    words = Message(
+        "{number} is treated as {kind} ({why})",
+        number=edge_name(use.number),
+        kind=_names(kind, shape, use),
+        why=why,
+    )
     return Assumed(shape, words, why != _BY_MOVES)
 
 
@@ -184,7 +192,7 @@ def _kind(use: ToolUse) -> tuple[ToolKind | None, str]:
     text = " ".join(use.comments).upper()
     for words, kind in _WORDS if text.strip() else ():
         if re.search(words, text):
-            return kind, "based on its comment"
+            return kind, "based on the tool comment"
     if use.pushes_bar:
         return None, _BY_MOVES
     if use.live:
@@ -365,11 +373,15 @@ def _diameter(comment: str) -> float:
 
 def _size(mm: float, use: ToolUse) -> str:
     """As the program counts."""
-    return f"{mm:.2f} mm" if use.metric else f"{mm / 25.4:.3f} in"
+    return Message("{unit} mm", unit=f"{mm:.2f}") if use.metric else Message("{mm} in", mm=f"{mm / 25.4:.3f}")
 
 
 def _names(kind: ToolKind, shape: ToolShape, use: ToolUse) -> str:
-    size = f", {_size(shape.diameter, use)}" if shape.diameter and shape.turns_itself else ""
+    size = (
+        Message(", {diameter}", diameter=_size(shape.diameter, use))
+        if shape.diameter and shape.turns_itself
+        else ""
+    )
     if shape.width:
-        size = f", {_size(shape.width, use)} wide"
+        size = Message(", {width} wide", width=_size(shape.width, use))
     return f"{_NAMES[kind]}{size}"

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from core.language.diagnostics import Severity
 from core.language.source import Dialect, Source
+from core.message import Message
 from core.proving.proof_report import Report, Ways, in_order
 
 # / is first on a line; SINUMERIK and Klartext let the number of the block stand before it.
@@ -33,7 +34,11 @@ def with_the_other(report: Report, other: Report, *, deleted: bool) -> Report:
     known = {(found.line, found.code, found.severity) for found in report.diagnostics}
     switch = "on" if deleted else "off"
     found = [
-        replace(each, severity=Severity.WARNING, message=f"With block delete {switch}: {each.message}")
+        replace(
+            each,
+            severity=Severity.WARNING,
+            message=Message("With block delete {switch}: {item}", switch=switch, item=each.message),
+        )
         for each in other.diagnostics
         if each.severity is not Severity.NOTE and (each.line, each.code, each.severity) not in known
     ]

@@ -6,38 +6,54 @@ import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from core.message import Message
+from core.page_contents import contents
 from core.proving.part_checks import CHECKS, PROGRAM_CHECKS, Check
 
-_HEAD = """# What the proof looks for
+_PART, _PROGRAM = "Checks of the part", "Checks that do not need the stock"
+_HEAD = """\
+# What the proof checks
 
-Written from `core/proving/part_checks.py` by `python -m core.proving.checks_page docs/checks.md`. Each
-finding has its id, line, elementary block and remedy; an error refuses the program. The metal is exact to
-.004 mm (.00016 in) along Z and .0015 mm (.00006 in) in r. A rapid that scrapes a cone or a shoulder is found
-from .033 mm (.0013 in) on, square to the surface; what scrapes less may pass.
+This page is the reference of the checks. How to read a finding, state stock and tools, and turn a
+check off is in [programming/edit-and-prove.md](programming/edit-and-prove.md).
 
-At a machine an error refuses Cycle Start where what it rests on was said: the stock (command line, store, the
-page PART), the shape of the tool. Where that is assumed it is a warning, announced before the start.
+{contents}
+It is written from `core/proving/part_checks.py` by `python -m core.proving.checks_page docs/checks.md`.
+Do not edit it. A finding has its check, line, elementary block and remedy.
 
-What nobody has said is assumed and told: the stock as a bar just larger than what is cut (a tube where a
-boring tool begins without a drill), a tool by the comment beside its `T` or by its moves, with a slim
-insert and no holder. What an assumption cannot know is not checked: holders and shanks of tools without a
-shape, a chuck without `[clamping]` in the machine file, the first move of a program, which begins wherever
-the slides stand, and all that moves while the collet is open. A bar that is fed begins anew where its stop
-stood.
+**Errors and warnings.** A program with an error does not start. On a machine, an error of the part
+rejects Cycle Start if the stock (command line, store or page PART) and the tool shape that it depends
+on are stated. If one of them is assumed, the finding is a warning, which is announced before the
+start.
 
-A check of the part is silenced for one program on the page PART, with a reason, or for a machine in its file:
-`[checks]` with `silenced = ["chip-load", "cuts-air"]`. Never in the text of a program: that goes to other
-machines. Its findings are notes from then on, with the reason, and counted (`silenced` of `prove --json`).
-"""
+**What is assumed.** TurnDesk assumes stock and tools that you do not state, and reports it. It assumes
+a bar that is slightly larger than what is cut, or a tube where a boring tool begins without a drill.
+It recognizes a tool by the comment next to its `T` or by its moves, with a slim insert and no holder.
 
-_WITHOUT = """
-## Without the stock
+**What is not checked.** The proof does not check:
+
+- holders and shanks of tools without a shape;
+- a chuck without `[clamping]` in the machine file;
+- the first move of a program, which begins at the axis positions of the moment;
+- everything that moves while the collet is open.
+
+When a bar is fed, its new front end is where its stop was.
+
+**Accuracy.** Material is exact to 0.004 mm (.00016 in) along Z and to 0.0015 mm (.00006 in) in radius.
+A rapid that scrapes a cone or a shoulder is found from a depth of 0.033 mm (.0013 in), measured square
+to the surface. Less may pass.
+
+**Turning a check off.** Only a check of the part can be turned off: for one program on the page PART,
+with a reason, or for a machine in its file: `[checks]` with `silenced = ["chip-load", "cuts-air"]`. It
+is never turned off in the text of a program, because the text may go to another machine. Its findings
+are then notes with the reason, and are counted (`silenced` of `prove --json`).
 """
 
 
 def page() -> str:
     """The whole page."""
-    return f"{_HEAD}\n{_rows(CHECKS)}{_WITHOUT}\n{_rows(PROGRAM_CHECKS)}"
+    head = _HEAD.format(contents=contents([_PART, _PROGRAM]))
+    return f"{head}\n## {_PART}\n\n{_rows(CHECKS)}\n## {_PROGRAM}\n\n{_rows(PROGRAM_CHECKS)}"
 
 
 def _rows(checks: Mapping[str, Check]) -> str:
@@ -50,10 +66,12 @@ def _row(name: str, check: Check) -> str:
 
 def _lines(name: str, check: Check) -> Iterator[str]:
     yield f"**{name}** ({check.severity}): {check.looks_for}  "
-    yield f"Condition: {check.decides}  "
+    yield Message("Condition: {decides}  ", decides=check.decides)
     if name in CHECKS:
-        yield f"Depends on: {' and '.join(check.rests_on) or 'the machine file'}.  "
-    yield f"Do: {check.remedy}"
+        yield Message(
+            "Depends on: {rests_on}.  ", rests_on=" and ".join(check.rests_on) or "the machine file"
+        )
+    yield f"Remedy: {check.remedy}"
     yield ""
 
 

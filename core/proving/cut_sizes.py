@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from core.interpreter.elementary_blocks import Kind
+from core.message import Message
 from core.part.cutter import Cutter
 from core.part.insert_codes import Insert, InsertCodeError, decoded, insert_of
 from core.part.tool_shape import ToolKind, ToolShape
@@ -62,13 +63,28 @@ def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator
     breaks, least = _BREAKS, 0.0
     if shape.kind in _DRILLS and held:
         limit = (_OF_REAMER if shape.kind is ToolKind.REAMER else _OF_DRILL) * shape.diameter
-        words = f"{name} feeds {shown}, too much for a diameter of {text(shape.diameter)}."
+        words = Message(
+            "{name} feeds {value}, too much for a diameter of {diameter}.",
+            name=name,
+            value=shown,
+            diameter=text(shape.diameter),
+        )
     elif shape.kind in GROOVERS and held:
         limit = _OF_WIDTH * shape.width
-        words = f"{name} feeds {shown}, too much for an edge {text(shape.width)} wide."
+        words = Message(
+            "{name} feeds {value}, too much for an edge {width} wide.",
+            name=name,
+            value=shown,
+            width=text(shape.width),
+        )
     elif shape.kind in INSERTS:
         limit, breaks, least = _COARSE * shape.nose_radius, _BREAKS_INSERT, _NEVER_BREAKS
-        words = f"{name} feeds {shown}, too much for a nose radius of {text(shape.nose_radius)}."
+        words = Message(
+            "{name} feeds {value}, too much for a nose radius of {nose_radius}.",
+            name=name,
+            value=shown,
+            nose_radius=text(shape.nose_radius),
+        )
     if feed > max(breaks * limit, least) and limit:
         yield Found("feed-breaks-tool", words)
     elif feed > limit > 0.0:
@@ -92,9 +108,11 @@ def _blade_turns(move: TipMove, met: Cut, shape: ToolShape, tool: int) -> Iterat
     limit = _BLADE_FINISH if shape.kind is ToolKind.PARTING else _TURNS_WIDE * shape.width
     if met.depth > limit > 0.0 and met.width > shape.width:
         text = move.modal.length_text
-        words = (
-            f"{edge_name(tool)} turns {text(met.depth)} deep along Z; this type of blade allows "
-            f"at most {text(limit)}."
+        words = Message(
+            "{tool} turns {depth} deep along Z; this type of blade allows at most {limit}.",
+            tool=edge_name(tool),
+            depth=text(met.depth),
+            limit=text(limit),
         )
         yield Found("blade-turns", words)
 
@@ -111,9 +129,11 @@ def _depth(
     along, text = _is_along(move), move.modal.length_text
     deep = _mean(met, along=along)
     if along and cutter.held and met.depth > cutter.height:
-        words = (
-            f"{edge_name(tool)} cuts {text(met.depth)} deep, but its cutting edge is only "
-            f"{text(cutter.height)} long."
+        words = Message(
+            "{tool} cuts {depth} deep, but its cutting edge is only {height} long.",
+            tool=edge_name(tool),
+            depth=text(met.depth),
+            height=text(cutter.height),
         )
         yield Found("feed-into-holder", words)
         return
@@ -123,10 +143,20 @@ def _depth(
         shape = replace(shape, insert="", diameter=0.0)
     largest, usual = _largest(shape), depth_limit(shape)
     if deep > largest and move.rpm:  # a spindle that is switched by hand may stand
-        words = f"{edge_name(tool)} cuts {text(deep)} deep in one pass, but its limit is {text(largest)}."
+        words = Message(
+            "{tool} cuts {depth} deep in one pass, but its limit is {largest}.",
+            tool=edge_name(tool),
+            depth=text(deep),
+            largest=text(largest),
+        )
         yield Found("depth-breaks-tool", words)
     elif deep > usual:
-        words = f"{edge_name(tool)} cuts {text(deep)} deep in one pass; the usual maximum is {text(usual)}."
+        words = Message(
+            "{tool} cuts {depth} deep in one pass; the usual maximum is {usual}.",
+            tool=edge_name(tool),
+            depth=text(deep),
+            usual=text(usual),
+        )
         yield Found("depth-of-cut", words)
 
 

@@ -13,6 +13,7 @@ from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.proving.tip_moves import taps
 
 LIVE = "live"
@@ -143,16 +144,20 @@ class CuttingChecks:
         radii = sorted((abs(block.x0), abs(block.x)))
         slowest, fastest = (surface_rpm(speed, r, 0.0, math.inf) for r in reversed(radii))
         if speed > _FASTEST and slowest > 2.0 * most:
-            text = (
-                f"The surface speed requires {slowest:.0f} rpm here, but the spindle maximum is "
-                f"{most:.0f} rpm."
+            text = Message(
+                "The surface speed requires {slowest} rpm here, but the spindle maximum is {maximum} rpm.",
+                slowest=f"{slowest:.0f}",
+                maximum=f"{most:.0f}",
             )
             self._report(
                 block, Severity.ERROR, "surface-speed", text, ("Correct S, or write G97 if S is in rpm.")
             )
         limited = abs(block.x) <= abs(block.x0) and abs(block.rpm) < most  # as G26 does
         if modal.css_max is None and fastest > most and not limited:
-            text = f"G96 has no speed limit, so the spindle reaches its maximum of {most:.0f} rpm here."
+            text = Message(
+                "G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm here.",
+                maximum=f"{most:.0f}",
+            )
             hint = "Write G77Sn, where n is the maximum rpm for this chuck and bar."
             if self.dialect is Dialect.SINUMERIK:
                 hint = "Write LIMS= with the maximum speed for this chuck and bar."
@@ -179,8 +184,11 @@ class CuttingChecks:
             text = "This move cuts with no tool active, so no tool length or radius applies."
             hint = "Write TOOL CALL before this move." if self.dialect is Dialect.KLARTEXT else hint
         elif self._tool_off:
-            after = f"the T0 on line {self._tool_off}"
-            text = f"This move cuts after {after}, so its coordinates are relative to machine home."
+            after = Message("the T0 on line {tool_off}", tool_off=self._tool_off)
+            text = Message(
+                "This cutting move follows {after}, so its coordinates are relative to machine home.",
+                after=after,
+            )
         if "no-tool" not in self._reported:
             self._without_tool.append(_finding(block, Severity.ERROR, "no-tool", text, hint))
         self._reported |= {"no-tool"}
@@ -193,7 +201,10 @@ class CuttingChecks:
                 block, Severity.ERROR, "collet-open", text, ("Close the collet with M12 before this move.")
             )
         elif block.x != block.x0 or block.z < block.z0:
-            text = "This move feeds with the collet open, but not away from the spindle as in a bar pull."
+            text = (
+                "This move feeds with the collet open, but it does not move straight away from the "
+                "spindle as in a bar pull."
+            )
             self._report(
                 block, Severity.WARNING, "collet-open", text, ("Close the collet with M12 before this move.")
             )
@@ -204,7 +215,10 @@ class CuttingChecks:
         )
         if not codes:
             return  # a live tool that this control does not switch
-        hint = f"Turn on the live tool with {' or '.join(f'M{code:02d}' for code in codes)} before this move."
+        hint = Message(
+            "Turn on the live tool with {code} before this move.",
+            code=" or ".join(f"M{code:02d}" for code in codes),
+        )
         if block.kind in _MILLING:
             text = "This move mills with no live tool running."
             self._report(block, Severity.ERROR, "live-tool-off", text, hint)
@@ -225,18 +239,21 @@ class CuttingChecks:
         if terminal in self.machine.inputs or terminal in self._asked:
             return
         self._asked |= {terminal}
-        text = f"This machine has no input {terminal}."
+        text = Message("This machine has no input {terminal}.", terminal=terminal)
         hint = "Correct the number, or define the input under [io.in] in the machine file."
         if isinstance(block.action, WaitInput):
-            text = f"This machine has no input {terminal}, so the wait would never end."
+            text = Message(
+                "This machine has no input {terminal}, so the wait would never end.", terminal=terminal
+            )
         self._add(_finding(block, Severity.ERROR, "no-input", text, hint))
 
     def _end(self, block: Block) -> None:
         if block.modal.collet_closed or not self._cut_before_collet:
             return
         line = self._cut_before_collet
-        text = (
-            f"The program ends with the collet open, and the next cycle cuts on line {line} before any M12."
+        text = Message(
+            "The program ends with the collet open, and the next cycle cuts on line {line} before any M12.",
+            line=line,
         )
         self._add(
             _finding(

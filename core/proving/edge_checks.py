@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from core.interpreter.elementary_blocks import Kind
+from core.message import Message
 from core.part.cutter import Cutter, Side
 from core.part.stock import Stock
 from core.part.swept_edge import Point
@@ -76,7 +77,16 @@ class EdgeChecks:
             return
         if cutter.held and shape.kind in INSERTS and _turning(move) > _LOOP and not is_round(shape):
             around = f"{_turning(move):.0f}°"
-            yield Found("arc-loop", (f"{edge_name(tool)} feeds along {around} of an arc through the part."))
+            yield Found(
+                "arc-loop",
+                (
+                    Message(
+                        "{tool} feeds through the part along an arc of {around}.",
+                        tool=edge_name(tool),
+                        around=around,
+                    )
+                ),
+            )
             return
         yield from _hollow_at_edge(move, shape, cutter, part, tool)
         yield from size_faults(move, met, shape, cutter, tool, stock_given=self.stock_given)
@@ -84,7 +94,11 @@ class EdgeChecks:
         yield from _off_axis(move, shape, tool)
         yield from _without_limit(move, shape, tool)
         if self._solid > _ENTERS and met.width > _ENTERS:
-            words = f"{edge_name(tool)} feeds {move.modal.length_text(self._solid)} into solid material."
+            words = Message(
+                "{tool} feeds {solid} into solid material.",
+                tool=edge_name(tool),
+                solid=move.modal.length_text(self._solid),
+            )
             yield Found("no-bore", words)
         yield from self._past_stock(move, shape, tool)
         yield from self._over_axis(move, met, cutter, tool)
@@ -115,7 +129,10 @@ class EdgeChecks:
         way = math.copysign(1.0, move.rpm) * math.copysign(1.0, radii[0])
         if self._turned.setdefault(tool, way) != way and tool not in self._told:
             self._told.add(tool)
-            words = f"{edge_name(tool)} cuts with the spindle turning opposite to its earlier cuts."
+            words = Message(
+                "{tool} cuts with the spindle turning in the opposite direction to its earlier cuts.",
+                tool=edge_name(tool),
+            )
             yield Found("wrong-spindle-direction", words)
 
     def _over_axis(self, move: TipMove, met: Cut, cutter: Cutter, tool: int) -> Iterator[Found]:
@@ -128,8 +145,14 @@ class EdgeChecks:
             yield Found(
                 "over-axis",
                 (
-                    f"{edge_name(tool)} cuts {deep} past the spindle axis, on the side opposite to where "
-                    "it is mounted."
+                    Message(
+                        (
+                            "{tool} cuts {depth} past the spindle centerline, on the side opposite to "
+                            "where the tool is mounted."
+                        ),
+                        tool=edge_name(tool),
+                        depth=deep,
+                    )
                 ),
             )
 
@@ -142,7 +165,14 @@ class EdgeChecks:
             text = move.modal.length_text
             yield Found(
                 "past-part-off",
-                (f"{edge_name(tool)} cuts at Z {text(z)}, but the part ends at Z {text(self.parted_at)}."),
+                (
+                    Message(
+                        "{tool} cuts at Z {z}, but the part ends at Z {parted_at}.",
+                        tool=edge_name(tool),
+                        z=text(z),
+                        parted_at=text(self.parted_at),
+                    )
+                ),
             )
 
     def _contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
@@ -152,9 +182,11 @@ class EdgeChecks:
         front = max(z for z, _ in move.points)
         if front < self.parted_at - _BEYOND_CUT:
             text = move.modal.length_text
-            words = (
-                f"{edge_name(tool)} cuts an arc at Z {text(front)}, but the part ends at Z "
-                f"{text(self.parted_at)}."
+            words = Message(
+                "{tool} cuts an arc at Z {front}, but the part ends at Z {parted_at}.",
+                tool=edge_name(tool),
+                front=text(front),
+                parted_at=text(self.parted_at),
             )
             yield Found("contour-past-part-off", words)
 
@@ -167,8 +199,11 @@ class EdgeChecks:
             allowed += shape.diameter
         if z < self.stock.back - allowed:
             text = move.modal.length_text
-            words = (
-                f"{edge_name(tool)} feeds to Z {text(z)}, but the stock ends at Z {text(self.stock.back)}."
+            words = Message(
+                "{tool} feeds to Z {z}, but the stock ends at Z {back}.",
+                tool=edge_name(tool),
+                z=text(z),
+                back=text(self.stock.back),
             )
             yield Found("past-stock", words)
 
@@ -179,16 +214,28 @@ class EdgeChecks:
             yield Found(
                 "drill-too-deep",
                 (
-                    f"{edge_name(tool)} goes {text(deep)} deep, but its cutting length is only "
-                    f"{text(shape.length)}."
+                    Message(
+                        "{tool} goes {depth} deep, but its cutting length is only {length}.",
+                        tool=edge_name(tool),
+                        depth=text(deep),
+                        length=text(shape.length),
+                    )
                 ),
             )
 
 
 def _turns_wrongly(move: TipMove, shape: ToolShape, tool: int) -> str:
     if move.rpm < 0.0:
-        return f"{edge_name(tool)}, a {shape.hand}-hand tool, cuts while the spindle turns in reverse."
-    return f"{edge_name(tool)}, a {shape.hand}-hand tool, cuts while the spindle turns forward."
+        return Message(
+            "{tool}, a {hand}-hand tool, cuts while the spindle turns in reverse.",
+            tool=edge_name(tool),
+            hand=shape.hand,
+        )
+    return Message(
+        "{tool}, a {hand}-hand tool, cuts while the spindle turns forward.",
+        tool=edge_name(tool),
+        hand=shape.hand,
+    )
 
 
 def _turns_backwards(shape: ToolShape, rpm: float) -> bool:
@@ -204,7 +251,11 @@ def _off_axis(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
     """A round tool that is held still makes its hole on the axis alone."""
     off = min(abs(r) for _, r in move.points)
     if shape.kind in _DRILLS and move.rpm and off > _OFF_AXIS:
-        words = f"{edge_name(tool)} cuts {move.modal.length_text(off)} off the spindle axis."
+        words = Message(
+            "{tool} cuts at a distance of {off} from the spindle centerline.",
+            tool=edge_name(tool),
+            off=move.modal.length_text(off),
+        )
         yield Found("drill-off-axis", words)
 
 
@@ -212,7 +263,10 @@ def _without_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found
     """A round tool under constant surface speed: on the axis that asks for any speed."""
     off = min(abs(r) for _, r in move.points)
     if shape.kind in _DRILLS and move.modal.css and move.modal.css_max is None and off < _OFF_AXIS:
-        words = f"{edge_name(tool)} cuts at the axis under G96, so the spindle runs at its maximum speed."
+        words = Message(
+            "{tool} cuts on the spindle centerline under G96, so the spindle runs at its maximum speed.",
+            tool=edge_name(tool),
+        )
         yield Found("drill-without-limit", words)
 
 
@@ -240,9 +294,10 @@ def _hollow_at_edge(
     front = part.columns.first + part.columns.step * float(faces[-1]) if len(faces) else -math.inf
     along, away = -z_in > 5.0 * abs(r_in), r_out > 5.0 * abs(z_out)
     if along and away and radius < _EDGE and abs(points[0][0] - front) < _AT_FACE:
-        words = (
-            f"{edge_name(tool)} cuts a hollow of radius {move.modal.length_text(radius)} into the "
-            "edge of the face."
+        words = Message(
+            "{tool} cuts a concave arc of radius {radius} into the edge of the face.",
+            tool=edge_name(tool),
+            radius=move.modal.length_text(radius),
         )
         yield Found("hollow-at-edge", words)
 
@@ -270,7 +325,14 @@ def _wrong_side(
     )  # fmt: skip
     if deep > max(_WRONG_SIDE, 2.0 * shape.nose_radius):
         yield Found(
-            "wrong-side", (f"{edge_name(tool)} cuts {text(deep)} deep with the trailing edge of its insert.")
+            "wrong-side",
+            (
+                Message(
+                    "{tool} cuts {depth} deep with the trailing edge of its insert.",
+                    tool=edge_name(tool),
+                    depth=text(deep),
+                )
+            ),
         )
         return
     clears = cutter.clears(forward)
@@ -278,9 +340,11 @@ def _wrong_side(
         behind = met.front - start[0] if forward < 0 else start[0] - met.back
         faces = behind <= _FACED and not _stands_behind(part, met, forward, abs(end[1]), cutter.side)
         if behind > 2.0 * shape.nose_radius + _BEHIND and met.depth > _BEHIND and not faces:
-            words = (
-                f"{edge_name(tool)} cuts in at {steep:.0f}°, but the trailing edge of its insert "
-                f"clears only {clears:.0f}°."
+            words = Message(
+                "{tool} cuts in at {steep}°, but the trailing edge of its insert clears only {clears}°.",
+                tool=edge_name(tool),
+                steep=f"{steep:.0f}",
+                clears=f"{clears:.0f}",
             )
             yield Found("wrong-side", words)
             return

@@ -9,6 +9,7 @@ from core.interpreter.elementary_blocks import Block, Kind, Series
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Axis, Machine
+from core.message import Message
 from core.tool_edges import edge_name
 
 MM_PER_INCH = 25.4
@@ -61,8 +62,17 @@ def _beyond(
         severity=Severity.ERROR,
         code="soft-limit",
         message=(
-            f"{axis.name} would move to {at * scale:.{places}f} {unit} from home{radius}, "
-            f"{over:.{places}f} {unit} beyond the travel limit of {limit * scale:.{places}f}"
+            Message(
+                "{axis} would move to {position} {unit} from home{radius}, {excess} {unit2} beyond the "
+                "travel limit of {limit}",
+                axis=axis.name,
+                position=f"{at * scale:.{places}f}",
+                unit=unit,
+                radius=radius,
+                excess=f"{over:.{places}f}",
+                unit2=unit,
+                limit=f"{limit * scale:.{places}f}",
+            )
         ),
         hint=_hint(machine, dialect, block, axis),
     )
@@ -70,11 +80,13 @@ def _beyond(
 
 def _hint(machine: Machine, dialect: Dialect, block: Block, axis: Axis) -> str:
     if machine.kind != "lathe" or axis.rotary:
-        return f"check the {axis.name} word and all active shifts"
-    where = f"check the {axis.name} word, the offset of {edge_name(block.modal.tool)}"
+        return Message("check the {axis} word and all active shifts", axis=axis.name)
+    where = Message(
+        "check the {axis} word and the offset of {tool}", axis=axis.name, tool=edge_name(block.modal.tool)
+    )
     if dialect is Dialect.OMNITURN:
-        return f"{where} and any G10 or G92"
-    return f"{where}, G54 to G59 and TRANS"
+        return Message("{place}; also check every G10 and G92", place=where)
+    return Message("{place}; also check G54 to G59 and TRANS", place=where)
 
 
 # --- C as the spindle -----------------------------------------------------------------------------------
@@ -93,6 +105,7 @@ def c_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic
                 code="c-is-spindle",
                 message=("C moves while the spindle turns, but on this machine C is the spindle itself"),
                 hint=(
-                    "stop the spindle with M5 first, or use a lathe with a separate C drive: sinumerik-modulo"
+                    "stop the spindle with M5 first, or use a lathe with a separate C drive "
+                    "(sinumerik-modulo)"
                 ),
             )

@@ -31,7 +31,7 @@ CHECKS: Mapping[str, Check] = {
     "rapid-into-stock": Check(
         _ERROR,
         "A rapid, or a feed of 100 in/min or more, removes material.",
-        "The edge meets more than .001 in of material on the radius and in Z.",
+        "The cutting edge enters material by more than .001 in, both on the radius and in Z.",
         (
             "Stop short of the material and feed in; look for a rapid that is still active, and "
             "for a wrong sign or decimal point."
@@ -39,7 +39,7 @@ CHECKS: Mapping[str, Check] = {
     ),
     "feed-into-holder": Check(
         _ERROR,
-        "A feed runs the holder, shank or boring bar into material.",
+        "A feed move runs the holder, shank or boring bar into material.",
         "During a feed, the non-cutting outline of a tool overlaps material by more than .001 in.",
         "Use a longer or slimmer tool, another cutting direction, or a smaller depth of cut.",
     ),
@@ -53,8 +53,8 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A tool or its holder collides with the chuck, jaws or collet.",
         (
-            "A tool outline enters the contour that the machine file defines under [clamping], "
-            "or comes within .001 in of it."
+            "A tool outline overlaps the contour that the machine file defines under [clamping], "
+            "or comes within .001 in of that contour."
         ),
         "Increase the part stick-out, or stop the move earlier.",
         (TOOL,),
@@ -63,8 +63,8 @@ CHECKS: Mapping[str, Check] = {
         _WARNING,
         "A tool or its holder nearly touches the chuck, jaws or collet.",
         (
-            "The Z clearance between the outline of the tool or holder and the contour under "
-            "[clamping] is less than .01 in."
+            "The Z clearance between the outline of the tool or holder and the contour "
+            "that the machine file defines under [clamping] is less than .01 in."
         ),
         "Increase the part stick-out, or stop the move earlier.",
         (TOOL,),
@@ -73,8 +73,8 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A tool or its holder collides with the tailstock center or quill.",
         (
-            "The outline of a tool or holder enters the contour of the quill and center defined "
-            "under [clamping] in the machine file."
+            "The outline of a tool or holder overlaps the contour of the quill and center "
+            "defined under [clamping] in the machine file."
         ),
         "Use a different path or a slimmer holder; retract the quill for work on the face.",
         (TOOL,),
@@ -83,7 +83,7 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "Another tool on the gang plate collides with the stock.",
         (
-            'With [tooling] kind = "gang": the outline of the other tool, placed by its tool '
+            'With [tooling] kind = "gang", the outline of the other tool, placed by its tool '
             "offset, overlaps material."
         ),
         "Use a different path, a shorter tool, or another position on the gang plate.",
@@ -105,7 +105,7 @@ CHECKS: Mapping[str, Check] = {
     ),
     "drill-without-limit": Check(
         _ERROR,
-        "A drill works at the axis under constant surface speed.",
+        "A drill cuts on the spindle centerline with constant surface speed active.",
         (
             "A drill, center drill, reamer or tap cuts under G96 without an active speed limit, "
             "so the spindle runs at its maximum speed."
@@ -135,8 +135,8 @@ CHECKS: Mapping[str, Check] = {
     ),
     "larger-than-stock": Check(
         _ERROR,
-        "The part is larger than its stock: a contour is cut in air outside the bar.",
-        "A feed of .1 in or more along Z next to the stock stays at least .08 in outside it.",
+        "The part is larger than its stock, so a contour is cut in air outside the bar.",
+        "A feed move along Z of .1 in or more next to the stock stays at least .08 in outside the stock.",
         "Check the stock, and whether X is a radius or a diameter.",
         (STOCK,),
     ),
@@ -144,22 +144,19 @@ CHECKS: Mapping[str, Check] = {
         _WARNING,
         "A tool feeds through air without cutting.",
         (
-            "A feed stays more than .08 in from any material for 5 s and .2 in, or several feeds "
-            "in a row do so for 20 s."
+            "A feed move stays more than .08 in away from all material for 5 s and .2 in "
+            "of travel, or several consecutive feed moves do so for 20 s."
         ),
         "Look for a missing minus sign or decimal point; use a rapid to move through air.",
     ),
     "unmade-cut": Check(
         _ERROR,
+        ("A cutting move feeds away from the part, and nothing is cut where a cut seems to be intended."),
         (
-            "A cutting move feeds away from the part, and nothing is cut where the program seems "
-            "to intend a cut."
-        ),
-        (
-            "A feed moves away from the part, or out in front of its face; the feeds between two "
-            "rapids, or those of a live tool, never come near material; a rapid moves in and out "
-            "alongside the part and nothing is cut; a tool that reaches the part never feeds; a "
-            "drill feeds into an existing hole."
+            "A feed move goes away from the part, or out past the part face; the feed "
+            "moves between two rapids, or all feed moves of a live tool, never come near "
+            "material; a rapid moves in and out alongside the part without a cut; a tool "
+            "that reaches the part never feeds; or a drill feeds into an existing hole."
         ),
         "Look for a missing minus sign (Z.5 for Z-.5) or a missing decimal point (X4 for X.4).",
     ),
@@ -173,7 +170,7 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "The tool retracts through the part.",
         "A rapid directly after a cut removes material at a smaller radius than the cut.",
-        "Retract along X before Z; in a bore, along Z before X.",
+        "Retract along X before you move Z; in a bore, retract along Z before you move X.",
     ),
     "rubs-surface": Check(
         _WARNING,
@@ -182,21 +179,24 @@ CHECKS: Mapping[str, Check] = {
             "A turning tool with a defined shape returns in rapid along Z, by .1 in or more, at "
             "the radius it has turned."
         ),
-        "Move X away from the part before Z.",
+        "Move X away from the part before you move Z.",
     ),
     "drill-too-deep": Check(
         _ERROR,
         "A drill goes deeper than its flute length.",
         (
-            "The hole is deeper than the cutting length of the drill; if no length is defined, "
-            "the proof reports that."
+            "The hole is deeper than the cutting length of the drill. If no cutting length is "
+            "defined, the proof reports this."
         ),
         "Use a longer drill, or peck and check the entered flute length.",
     ),
     "drill-off-axis": Check(
         _ERROR,
-        "A drill, reamer or tap is not on the spindle axis when it cuts.",
-        "The tool removes material more than .004 in from the axis while the spindle turns.",
+        "A drill, reamer or tap is not on the spindle centerline when it cuts.",
+        (
+            "A drill, center drill, reamer or tap removes material more than .004 in from "
+            "the spindle centerline while the spindle turns."
+        ),
         "Move to X0 before drilling, and check the X offset of the tool.",
         (TOOL,),
     ),
@@ -204,8 +204,8 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A tool feeds past the far end of the stock.",
         (
-            "A cut ends more than .1 in (a drill: .1 in plus its diameter) beyond the end of the "
-            "specified stock."
+            "A cut ends more than .1 in (for a drill, .1 in plus its diameter) beyond the end of "
+            "the specified stock."
         ),
         "Check Z, the length of the stock and how far it sticks out of the chuck.",
         (STOCK,),
@@ -219,7 +219,8 @@ CHECKS: Mapping[str, Check] = {
     ),
     "tap-no-hole": Check(
         _ERROR,
-        "A tap cuts more than its thread because it has no hole or goes past the bottom of the hole.",
+        "A tap removes more material than its thread, because the tap hole is missing or the "
+        "tap goes past the bottom of the hole.",
         "The tap cuts deeper than its pitch, measured on the radius.",
         "Drill the tap hole, deep enough for the chamfer of the tap.",
         (STOCK, TOOL, HOLES),
@@ -238,8 +239,8 @@ CHECKS: Mapping[str, Check] = {
         _WARNING,
         "An insert cuts with its trailing edge.",
         (
-            "The insert feeds backward more than .02 in and two nose radii deep, or into a wall "
-            "steeper than its trailing edge."
+            "The insert feeds backward at a depth of more than .02 in and more than two nose "
+            "radii, or into a wall steeper than its trailing edge."
         ),
         "Use a tool of the opposite hand or a slimmer insert, or cut from the other side.",
     ),
@@ -247,11 +248,11 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "An insert feeds in a loop through the part.",
         "An arc of more than 200° cuts material. Not checked for a round insert.",
-        "Check the direction of the arc and the signs of its center.",
+        "Check the direction of the arc and the signs of its center coordinates.",
     ),
     "hollow-at-edge": Check(
         _WARNING,
-        "An arc cuts a hollow into the front edge of the part, where an edge is usually rounded.",
+        "An arc cuts a concave shape into the front edge of the part, where the edge is usually rounded.",
         (
             "A quarter circle with a radius of up to .118 in starts along Z at the face and ends "
             "away from the axis."
@@ -260,10 +261,11 @@ CHECKS: Mapping[str, Check] = {
     ),
     "over-axis": Check(
         _ERROR,
-        "An external tool cuts past the spindle axis.",
+        "An external tool cuts past the spindle centerline.",
         (
-            "Between the face and the chuck, the tool cuts more than .06 in past the axis (.004 "
-            "in when cutting along Z), on the side opposite to where it is mounted."
+            "Between the face and the chuck, the tool cuts more than .06 in past the "
+            "spindle centerline (.004 in when cutting along Z), on the side opposite to "
+            "where the tool is mounted."
         ),
         "Check the sign of X, and look for a missing decimal point (X-03 for X-.03).",
     ),
@@ -271,31 +273,37 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "The bar is cut far past the part-off.",
         (
-            "A feed along Z ends on the bar side of the deepest part-off, by more than .5 in and "
-            "more than the part length."
+            "A feed move along Z ends past the part-off position nearest the chuck, on the "
+            "bar side, by more than .5 in and by more than the part length."
         ),
         "Look for a missing decimal point (Z-3 for Z-.3).",
     ),
     "contour-past-part-off": Check(
         _WARNING,
-        "An arc of the contour is not on the finished part.",
-        "An insert cuts an arc more than .008 in past the deepest part-off, on the bar side.",
-        "Check the Z of the part-off; the part would be missing everything past it.",
+        "An arc of the contour is missing from the finished part.",
+        (
+            "An insert cuts an arc more than .008 in past the part-off position nearest "
+            "the chuck, on the bar side."
+        ),
+        "Check the Z position of the part-off; everything past this position would be missing from the part.",
     ),
     "part-off-left": Check(
         _WARNING,
-        "A parting tool stops just short of the spindle axis.",
-        "The tool comes within .04 in of the axis without reaching it, and no part falls off.",
+        "A parting tool stops just short of the spindle centerline.",
+        (
+            "The tool comes within .04 in of the spindle centerline but does not reach the "
+            "centerline, and the part is not cut off."
+        ),
         "Feed to X0 or slightly past it; look for a missing minus sign.",
     ),
     "depth-of-cut": Check(
         _WARNING,
         "One pass is deeper than usual for the insert.",
         (
-            "With a stated stock, the mean depth: over .5 of the cutting edge of a C or S "
-            "insert, .4 of W, .3 of T and D, .2 of V (Widia's limits for medium geometries, "
-            "without the nose radius; CNMG432 where no insert is stated). The material is not "
-            "known; a soft material may allow more."
+            "With specified stock, the mean depth of cut is more than .5 of the cutting edge of "
+            "a C or S insert, .4 of W, .3 of T and D, or .2 of V (Widia's limits for medium "
+            "geometries, without the nose radius; CNMG432 if no insert is specified). The "
+            "material is not known; a soft material may allow more."
         ),
         "Use several passes; look for a missing or wrong digit in X.",
     ),
@@ -303,9 +311,9 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "One pass is deeper than the insert or the boring bar can cut.",
         (
-            "With a stated stock and a turning spindle, the mean depth: over 2/3 of the cutting "
-            "edge of a stated C or S insert, half of W, T and D, a quarter of V, .4 of a round "
-            "insert, or over half the diameter of a boring bar."
+            "With specified stock and a turning spindle, the mean depth of cut is more than 2/3 "
+            "of the cutting edge of a specified C or S insert, half of the edge of a W, T or D "
+            "insert, a quarter of V, .4 of a round insert, or half the diameter of a boring bar."
         ),
         "Use several passes; look for a missing or wrong digit in X.",
     ),
@@ -313,8 +321,8 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A parting or grooving blade turns along Z.",
         (
-            "The blade turns farther than its width, and deeper than .01 in (parting) or .8 of "
-            "its width (grooving, per Ingersoll)."
+            "The blade turns along Z by more than its width, at a depth of more than .01 in "
+            "(parting) or .8 of its width (grooving, per Ingersoll)."
         ),
         "Check the tool number; widen a groove with adjacent plunges.",
     ),
@@ -322,8 +330,8 @@ CHECKS: Mapping[str, Check] = {
         _WARNING,
         "The feed per revolution is too high for the cutting edge.",
         (
-            "The feed is over .8 of the nose radius, .12 of the width of a grooving tool, or .04 "
-            "of the diameter of a drill (.1 of a reamer)."
+            "The feed is more than .8 of the nose radius, .12 of the width of a grooving tool, "
+            "or .04 of the diameter of a drill (.1 of a reamer)."
         ),
         "Lower F, or look for a missing decimal point (F.03 for F.003).",
     ),
@@ -331,8 +339,8 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "The feed per revolution is far too high for the cutting edge.",
         (
-            "Insert: more than twice its nose radius, and more than .006 in. Drill, reamer or "
-            "blade: more than five times the chip-load limit."
+            "The feed is more than twice the nose radius of an insert and more than .006 in, or "
+            "more than five times the chip-load limit of a drill, reamer or blade."
         ),
         "Lower F; look for a missing decimal point, or for millimeters in an inch program.",
     ),
@@ -357,7 +365,7 @@ CHECKS: Mapping[str, Check] = {
     "thread-cuts-nothing": Check(
         _ERROR,
         "A thread pass does not touch the part.",
-        "With a stated stock, no pass of one lead over the same Z range cuts any material.",
+        "With specified stock, none of the passes with the same lead and the same Z range cuts any material.",
         "Check X and Z of the thread, and whether X is a diameter.",
     ),
     "thread-form": Check(
@@ -380,16 +388,16 @@ CHECKS: Mapping[str, Check] = {
             "The feed per revolution differs from the pitch in the tool shape or comment by more "
             "than .08 of the pitch."
         ),
-        "Write F as the pitch: 1 divided by the threads per inch.",
+        "Write the pitch as F, which is 1 divided by the threads per inch.",
         (TOOL,),
     ),
     "tap-reversal": Check(
         _ERROR,
         "A tap is pulled out of its thread instead of being turned out.",
         (
-            "The tap leaves in rapid, with the spindle stopped or not reversed, or at a "
-            "different feed, or the spindle needs more than .5 in to stop. Not checked if the "
-            "comment says that the holder reverses automatically."
+            "The tap comes out in rapid, with the spindle stopped or not reversed, or at a "
+            "different feed; or the tap travels more than .5 in before the spindle stops. Not "
+            "checked if the comment says that the holder reverses automatically."
         ),
         "Reverse the spindle at the bottom of the hole, and feed out at the pitch.",
         (TOOL,),
@@ -400,22 +408,27 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
     "no-tool": Check(
         _ERROR,
         "A move cuts with no tool active.",
-        "A move cuts before the first T or after T0; a warning if the program never calls a tool.",
+        "A move cuts before the first T or after T0. The finding is only a warning if the "
+        "program never calls a tool.",
         "Write T and the tool number before this move.",
     ),
     "collet-open": Check(
         _ERROR,
         "A move cuts with the collet open.",
         (
-            "A move cuts after M13; a warning if a feed does not move away as in a bar pull, or "
-            "if the next cycle would start with the collet open."
+            "A move cuts after M13. The finding is only a warning if a feed move does not "
+            "go straight away from the spindle as in a bar pull, or if the next cycle "
+            "would start with the collet open."
         ),
         "Close the collet with M12.",
     ),
     "live-tool-off": Check(
         _ERROR,
         "A move mills while the live tool is off.",
-        ("A move in plane switching with no live tool running; a warning when the spindle is locked as C."),
+        (
+            "A move cuts with plane switching active and no live tool running. The finding "
+            "is only a warning when the spindle is locked as the C axis."
+        ),
         "Turn on the live tool with its M code from the machine file.",
     ),
     "no-speed-limit": Check(
@@ -423,7 +436,7 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
         "Constant surface speed has no speed limit.",
         (
             "A cut under G96 without G77 requires more than the maximum spindle speed, for "
-            "example at the axis."
+            "example at the spindle centerline."
         ),
         "Write G77Sn after G96, where n is the maximum rpm for this chuck and bar.",
     ),
@@ -440,15 +453,18 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
         _WARNING,
         "A move cuts with the spindle stopped.",
         (
-            "A feed per minute after M05 with no live tool running; an error with feed per "
-            "revolution, G33 or G96."
+            "A move feeds per minute after M05 with no live tool running. With feed per "
+            "revolution, G33 or G96, the finding is an error."
         ),
         "Start the spindle with M03 or M04.",
     ),
     "start-place": Check(
         _WARNING,
         "The first move is incremental.",
-        ("G91 comes before any absolute move, so the first move starts from the current axis position."),
+        (
+            "G91 is programmed before any absolute move, so the first move starts from the "
+            "current axis position."
+        ),
         "Start with a move to X and Z under G90.",
     ),
     "no-input": Check(
@@ -459,7 +475,7 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
     ),
     "unreached-branch": Check(
         _WARNING,
-        "No proved path reaches some lines of the program.",
+        "The proof does not reach some lines of the program.",
         (
             "The proof follows both branches of input-dependent calls, block delete and loops, "
             "up to its limits."

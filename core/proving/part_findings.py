@@ -13,6 +13,7 @@ import numpy as np
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, Severity
+from core.message import Message, join_messages
 from core.part.bar_whirl import whirling_rpm
 from core.part.clamping import Clamping
 from core.part.cutter import Cutter, Side
@@ -104,7 +105,11 @@ class PartFindings:
         cuts, struck = _executed(move, cutter, part)
         met = _together(move, cuts)
         if struck:
-            text = f"The holder of {edge_name(tool)} collides with material, {_depth(struck, move)}."
+            text = Message(
+                "The holder of {tool} collides with material, {struck}.",
+                tool=edge_name(tool),
+                struck=_depth(struck, move),
+            )
             if move.quick:
                 self._add("holder-into-stock", move, text)
             else:
@@ -117,8 +122,11 @@ class PartFindings:
                 "neighbour-tool",
                 move,
                 (
-                    f"{edge_name(other)}, next to {edge_name(tool)} on the gang plate, collides with the "
-                    "stock."
+                    Message(
+                        "{other}, next to {tool} on the gang plate, collides with the stock.",
+                        other=edge_name(other),
+                        tool=edge_name(tool),
+                    )
                 ),
             )
         if move.quick:
@@ -155,29 +163,43 @@ class PartFindings:
             return
         if met := _reached(self._chuck, move, cutter):
             self.into_clamping["into-chuck", move.line] = met
-            text = f"{edge_name(tool)} collides with the chuck, {_depth(met, move)}."
+            text = Message(
+                "{tool} collides with the chuck, {what}.", tool=edge_name(tool), what=_depth(met, move)
+            )
             certain = self._chuck is not None and self._chuck.contains(move.points, RAPID)
             self._add("into-chuck", move, text, certain=certain)
         elif _reached(self._chuck, _deeper_in_z(move, _TOUCHES), cutter):
-            self._add("into-chuck", move, f"{edge_name(tool)} touches the chuck.")
+            self._add("into-chuck", move, Message("{tool} touches the chuck.", tool=edge_name(tool)))
         elif _reached(self._chuck, _deeper_in_z(move, _CLEARANCE), cutter):
-            self._add("near-chuck", move, f"{edge_name(tool)} nearly touches the chuck.")
+            self._add("near-chuck", move, Message("{tool} nearly touches the chuck.", tool=edge_name(tool)))
         if met := _reached(self._tailstock, move, cutter):
             self.into_clamping["into-tailstock", move.line] = met
             self._add(
                 "into-tailstock",
                 move,
-                (f"{edge_name(tool)} collides with the tailstock, {_depth(met, move)}."),
+                (
+                    Message(
+                        "{tool} collides with the tailstock, {what}.",
+                        tool=edge_name(tool),
+                        what=_depth(met, move),
+                    )
+                ),
             )
         highest = self.clamping.max_rpm
         if highest and abs(move.rpm) > highest:
-            text = (
-                f"The spindle turns at {abs(move.rpm):.0f} rpm; the chuck allows at most {highest:.0f} rpm."
+            text = Message(
+                "The spindle turns at {rpm} rpm; the chuck allows at most {highest} rpm.",
+                rpm=f"{abs(move.rpm):.0f}",
+                highest=f"{highest:.0f}",
             )
             self._add("spindle-overspeed", move, text)
         if self._whirls and abs(move.rpm) > _SAFE * self._whirls:
-            text = f"The stock sticks out so far that it whips at {self._whirls:.0f} rpm; it turns at"
-            self._add("stock-whips", move, f"{text} {abs(move.rpm):.0f}.")
+            text = Message(
+                "The stock sticks out so far that it whips at {whip} rpm; the spindle turns at {rpm} rpm.",
+                whip=f"{self._whirls:.0f}",
+                rpm=f"{abs(move.rpm):.0f}",
+            )
+            self._add("stock-whips", move, text)
 
     def _rapid(self, move: TipMove, met: Cut, *, certain: bool) -> None:
         """A rapid that takes off material; ``certain``: the tip itself is in it, whatever tool it is."""
@@ -186,13 +208,15 @@ class PartFindings:
         deep, fed = _depth(met, move), move.kind is not Kind.RAPID
         behind_cut = self._before is not None and not self._before.quick
         if behind_cut and fed:
-            text = f"A feed as fast as a rapid retracts from a cut through the part, {deep}."
+            text = Message(
+                "A feed move at rapid speed retracts through the part after a cut, {depth}.", depth=deep
+            )
         elif behind_cut:
-            text = f"A rapid retracts from a cut through the part, {deep}."
+            text = Message("A rapid retracts through the part after a cut, {depth}.", depth=deep)
         elif fed:
-            text = f"A feed as fast as a rapid runs into material, {deep}."
+            text = Message("A feed move at rapid speed runs into material, {depth}.", depth=deep)
         else:
-            text = f"A rapid runs into material, {deep}."
+            text = Message("A rapid runs into material, {depth}.", depth=deep)
         self._add("through-part" if behind_cut else "rapid-into-stock", move, text, certain=certain)
 
     def _rubs(self, move: TipMove, met: Cut, cutter: Cutter, part: TurnedPart, tool: int) -> None:
@@ -210,7 +234,11 @@ class PartFindings:
             self._add(
                 "rubs-surface",
                 move,
-                (f"{edge_name(tool)} returns in rapid along the surface it has just turned."),
+                (
+                    Message(
+                        "{tool} returns in rapid along the surface it has just turned.", tool=edge_name(tool)
+                    )
+                ),
             )
 
     def pause(self) -> None:
@@ -224,20 +252,28 @@ class PartFindings:
             if at is not None:
                 self._add(check, at, text)
         for one, other in self.neighbours.in_one_place if self.neighbours is not None else ():
-            words = (
-                f"{edge_name(one)} and {edge_name(other)} have the same offset, so neither is checked "
-                "for collision while the other cuts."
+            words = Message(
+                "{one} and {other} have the same offset, so neither is checked for collision while "
+                "the other cuts.",
+                one=edge_name(one),
+                other=edge_name(other),
             )
             self._tell("tools-in-one-place", 0, 0, words)
         for line, n, tool in self._airs.never_milled:
             self._tell(
-                "unmade-cut", line, n, (f"Live tool {edge_name(tool)} feeds but never touches material.")
+                "unmade-cut",
+                line,
+                n,
+                (Message("Live tool {tool} feeds but never touches material.", tool=edge_name(tool))),
             )
 
     def standing(self, line: int, n: int, tool: int) -> None:
         """A tool has met material while nothing turns."""
         self._tell(
-            "cut-standing", line, n, (f"{edge_name(tool)} cuts while neither the tool nor the spindle turns.")
+            "cut-standing",
+            line,
+            n,
+            (Message("{tool} cuts while neither the tool nor the spindle turns.", tool=edge_name(tool))),
         )
 
     def nothing_cut(self, line: int, n: int, text: str) -> None:
@@ -253,17 +289,23 @@ class PartFindings:
                 "through-part",
                 move.line,
                 move.n,
-                (f"{edge_name(tool)} crosses the spindle axis, through the part."),
+                (
+                    Message(
+                        ("{tool} moves across the spindle centerline through the part."), tool=edge_name(tool)
+                    )
+                ),
             )
         if not move.quick:
             self._airs.mill(move.line, move.n, tool, lambda: bool(met) or touches())
         if move.quick and met.volume > RAPID * math.pi * (shape.diameter / 2.0) ** 2:
-            where = f"Z {modal.length_text(met.front)} … {modal.length_text(met.back)}"
+            where = Message(
+                "Z {front} … {back}", front=modal.length_text(met.front), back=modal.length_text(met.back)
+            )
             self._tell(
                 "rapid-into-stock",
                 move.line,
                 move.n,
-                (f"A rapid of a live tool runs into material at {where}."),
+                (Message("A live tool runs into material in rapid at {place}.", place=where)),
             )
 
     def _over_axis(self, move: MillMove) -> bool:
@@ -288,7 +330,13 @@ class PartFindings:
             self._add(
                 "part-off-left",
                 move,
-                (f"{edge_name(tool)} parts off down to {thick}, and no part falls off."),
+                (
+                    Message(
+                        "{tool} parts off down to {thick}, but the part is not cut off.",
+                        tool=edge_name(tool),
+                        thick=thick,
+                    )
+                ),
             )
         self._left = None
 
@@ -300,7 +348,10 @@ class PartFindings:
         length = piece.outside[0][0] - piece.outside[-1][0]
         thick = 2.0 * max(r for _, r in piece.outside)
         if thick and length > _SLENDER * thick:
-            text = f"The parted-off piece is {length / thick:.0f} times as long as its diameter."
+            text = Message(
+                "The parted-off piece is {length} times as long as its diameter.",
+                length=f"{length / thick:.0f}",
+            )
             self._add("part-off-unsupported", move, text)
 
     def _add(self, check: str, move: TipMove, text: str, *, certain: bool = False) -> None:
@@ -312,9 +363,11 @@ class PartFindings:
             entry, why = CHECKS[check], self.silenced.get(check, "")
             rests_on = tuple(each for each in entry.rests_on if each == STOCK) if certain else entry.rests_on
             assumed = self.not_said(rests_on)
-            remedy = f"Silenced: {why}" if why else entry.remedy
+            remedy = Message("Check turned off: {why}", why=why) if why else entry.remedy
             if assumed and not why:
-                remedy = f"{remedy} Assumed: {', '.join(assumed)}."
+                remedy = Message(
+                    "{remedy} Assumed: {assumed}.", remedy=remedy, assumed=join_messages(", ", assumed)
+                )
             self._found[check, line] = Diagnostic(
                 line, 0, _weight(entry, assumed, why), check, text, remedy,
                 check=check, n=n, assumed=assumed, silenced=why,
@@ -373,4 +426,9 @@ def _together(move: TipMove, cuts: Iterable[Cut]) -> Cut:
 
 def _depth(met: Cut, move: TipMove) -> str:
     deep = move.modal.length_text(met.depth)
-    return f"{deep} deep from Z {move.modal.length_text(met.front)} to Z {move.modal.length_text(met.back)}"
+    return Message(
+        "at a depth of {depth}, from Z {front} to Z {back}",
+        depth=deep,
+        front=move.modal.length_text(met.front),
+        back=move.modal.length_text(met.back),
+    )

@@ -12,6 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from core.message import Message
 from core.part.solid_bodies import Round, ToolBody, chuck_solid
 from core.part.solid_picture import Scene
 from core.part.stock_spec import StockSpec
@@ -68,7 +69,13 @@ class PartGathering:
         if self._blocks <= MOST_MOVES:
             return ""
         way = "use 'turndesk prove --stock' for longer programs"
-        return f"{self._blocks} blocks: TurnDesk computes the part only up to {MOST_MOVES} blocks; {way}"
+        return Message(
+            "The program has {blocks} blocks, but TurnDesk computes the part only up to "
+            "{most_moves} blocks; {details}",
+            blocks=self._blocks,
+            most_moves=MOST_MOVES,
+            details=way,
+        )
 
     def moves(self) -> PartMoves | None:
         """What was gathered; None: nothing, or too much."""

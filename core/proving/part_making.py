@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from core.interpreter.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
 from core.interpreter.modal_state import Modal
+from core.message import Message
 from core.part.cutter import Cutter
 from core.part.neighbours import Neighbours
 from core.part.polar_field import NOTHING
@@ -257,7 +258,9 @@ class PartMaking:
         stock = self._stock
         assumed = [each.words for _, each in sorted(self._tools.assumed.items())]
         if stock is None and self._tools.uses:
-            assumed.append("no stock assumed: the feeds cut in front of Z0, where the stock face cannot be")
+            assumed.append(
+                "no stock is assumed because feed moves cut in front of Z0, where the stock face cannot be"
+            )
         for line, n, text in self._tools.nothing_cut(stock):
             self.findings.nothing_cut(line, n, text)
         volume = TurnedPart(stock).volume if stock is not None else 0.0
@@ -279,6 +282,10 @@ class PartMaking:
 
 def _cut_standing(lines: Mapping[int, int]) -> list[str]:
     return [
-        f"cuts of {edge_name(tool)} with the spindle stopped, from line {line} on"
+        Message(
+            "cuts by {tool} with the spindle stopped, starting at line {line}",
+            tool=edge_name(tool),
+            line=line,
+        )
         for tool, line in lines.items()
     ]

@@ -13,6 +13,7 @@ from core.interpreter.job_setup import Setup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.part.stock_spec import StockSpec
 from core.part.turned_part import Piece
 from core.proving.part_making import PartMaking
@@ -101,7 +102,7 @@ def _without_weaker(report: Iterable[Diagnostic], found: Iterable[Diagnostic]) -
 
 
 def _not_made(moves: int) -> PartReport:
-    words = f"{moves} moves: too many to compute the part without specified stock"
+    words = Message("with {moves} moves, the part cannot be computed unless stock is specified", moves=moves)
     return PartReport(None, 0.0, 0.0, 0.0, None, False, (), (words,), ())
 
 

@@ -25,6 +25,7 @@ from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.machine_model import Machine
+from core.message import Message
 from core.proving.cutting_checks import CuttingChecks
 from core.proving.program_timeline import MotionSpan, RestSpan, RestState, Timeline
 from core.proving.proof_pass import MAX_FINDINGS, ProofPass
@@ -122,8 +123,8 @@ def uncalled(reading: ReadProgram) -> Iterator[Diagnostic]:
     reached = _reached(program)
     for number, at in sorted(program.structure.subroutines.items()):
         if number not in reached:
-            text = f"Subroutine {number} is never called, so it was not proved."
-            hint = f"Call the subroutine with M98P{number}, or remove it."
+            text = Message("Subroutine {number} is never called, so it was not proved.", number=number)
+            hint = Message("Call the subroutine with M98P{number}, or remove it.", number=number)
             yield Diagnostic(
                 at + 1, 0, Severity.NOTE, "unreached-branch", text, hint, check="unreached-branch"
             )
@@ -176,7 +177,12 @@ class Choice:
     def words(self) -> str:
         """As an operator reads it."""
         name = "7" if self.terminal == "TB2-9" else self.terminal
-        return f"input {name} {'on' if self.on else 'off'} at line {self.line}"
+        return Message(
+            "input {number} {state} at line {line}",
+            number=name,
+            state="on" if self.on else "off",
+            line=self.line,
+        )
 
 
 @dataclass(slots=True)
@@ -195,8 +201,13 @@ class _BranchPass:
 def _with(choices: Sequence[Choice], message: str) -> str:
     """A finding and its way: the last two of its inputs, which are what an operator looks at."""
     if len(choices) == 1:
-        return f"With {choices[0].words}: {message}"
-    return f"With {choices[-2].words} and {choices[-1].words}: {message}"
+        return Message("With {input}: {message}", input=choices[0].words, message=message)
+    return Message(
+        "With {input} and {second}: {message}",
+        input=choices[-2].words,
+        second=choices[-1].words,
+        message=message,
+    )
 
 
 class Branches:
@@ -352,15 +363,16 @@ class Branches:
             return
         last = [branch_pass.choices[-1] for _, branch_pass in self._waiting]
         never = {choice.words for choice in last if (choice.line, choice.on) not in self._covered}
-        text = (
-            f"{left} paths through the program, depending on its inputs, were not proved; "
-            f"{self._proved} were."
+        text = Message(
+            "{left} input-dependent paths through the program were not proved; {proved} paths were proved.",
+            left=left,
+            proved=self._proved,
         )
         if never:
-            text = f"{text} Never proved: {', '.join(sorted(never)[:5])}."
+            text = Message("{what} Never proved: {never}.", what=text, never=", ".join(sorted(never)[:5]))
         hint = (
-            "To prove all paths, use fewer conditional calls in loops, or end each subroutine at "
-            "its start position."
+            "So that every possible path can be proved, use fewer conditional calls in "
+            "loops, or end each subroutine at its start position."
         )
         line = min((choice.line for choice in last), default=0)
         yield Diagnostic(line, 0, Severity.WARNING, "unreached-branch", text, hint, check="unreached-branch")

@@ -258,7 +258,7 @@ class Timeline:
 
     def _index(self, block: Block) -> RestSpan:
         """Until the slides may start, so that they are in step with an index of the spindle: see the
-        executor's rule in docs/decisions/0009-threads.md. Up to one turn."""
+        executor's rule in docs/decisions/0016-threads-follow-the-spindle.md. Up to one turn."""
         turn = abs(self.spindle.speed(self.t)) / 60.0
         if not turn:
             return self._rest(0.0)

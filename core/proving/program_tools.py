@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from core.interpreter.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.units import MM_PER_INCH
+from core.message import Message
 from core.part.cutter import Cutter, Side
 from core.part.stock import Stock
 from core.part.tool_outline import outline
@@ -146,14 +147,26 @@ class ProgramTools:
         cutting = [use for n, use in self.uses.items() if self.shape(n) is not None]
         for use in cutting:
             if (move := use.never_fed) is not None:
-                yield move.line, move.n, (f"{edge_name(use.number)} never feeds: all its moves are rapids.")
+                yield (
+                    move.line,
+                    move.n,
+                    (
+                        Message(
+                            "{number} never feeds, because all its moves are rapids.",
+                            number=edge_name(use.number),
+                        )
+                    ),
+                )
         if stock is not None:
             return
         if (lost := self.fed_away) is not None:
             yield (
                 lost.line,
                 lost.n,
-                ("This feed moves away from the part, and no other feed cuts past Z0 toward the spindle."),
+                (
+                    "This feed move goes away from the part, and no other feed move cuts past Z0 "
+                    "toward the spindle."
+                ),
             )
         for use in cutting:
             fed = [block for block in use.live_blocks if not block.rapid and block.feed < QUICK]
@@ -161,7 +174,12 @@ class ProgramTools:
                 yield (
                     fed[0].line,
                     fed[0].n,
-                    (f"Live tool {edge_name(use.number)} feeds, but never past Z0 toward the spindle."),
+                    (
+                        Message(
+                            "Live tool {number} feeds, but never past Z0 toward the spindle.",
+                            number=edge_name(use.number),
+                        )
+                    ),
                 )
 
     @property

@@ -18,6 +18,7 @@ from core.interpreter.machine_requirements import Need, first_needs, needs_of
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine
+from core.message import Message, join_messages
 from core.proving.cutting_checks import CuttingChecks
 from core.proving.machine_checks import c_findings, travel_findings
 from core.proving.program_timeline import MotionSpan, Part, RestSpan, Timeline
@@ -292,7 +293,11 @@ def _as_assumed(found: Diagnostic) -> Diagnostic:
     """What holds only for a place that a proof assumes is a warning; a run that comes to it stops there."""
     if not found.assumed or found.severity is not Severity.ERROR:
         return found
-    hint = f"{found.hint} Assumed: {', '.join(found.assumed)}; nothing after this point is proved."
+    hint = Message(
+        "{hint} Assumed: {assumed}; nothing after this point is proved.",
+        hint=found.hint,
+        assumed=join_messages(", ", found.assumed),
+    )
     return replace(found, severity=Severity.WARNING, hint=hint)
 
 

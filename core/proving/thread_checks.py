@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from core.interpreter.elementary_blocks import Kind
+from core.message import Message
 from core.part.swept_edge import FloatArray
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Cut, TurnedPart
@@ -109,7 +110,7 @@ class ThreadChecks:
             tool, move = uncut
             yield Found(
                 "thread-cuts-nothing",
-                (f"No pass of this thread by {edge_name(tool)} touches the part."),
+                (Message("{tool} does not touch the part in any pass of this thread.", tool=edge_name(tool))),
                 move,
             )
 
@@ -133,7 +134,10 @@ class ThreadChecks:
         self._idle = 0 if met or deep else self._idle + 1
         yield from self._counted(move, tool, cuts=bool(met) or deep > 0.0)
         if self._idle == _IDLE and self.stock_given:
-            yield Found("thread-in-air", (f"The first {_IDLE} passes of this thread touch no material."))
+            yield Found(
+                "thread-in-air",
+                (Message("The first {idle} passes of this thread do not touch any material.", idle=_IDLE)),
+            )
         if shape is not None and shape.kind is ToolKind.THREADING and shape.point:
             angle = shape.point
         sharp = move.per_rev / 2.0 / math.tan(math.radians(angle / 2.0))
@@ -141,23 +145,33 @@ class ThreadChecks:
             yield Found(
                 "thread-form",
                 (
-                    f"The thread is {text(deep)} deep, but with a lead of {text(move.per_rev)} and "
-                    f"{angle:g}° its flanks meet at a depth of {text(sharp)}."
+                    Message(
+                        "The thread is {depth} deep, but with a lead of {per_rev} and {angle}° its flanks "
+                        "meet at a depth of {sharp}.",
+                        depth=text(deep),
+                        per_rev=text(move.per_rev),
+                        angle=f"{angle:g}",
+                        sharp=text(sharp),
+                    )
                 ),
             )
         if shape is not None and shape.pitch and shape.kind is ToolKind.THREADING:
             starts = move.per_rev / shape.pitch
             if abs(starts - round(starts)) > 0.02 * max(starts, 1.0) or not 0 < round(starts) <= _MOST_STARTS:
-                words = (
-                    f"The insert of {edge_name(tool)} has a pitch of {text(shape.pitch)}, but the lead is "
-                    f"{text(move.per_rev)}."
+                words = Message(
+                    "The insert of {tool} has a pitch of {pitch}, but the lead is {per_rev}.",
+                    tool=edge_name(tool),
+                    pitch=text(shape.pitch),
+                    per_rev=text(move.per_rev),
                 )
                 yield Found("thread-pitch", words)
         before, needed = self._run_up(move, met), self._braking(move)
         if met and before < needed:
-            words = (
-                f"The material begins {text(max(before, 0.0))} after the start of the pass, but the Z "
-                f"axis needs {text(needed)} to reach the speed for the lead."
+            words = Message(
+                "The material begins {before} after the start of the pass, but the Z axis needs "
+                "{needed} to reach the speed for the lead.",
+                before=text(max(before, 0.0)),
+                needed=text(needed),
             )
             yield Found("thread-run-up", words)
 
@@ -199,9 +213,13 @@ class ThreadChecks:
             yield Found(
                 "thread-run-up",
                 (
-                    f"The Z axis needs {text(needed)} to stop from the speed for the lead, but the "
-                    f"material ends {text(max(left, 0.0))} before the end of the pass: the last turns of "
-                    "the thread have a different lead."
+                    Message(
+                        "The Z axis needs {needed} to stop from the speed for the lead, but the material "
+                        "ends {left} before the end of the pass, so the last turns of the thread have a "
+                        "different lead.",
+                        needed=text(needed),
+                        left=text(max(left, 0.0)),
+                    )
                 ),
                 cut,
             )
@@ -218,9 +236,11 @@ class ThreadChecks:
             pitch = shape.pitch or _per_turn(move)
             if pitch and met.depth > _SOLID * pitch:
                 text = move.modal.length_text
-                words = (
-                    f"{edge_name(tool)} cuts {text(met.depth)} deep on the radius, but its pitch is "
-                    f"{text(pitch)}."
+                words = Message(
+                    "{tool} cuts {depth} deep on the radius, but its pitch is {pitch}.",
+                    tool=edge_name(tool),
+                    depth=text(met.depth),
+                    pitch=text(pitch),
                 )
                 yield Found("tap-no-hole", words)
         elif along > _NEAR and self._fed is not None and self._inside(move):
@@ -241,8 +261,12 @@ class ThreadChecks:
             yield Found(
                 "tap-pitch",
                 (
-                    f"{edge_name(tool)} feeds {text(feed)} per revolution, but its pitch is "
-                    f"{text(shape.pitch)}."
+                    Message(
+                        "{tool} feeds {feed} per revolution, but its pitch is {pitch}.",
+                        tool=edge_name(tool),
+                        feed=text(feed),
+                        pitch=text(shape.pitch),
+                    )
                 ),
             )
 
@@ -250,13 +274,23 @@ class ThreadChecks:
         if not fed.rpm:
             return  # a spindle that is switched by hand
         if move.quick:
-            yield Found("tap-reversal", f"{edge_name(tool)} is pulled out of its thread in rapid.")
+            yield Found(
+                "tap-reversal", Message("{tool} is pulled out of its thread in rapid.", tool=edge_name(tool))
+            )
         elif fed.rpm * move.rpm > 0.0:
             words = "while the spindle still turns in the tapping direction"
-            yield Found("tap-reversal", f"{edge_name(tool)} is pulled out of its thread {words}.")
+            yield Found(
+                "tap-reversal",
+                Message("{tool} is pulled out of its thread {words}.", tool=edge_name(tool), words=words),
+            )
         elif not move.rpm:
             yield Found(
-                "tap-reversal", (f"{edge_name(tool)} is pulled out of its thread with the spindle stopped.")
+                "tap-reversal",
+                (
+                    Message(
+                        "{tool} is pulled out of its thread with the spindle stopped.", tool=edge_name(tool)
+                    )
+                ),
             )
         else:
             yield from self._reversed(move, fed, tool)
@@ -264,15 +298,27 @@ class ThreadChecks:
     def _reversed(self, move: TipMove, fed: TipMove, tool: int) -> Iterator[Found]:
         text, into, out = move.modal.length_text, _per_turn(fed), _per_turn(move)
         if abs(out - into) > _OTHER_FEED * into:
-            words = f"{edge_name(tool)} feeds in at {text(into)} per revolution, but out at {text(out)}."
+            words = Message(
+                "{tool} feeds in at {into} per revolution, but out at {file}.",
+                tool=edge_name(tool),
+                into=text(into),
+                file=text(out),
+            )
             yield Found("tap-reversal", words)
         slows = self.drives.spindle_decel
         if not slows:
             return
         turns = abs(fed.rpm) / 60.0 * (_LATENCY + abs(fed.rpm) / slows / 2.0)
         if turns * into > _GIVES:
-            words = f"{edge_name(tool)} travels another {text(turns * into)} until the spindle stops"
-            yield Found("tap-reversal", f"{words}: more than a tap holder compensates.")
+            words = Message(
+                "{tool} travels {revolutions} farther before the spindle stops",
+                tool=edge_name(tool),
+                revolutions=text(turns * into),
+            )
+            yield Found(
+                "tap-reversal",
+                Message(("{words}, which is more than a tap holder can compensate for."), words=words),
+            )
 
 
 def _of_one_thread(before: TipMove, move: TipMove) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from core.message import Message
 from core.part.clamping import Clamping
 from core.part.stock import Point
 from core.part.tool_shape import ToolKind, ToolShape
@@ -31,15 +32,28 @@ def _phrases(
 ) -> Iterator[str]:
     used = list(used)
     if without := [n for n in used if n and n not in shapes]:
-        yield f"{_names(without)}: holder, edge length and hand not defined"
+        yield Message(
+            ("{without}: tool holder, edge length and hand of the tool not defined"), without=_names(without)
+        )
     if short := [n for n in used if n in shapes and shapes[n].kind in _DEEP and not shapes[n].length]:
-        yield f"{_names(short)}: maximum depth (no flute length defined)"
+        yield Message("{short}: maximum tool depth (no flute length defined)", short=_names(short))
     if clamping is None or not clamping.diameter:
-        yield "chuck, jaws and stock whip (needs a diameter under [clamping] and a stick-out)"
+        yield (
+            "collisions with the chuck and jaws, and stock whip (these checks require a "
+            "diameter in [clamping] and a stick-out)"
+        )
     if clamping is None or not clamping.max_rpm:
-        yield "maximum chuck speed (no max_rpm under [clamping])"
+        yield "maximum chuck speed (no max_rpm in [clamping])"
     if gang and (beside := sorted(gang.keys() - shapes.keys())):
-        yield (f"{_names(beside)}: collisions as neighboring tools on the gang plate (no shape defined)")
+        yield (
+            Message(
+                (
+                    "{tools}: collisions on the gang plate while a neighboring tool cuts (no tool "
+                    "shape defined)"
+                ),
+                tools=_names(beside),
+            )
+        )
 
 
 def _names(numbers: Iterable[int]) -> str:

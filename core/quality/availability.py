@@ -33,12 +33,15 @@ def availability(shift: Span, running: Iterable[Span]) -> Availability:
     Raises QualityError for a shift without length and for a span that ends before it begins.
     """
     if shift.end <= shift.start:
-        raise QualityError("a shift must end after it starts; correct its times", "shift-times")
+        raise QualityError(
+            ("the end of a shift must be later than its start; correct the shift times"), "shift-times"
+        )
     producing, reached = 0.0, shift.start
     for span in sorted(running):
         if span.end < span.start:
             raise QualityError(
-                "a cycle ends before it starts because the clock was set back", "clock-set-back"
+                ("the end of a cycle is earlier than its start because the clock was set back"),
+                "clock-set-back",
             )
         start, end = max(span.start, reached), min(span.end, shift.end)
         if end > start:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.message import Message
 from core.quality.control_charts import charts_of
 from core.quality.quality_errors import QualityError
 
@@ -44,14 +45,21 @@ def capability(
     Raises QualityError for fewer than 10 values, no limit at all, or limits the wrong way round.
     """
     if lower is None and upper is None:
-        raise QualityError("process capability needs a tolerance; enter one for this feature", "no-tolerance")
+        raise QualityError(
+            "process capability needs a tolerance; enter a tolerance for this feature", "no-tolerance"
+        )
     if lower is not None and upper is not None and lower >= upper:
         raise QualityError(
             "the lower limit must be below the upper limit; correct the tolerance", "limits-reversed"
         )
     if len(values) < LEAST:
         raise QualityError(
-            f"{len(values)} readings are not enough; a Cpk needs at least {LEAST}", "too-few-readings"
+            Message(
+                "{values_count} readings are not enough; a Cpk needs at least {minimum} readings",
+                values_count=len(values),
+                minimum=LEAST,
+            ),
+            "too-few-readings",
         )
     within = charts_of(values, size).within
     mean, overall = float(np.mean(values)), float(np.std(values, ddof=1))  # of all values, n − 1

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from core.message import Message
 from core.quality.quality_errors import QualityError
 
 FloatArray = npt.NDArray[np.float64]
@@ -82,7 +83,11 @@ def charts_of(values: Sequence[float], size: int) -> ChartPair:
         return individuals(values)
     if size not in SAMPLE_SIZES:
         raise QualityError(
-            f"no control chart exists for a sample of {size}; use 1 to {SAMPLE_SIZES[-1]} parts",
+            Message(
+                "a control chart is not possible for a sample of {size}; use 1 to {sample_sizes} parts",
+                size=size,
+                sample_sizes=SAMPLE_SIZES[-1],
+            ),
             "sample-size",
         )
     whole = len(values) // size * size
@@ -99,7 +104,10 @@ def average_and_range(samples: npt.ArrayLike) -> ChartPair:
     _demand_finite(table)
     if len(table) < 2:
         raise QualityError(
-            f"an X-bar chart needs 2 complete samples of {table.shape[1]}; measure more parts",
+            Message(
+                ("an X-bar chart needs at least 2 complete samples of {shape} parts; measure more parts"),
+                shape=table.shape[1],
+            ),
             "too-few-readings",
         )
     factors = CONSTANTS[table.shape[1]]
@@ -118,7 +126,9 @@ def individuals(values: Sequence[float]) -> ChartPair:
     points = np.asarray(values, dtype=np.float64)
     _demand_finite(points)
     if len(points) < 2:
-        raise QualityError("an individuals chart needs 2 values; measure more parts", "too-few-readings")
+        raise QualityError(
+            ("an individuals chart needs at least 2 values; measure more parts"), "too-few-readings"
+        )
     factors = CONSTANTS[2]
     moving = np.abs(np.diff(points))
     mean, spread = float(points.mean()), float(moving.mean())
@@ -133,4 +143,4 @@ def individuals(values: Sequence[float]) -> ChartPair:
 
 def _demand_finite(values: FloatArray) -> None:
     if not np.isfinite(values).all():
-        raise QualityError("a value is not a number; delete the reading", "not-a-number")
+        raise QualityError("a value is not a number; delete that reading", "not-a-number")

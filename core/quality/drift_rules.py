@@ -65,7 +65,7 @@ def _so_many(zones: Zones, count: int, beyond: float) -> bool:
 
 
 RULES: dict[int, tuple[str, Callable[[Zones], Iterator[int]]]] = {
-    1: ("beyond a control limit", _beyond),
+    1: ("one point beyond a control limit", _beyond),
     2: ("nine points in a row on one side of the center line", lambda z: _runs(z, 9, _one_side)),
     3: ("six points in a row rising or falling", lambda z: _runs(z, 6, _steady)),
     4: ("fourteen points in a row alternating up and down", lambda z: _runs(z, 14, _alternating)),

@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
+from core.message import Message
 from core.quality.control_charts import SAMPLE_SIZES
 from core.quality.quality_errors import QualityError
 
@@ -83,36 +84,84 @@ class Feature:
 def check_feature(feature: Feature) -> None:
     """Raises QualityError, with what to enter, for a feature that nobody could measure or correct."""
     if not feature.name.strip() or len(feature.name) > NAME_LONGEST or not feature.name.isprintable():
-        raise QualityError(f"a feature name must have 1 to {NAME_LONGEST} characters", "invalid-name")
+        raise QualityError(
+            Message("a feature name must have 1 to {name_longest} characters", name_longest=NAME_LONGEST),
+            "invalid-name",
+        )
     if not all(map(math.isfinite, (feature.nominal, feature.low, feature.high))):
-        raise QualityError(f"{feature.name}: nominal and limits must be numbers", "not-a-number")
+        raise QualityError(
+            Message(
+                ("{feature}: the nominal dimension and the limits must be numbers"), feature=feature.name
+            ),
+            "not-a-number",
+        )
     if not 0.0 < feature.nominal <= SIZE_MOST:
         raise QualityError(
-            f"{feature.name}: the nominal must be more than 0 and at most {SIZE_MOST:g} mm", "nominal"
+            Message(
+                "{feature}: the nominal dimension must be more than 0 and at most {size_most} mm",
+                feature=feature.name,
+                size_most=f"{SIZE_MOST:g}",
+            ),
+            "nominal",
         )
     if feature.low >= feature.high:
         raise QualityError(
-            (f"{feature.name}: the lower deviation must be below the upper deviation; correct one of them"),
+            (
+                Message(
+                    "{feature}: the lower deviation must be below the upper deviation; correct one of them",
+                    feature=feature.name,
+                )
+            ),
             "limits-reversed",
         )
     if feature.limits[0] <= 0.0:
         raise QualityError(
-            f"{feature.name}: the lower limit is 0 or less; correct the deviation", "lower-limit"
+            Message("{feature}: the lower limit is 0 or less; correct the deviation", feature=feature.name),
+            "lower-limit",
         )
     if feature.number not in NUMBERS:
         raise QualityError(
-            f"{feature.name}: the offset number must be 1 to {NUMBERS[-1]}, not {feature.number}",
+            Message(
+                "{feature}: the offset number must be 1 to {numbers}, not {number}",
+                feature=feature.name,
+                numbers=NUMBERS[-1],
+                number=feature.number,
+            ),
             "offset-number",
         )
     if feature.grows not in {1, -1}:
         raise QualityError(
-            (f"{feature.name}: the direction must be +1 (grows with its correction) or -1 (shrinks with it)"),
+            (
+                Message(
+                    (
+                        "{feature}: the direction must be +1 (a positive correction makes the "
+                        "dimension larger) or -1 (a positive correction makes the dimension smaller)"
+                    ),
+                    feature=feature.name,
+                )
+            ),
             "direction",
         )
     if not 0 <= feature.every <= EVERY_MOST:
         raise QualityError(
-            (f"{feature.name}: the measuring interval must be 1 to {EVERY_MOST} parts, or 0 for no plan"),
+            (
+                Message(
+                    (
+                        "{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for "
+                        "no sample plan"
+                    ),
+                    feature=feature.name,
+                    every_most=EVERY_MOST,
+                )
+            ),
             "interval",
         )
     if feature.sample != 1 and feature.sample not in SAMPLE_SIZES:
-        raise QualityError(f"{feature.name}: a sample must have 1 to {SAMPLE_SIZES[-1]} parts", "sample-size")
+        raise QualityError(
+            Message(
+                "{feature}: a sample must have 1 to {sample_sizes} parts",
+                feature=feature.name,
+                sample_sizes=SAMPLE_SIZES[-1],
+            ),
+            "sample-size",
+        )

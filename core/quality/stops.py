@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from core.message import Message
 from core.quality.quality_errors import QualityError
 
 
@@ -32,7 +33,10 @@ def pareto(stops: Iterable[Stop]) -> tuple[ReasonShare, ...]:
     for stop in stops:
         if stop.seconds < 0.0:
             raise QualityError(
-                f"{stop.reason}: a stop ends before it starts because the clock was set back",
+                Message(
+                    "{reason}: the end of a stop is earlier than its start because the clock was set back",
+                    reason=stop.reason,
+                ),
                 "clock-set-back",
             )
         count, seconds = counts.get(stop.reason, (0, 0.0))

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
+from core.message import Message
 from core.quality.quality_errors import QualityError
 
 PARTS_MOST = 1_000_000
@@ -68,27 +69,46 @@ class ToolLife:
         by_parts = self.parts / self.limit_parts if self.limit_parts else -1.0
         by_time = self.seconds / self.limit_seconds if self.limit_seconds else -1.0
         if by_parts < 0.0 and by_time < 0.0:
-            return f"{self.parts} parts, {self.seconds / 60.0:.1f} min"
+            return Message(
+                "{parts} parts, {seconds} min", parts=self.parts, seconds=f"{self.seconds / 60.0:.1f}"
+            )
         if by_parts >= by_time:
-            return f"{self.parts} of {self.limit_parts} parts"
-        return f"{self.seconds / 60.0:.1f} of {self.limit_seconds / 60.0:g} min"
+            return Message("{parts} of {limit_parts} parts", parts=self.parts, limit_parts=self.limit_parts)
+        return Message(
+            "{seconds} of {limit_seconds} min",
+            seconds=f"{self.seconds / 60.0:.1f}",
+            limit_seconds=f"{self.limit_seconds / 60.0:g}",
+        )
 
 
 def check_life(life: ToolLife) -> None:
     """Raises QualityError for limits that nobody can mean."""
     if not 0 <= life.limit_parts <= PARTS_MOST:
         raise QualityError(
-            f"T{life.number}: tool life must be 0 to {PARTS_MOST} parts; 0 means no limit", "limit-in-parts"
+            Message(
+                "T{number}: tool life must be 0 to {parts_most} parts; 0 means no limit",
+                number=life.number,
+                parts_most=PARTS_MOST,
+            ),
+            "limit-in-parts",
         )
     if not (math.isfinite(life.limit_seconds) and 0.0 <= life.limit_seconds <= SECONDS_MOST):
         raise QualityError(
             (
-                f"T{life.number}: tool life must be 0 to {SECONDS_MOST / 60.0:g} cutting minutes; 0 "
-                "means no limit"
+                Message(
+                    "T{number}: tool life must be 0 to {seconds_most} cutting minutes; 0 means no limit",
+                    number=life.number,
+                    seconds_most=f"{SECONDS_MOST / 60.0:g}",
+                )
             ),
             "limit-in-minutes",
         )
     if not 0.0 < life.warn <= 1.0:
         raise QualityError(
-            (f"T{life.number}: the warning must be set at 1 to 100 % of the tool life"), "warning-share"
+            (
+                Message(
+                    "T{number}: the warning must be set at 1 to 100 % of the tool life", number=life.number
+                )
+            ),
+            "warning-share",
         )

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.message import Message
 from core.quality.measured_feature import Feature
 from core.quality.quality_errors import QualityError
 
@@ -55,16 +56,25 @@ def propose(
     rule = rule or CorrectionRule()
     if not readings:
         raise QualityError(
-            f"{feature.name}: no part has been measured since the last correction", "no-readings"
+            Message("{feature}: no part has been measured since the last correction", feature=feature.name),
+            "no-readings",
         )
     newest = np.asarray(readings[-rule.last :], dtype=np.float64)
     if not np.isfinite(newest).all():
-        raise QualityError(f"{feature.name}: a reading is not a number; delete it", "not-a-number")
+        raise QualityError(
+            Message("{feature}: a reading is not a number; delete it", feature=feature.name), "not-a-number"
+        )
     if float(np.abs(newest - feature.middle).max()) > _FAR * feature.width:
         raise QualityError(
             (
-                f"{feature.name}: a reading is off by more than {_FAR:g} tolerances, too much for "
-                "wear; measure again"
+                Message(
+                    (
+                        "{feature}: a reading is off by more than {distance} times the tolerance, "
+                        "which is too much to be tool wear; measure again"
+                    ),
+                    feature=feature.name,
+                    distance=f"{_FAR:g}",
+                )
             ),
             "reading-too-far",
         )
@@ -72,7 +82,7 @@ def propose(
     deviation = mean - feature.middle
     if abs(deviation) <= rule.dead * feature.width + 1e-12:
         return _nothing(
-            feature, len(newest), mean, ("the deviation is within the dead band: nothing to correct")
+            feature, len(newest), mean, ("the deviation is within the dead band, so no correction is needed")
         )
     change = -feature.grows * _whole_steps(rule.step * deviation, resolution)
     if change == 0.0:
@@ -80,12 +90,21 @@ def propose(
             feature,
             len(newest),
             mean,
-            ("the correction would be less than the smallest step: nothing to correct"),
+            ("the correction would be less than the smallest step, so no correction is needed"),
         )
     at_offset = change / 2.0 if feature.axis == "x" else change
     if abs(at_offset) > WEAR_MOST:
         raise QualityError(
-            (f"{feature.name}: a correction of {change:.4f} mm is too large for wear; touch the tool off"),
+            (
+                Message(
+                    (
+                        "{feature}: a correction of {change} mm is too large to be tool wear; touch "
+                        "the tool off"
+                    ),
+                    feature=feature.name,
+                    change=f"{change:.4f}",
+                )
+            ),
             "correction-too-large",
         )
     return Proposal(feature, len(newest), mean, change, at_offset, mean + feature.grows * change, "")

@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from core.message import Message
 from core.records.record_errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
@@ -65,7 +66,10 @@ def ball_bar(demand: FloatArray, actual: FloatArray) -> BallBar:
     """Setpoints (m, 2) and measured positions (m, 2) of one arc. Raises AnalysisError."""
     if len(demand) < LEAST or len(actual) != len(demand):
         raise AnalysisError(
-            f"a ball-bar plot needs {LEAST} samples of an arc; run the arc slower or larger",
+            Message(
+                "a ball-bar plot needs {minimum} samples of an arc; use a lower feed or a larger arc",
+                minimum=LEAST,
+            ),
             "too-few-samples",
         )
     if not (np.isfinite(demand).all() and np.isfinite(actual).all()):
@@ -75,11 +79,17 @@ def ball_bar(demand: FloatArray, actual: FloatArray) -> BallBar:
     u0, v0, radius = circle_of(demand)
     away = demand - (u0, v0)
     if np.abs(np.hypot(*away.T) - radius).max() > _ROUND or not np.isfinite(radius):
-        raise AnalysisError("no arc in this time range: choose the line of an arc", "no-arc")
+        raise AnalysisError(
+            "this time range does not contain an arc; choose a line that programs an arc", "no-arc"
+        )
     turned = np.unwrap(np.arctan2(away[:, 1], away[:, 0]))
     if abs(np.ptp(turned)) < math.radians(LEAST_ANGLE):
         raise AnalysisError(
-            f"the arc is shorter than {LEAST_ANGLE:g} degrees, too short for a ball-bar plot", "arc-too-short"
+            Message(
+                "the arc is shorter than {least_angle} degrees, too short for a ball-bar plot",
+                least_angle=f"{LEAST_ANGLE:g}",
+            ),
+            "arc-too-short",
         )
     seen = actual - (u0, v0)
     theta = np.arctan2(seen[:, 1], seen[:, 0])

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from core.message import Message
 from core.records.record_errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
@@ -94,11 +95,21 @@ def path_error(
 def _check(programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray) -> None:
     if len(measured) < LEAST or len(programmed) < 2:
         raise AnalysisError(
-            (f"a path error plot needs at least {LEAST} samples of a path; record while a program runs"),
+            (
+                Message(
+                    (
+                        "a path error plot needs at least {minimum} samples of a path; record while a "
+                        "program runs"
+                    ),
+                    minimum=LEAST,
+                )
+            ),
             "too-few-samples",
         )
     if len(lines) != len(programmed) or len(due) != len(measured):
-        raise AnalysisError("path points and line numbers do not match", "lengths-differ")
+        raise AnalysisError(
+            ("the number of path points and the number of line numbers differ"), "lengths-differ"
+        )
     if not (np.isfinite(programmed).all() and np.isfinite(measured).all()):
         raise AnalysisError(UNTOLD, "no-positions")
     if not (np.ptp(programmed, axis=0) > _SAME).any():
@@ -114,7 +125,15 @@ def of_samples(
     """
     if len(demand) < LEAST:
         raise AnalysisError(
-            (f"a path error plot needs at least {LEAST} samples of a path; record while a program runs"),
+            (
+                Message(
+                    (
+                        "a path error plot needs at least {minimum} samples of a path; record while a "
+                        "program runs"
+                    ),
+                    minimum=LEAST,
+                )
+            ),
             "too-few-samples",
         )
     if not (np.isfinite(demand).all() and np.isfinite(actual).all()):

@@ -13,6 +13,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from core.message import Message
+
 FloatArray = npt.NDArray[np.float64]
 _LATEST = 250_000_000_000.0  # s since 1970, in the year 9892: calendars end soon after
 
@@ -56,8 +58,8 @@ def channels_of(
         for letter, rotary in axes.items()
         for name, unit in AXIS_CHANNELS
     ]
-    logic = [Channel(f"input {name}", "", True) for name in inputs]
-    logic += [Channel(f"output {name}", "", True) for name in outputs]
+    logic = [Channel(Message("input {name}", name=name), "", True) for name in inputs]
+    logic += [Channel(Message("output {name}", name=name), "", True) for name in outputs]
     return (*of_axes, *MACHINE_CHANNELS, *logic)
 
 
@@ -94,15 +96,19 @@ def _is_unicode(text: str) -> bool:
 def checked_record(record: Record) -> Record:
     """Return a record from a file, with infinite values as unknown. Raises UnsoundError."""
     if not 0.0 <= record.started <= _LATEST:
-        raise UnsoundError(f"it started {record.started:g} s after 1970")
+        raise UnsoundError(
+            Message(("the start time, {started} s after 1970, is not valid"), started=f"{record.started:g}")
+        )
     if not 0.0 <= record.rate < np.inf:
-        raise UnsoundError(f"it has {record.rate:g} samples per second")
+        raise UnsoundError(
+            Message(("the sampling rate of {rate} samples per second is not valid"), rate=f"{record.rate:g}")
+        )
     if not all(text.isprintable() for channel in record.channels for text in channel[:2]):
         raise UnsoundError("a channel name is not text")
     if not all(_is_unicode(text) for each in record.about.items() for text in each):
-        raise UnsoundError("its description is not text")
+        raise UnsoundError("the description in the file is not text")
     if not np.isfinite(record.times).all() or (np.diff(record.times) < 0.0).any():
-        raise UnsoundError("its times do not increase")
+        raise UnsoundError("the sample times do not increase")
     known = {
         name: np.where(np.isinf(column), np.nan, column) if np.isinf(column).any() else column
         for name, column in record.columns.items()

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from core.coded_error import CodedError
 from core.input_file import MB, TooLargeError
+from core.message import Message
 from core.records.record import UnsoundError
 
 
@@ -28,18 +29,25 @@ MOST_BYTES = 512 * MB
 def damage(path: Path, error: Exception) -> RecordError:
     """Return the error for a file whose content is not as it was written."""
     if isinstance(error, UnsoundError):
-        return RecordError(f"{path} is damaged ({error}); open another record", "damaged")
-    return RecordError(f"{path} is damaged; open another record", "damaged")
+        return RecordError(
+            Message("{path} is damaged ({error}); open another record", path=path, error=error), "damaged"
+        )
+    return RecordError(Message("{path} is damaged; open another record", path=path), "damaged")
 
 
 def why(path: Path, error: OSError) -> RecordError:
     """The same as a sentence."""
     if isinstance(error, TooLargeError):
         return RecordError(
-            f"{path}: {error.strerror}, so it is not a scope record; check the file name", "too-large"
+            Message(
+                "{path}: {cause}, so the file is not a scope record; check the file name",
+                path=path,
+                cause=error.strerror,
+            ),
+            "too-large",
         )
     if error.errno in _FULL:
-        return RecordError(f"{path}: the disk is full; free space on it", "disk-full")
+        return RecordError(Message("{path}: the disk is full; free up disk space", path=path), "disk-full")
     if isinstance(error, FileNotFoundError):
-        return RecordError(f"{path}: file not found", "not-found")
-    return RecordError(f"{path}: {error.strerror or error}", "unusable")
+        return RecordError(Message("{path}: file not found", path=path), "not-found")
+    return RecordError(Message("{path}: {cause}", path=path, cause=error.strerror or error), "unusable")

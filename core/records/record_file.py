@@ -19,6 +19,7 @@ import numpy as np
 
 from core.file_placing import put_in_place
 from core.input_file import MB, failures_as, input_bytes
+from core.message import Message
 from core.records.record import Channel, FloatArray, Record, UnsoundError, checked_record
 from core.records.record_errors import MOST_BYTES, RecordError, damage, why
 from core.records.ring_file import is_ring, read_ring
@@ -76,11 +77,15 @@ def _read(path: Path, data: io.BytesIO) -> Record:
     if not zipfile.is_zipfile(data):
         part = data.getvalue()[:2] == b"PK"
         raise RecordError(
-            f"{path} is incomplete and cannot be read"
+            Message("{path} is incomplete and cannot be read", path=path)
             if part
             else (
-                f"{path} is not a scope record; choose a file in the records folder that ends in "
-                f"{ENDING} or .ring"
+                Message(
+                    "{path} is not a scope record; choose a file in the records folder that ends in "
+                    "{ending} or .ring",
+                    path=path,
+                    ending=ENDING,
+                )
             ),
             "cut-off" if part else "not-a-record",
         )
@@ -90,13 +95,25 @@ def _read(path: Path, data: io.BytesIO) -> Record:
         warnings.simplefilter("error")  # numpy warns of arrays that it did not write itself
         if _ABOUT not in archive.files:
             raise RecordError(
-                f"{path} is not a scope record; choose a file that ends in {ENDING}", "not-a-record"
+                Message(
+                    "{path} is not a scope record; choose a file that ends in {ending}",
+                    path=path,
+                    ending=ENDING,
+                ),
+                "not-a-record",
             )
         told = json.loads(archive[_ABOUT].tobytes())
         version = told["version"]
         if version > _VERSION:
             raise RecordError(
-                (f"{path} was written by a newer TurnDesk (version {version}); open it with that version"),
+                (
+                    Message(
+                        "{path} was written by a newer TurnDesk (version {version}); open it with that "
+                        "version",
+                        path=path,
+                        version=version,
+                    )
+                ),
                 "newer-version",
             )
         return _record(told, lambda name: archive[name])
@@ -107,32 +124,44 @@ def _check_size(data: io.BytesIO) -> None:
     with zipfile.ZipFile(data) as archive:
         size = sum(each.file_size for each in archive.infolist())
     if size > MOST_BYTES:
-        raise UnsoundError(f"it has more than {MOST_BYTES // MB} MB when unpacked")
+        raise UnsoundError(
+            Message("the uncompressed file is larger than {most_bytes} MB", most_bytes=MOST_BYTES // MB)
+        )
 
 
 def _record(told: dict[str, object], column: Callable[[str], object]) -> Record:
     """Raises UnsoundError for what does not fit together, and ValueError, KeyError, TypeError."""
     channels, about = told["channels"], told["about"]
     if not isinstance(channels, list) or not isinstance(about, dict):
-        raise UnsoundError("its description has another format")
+        raise UnsoundError("the description in the file has an unknown format")
     made = tuple(Channel(str(name), str(unit), bool(logic)) for name, unit, logic in channels)
     times = np.asarray(column("times"), dtype=np.float64)
     columns: dict[str, FloatArray] = {}
     for i, channel in enumerate(made):
         found = np.asarray(column(f"column{i}"), dtype=np.float64)
         if found.shape != times.shape or times.ndim != 1:
-            raise UnsoundError(f"{channel.name} has {found.size} of {times.size} samples")
+            raise UnsoundError(
+                Message(
+                    "channel {channel} has {size} samples instead of {size2}",
+                    channel=channel.name,
+                    size=found.size,
+                    size2=times.size,
+                )
+            )
         columns[channel.name] = np.where(found == _UNKNOWN, np.nan, found) if channel.logic else found
     started, rate = told["started"], told["rate"]
     if not isinstance(started, int | float) or not isinstance(rate, int | float):
-        raise UnsoundError("it has no start time")
+        raise UnsoundError("the start time is missing")
     words = {str(name): str(text) for name, text in about.items()}
     return Record(made, times, columns, float(started), float(rate), words)
 
 
 def write_csv(record: Record, write: Callable[[str], object]) -> None:
     """The record as lines: times in s from its beginning, channels with their units; unknown is empty."""
-    names = [f"{each.name} [{each.unit}]" if each.unit else each.name for each in record.channels]
+    names = [
+        Message("{item} [{unit}]", item=each.name, unit=each.unit) if each.unit else each.name
+        for each in record.channels
+    ]
     write(",".join(["t [s]", *(name.replace(",", " ") for name in names)]) + "\n")
     columns = [record.columns[each.name] for each in record.channels]
     logic = [each.logic for each in record.channels]

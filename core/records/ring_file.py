@@ -20,6 +20,7 @@ import numpy as np
 
 from core.file_lock import lock
 from core.input_file import failures_as, open_input
+from core.message import Message
 from core.records.record import FloatArray, Record, UnsoundError, checked_record
 from core.records.record_errors import MOST_BYTES, RecordError, damage, why
 from core.records.record_ring import Recorded, Ring, Rows, record_of, sound
@@ -104,7 +105,9 @@ def _lock(file: int, path: Path) -> None:
     try:
         lock(file)
     except OSError as error:
-        raise RecordError(f"{path} is being written by another TurnDesk", "in-use") from error
+        raise RecordError(
+            Message("{path} is being written by another TurnDesk", path=path), "in-use"
+        ) from error
 
 
 def _allocate(file: int, size: int) -> None:
@@ -200,16 +203,23 @@ def _read_ring(path: Path, begin: float, end: float) -> Record:
 def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found:
     if len(start) < _START.size or not start.startswith(_MAGIC):
         raise RecordError(
-            f"{path} is not a TurnDesk record; choose a file in the records folder", "not-a-record"
+            Message("{path} is not a TurnDesk record; choose a file in the records folder", path=path),
+            "not-a-record",
         )
     _, version, length, head = _START.unpack(start)
     if version > _VERSION:
         raise RecordError(
-            (f"{path} was written by a newer TurnDesk (version {version}); open it with that version"),
+            (
+                Message(
+                    "{path} was written by a newer TurnDesk (version {version}); open it with that version",
+                    path=path,
+                    version=version,
+                )
+            ),
             "newer-version",
         )
     if not _START.size + length + 2 * _COUNTS.size <= head <= MOST_BYTES:
-        raise UnsoundError("its header has an invalid length")
+        raise UnsoundError("the file header has an invalid length")
     try:
         told = json.loads(read(length))
         recorded = Recorded(
@@ -225,7 +235,7 @@ def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found
         samples, ticks = (int(room) for room in told["rooms"])
     except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
         raise RecordError(
-            f"{path} is damaged at the start, so nothing in it can be read", "damaged"
+            Message("{path} is damaged at the start and cannot be read", path=path), "damaged"
         ) from error
     return _Found(recorded, (samples, ticks), head)
 
@@ -235,11 +245,17 @@ def _rings(path: Path, found: _Found, read: Callable[[int], bytes]) -> Iterator[
     for room, width in zip(found.rooms, widths, strict=True):
         size = room * (width + 1) * 8
         if not 0 < size <= MOST_BYTES:
-            raise UnsoundError(f"it states {room} rows")
+            raise UnsoundError(Message(("the row count in the file header, {room}, is not valid"), room=room))
         data = read(size)
         if len(data) != size:
             raise RecordError(
-                f"{path} is incomplete, with {len(data)} of {size} bytes; it cannot be read", "cut-off"
+                Message(
+                    "{path} is incomplete, with {data_count} of {size} bytes; it cannot be read",
+                    path=path,
+                    data_count=len(data),
+                    size=size,
+                ),
+                "cut-off",
             )
         yield np.frombuffer(data, dtype="<f8").reshape(room, width + 1)
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from core.message import Message
 from core.records.record_errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
@@ -46,8 +47,11 @@ def step_response(times: FloatArray, request: FloatArray, response: FloatArray, 
     if abs(way) <= 2.0 * band:
         raise AnalysisError(
             (
-                f"a step of {abs(way):.4f} is too small for the in-position window of {band:.4f}: use "
-                "a larger step"
+                Message(
+                    ("a step of {step} is too small for the in-position window of {band}; use a larger step"),
+                    step=f"{abs(way):.4f}",
+                    band=f"{band:.4f}",
+                )
             ),
             "step-too-small",
         )
@@ -95,7 +99,12 @@ def sine_response(
     cut = times <= times[0] + waves / frequency
     asked, got = (_wave(times[cut], each[cut], frequency) for each in (request, response))
     if abs(asked) < 1e-9:
-        raise AnalysisError(f"the commanded motion contains no sine wave of {frequency:g} Hz", "no-sine")
+        raise AnalysisError(
+            Message(
+                "the commanded motion contains no sine wave of {frequency} Hz", frequency=f"{frequency:g}"
+            ),
+            "no-sine",
+        )
     ratio = got / asked
     return SineResponse(frequency, abs(ratio), -math.degrees(np.angle(ratio)), abs(asked - got))
 
@@ -142,7 +151,15 @@ def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) 
 def _check(times: FloatArray, request: FloatArray, response: FloatArray) -> None:
     if len(times) < LEAST:
         raise AnalysisError(
-            (f"a response measurement needs at least {LEAST} samples, but this driver supplies too few"),
+            (
+                Message(
+                    (
+                        "a response measurement needs at least {minimum} samples, but this driver "
+                        "supplies fewer"
+                    ),
+                    minimum=LEAST,
+                )
+            ),
             "too-few-samples",
         )
     if not (np.isfinite(request).all() and np.isfinite(response).all()):

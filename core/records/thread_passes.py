@@ -100,7 +100,11 @@ def find_thread(
         runs = _alike(runs)
     if not runs:
         raise AnalysisError(
-            "no thread pass in this time range: no axis moves evenly for two spindle revolutions", "no-pass"
+            (
+                "this time range does not contain a thread pass, because no axis moves at a "
+                "steady speed for two spindle revolutions"
+            ),
+            "no-pass",
         )
     if lead is None:
         slopes = [np.polyfit(turns[a : b + 1] - turns[a], along[a : b + 1], 1)[0] for a, b, *_ in runs]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from core.message import Message
 from core.shapes.bar_lines import Bars, write_bars
 from core.shapes.code_lines import Code
 from core.shapes.shape import Filled, Shape
@@ -33,7 +34,11 @@ def _loop(filled: Filled, _setting: Setting, code: Code) -> None:
 def _checks(_filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if setting.called:
         yield Refusal(
-            "COUNT", ("This shape is in the loop of another bar: write it before or after that loop.")
+            "COUNT",
+            (
+                "A bar feed loop cannot be inside another bar feed loop: write this shape "
+                "before or after the other loop."
+            ),
         )
 
 
@@ -59,7 +64,10 @@ def _tail(filled: Filled) -> tuple[str, ...]:
 
 LOOP = Shape(
     "BAR LOOP",
-    ("feeds the bar to a stop and repeats for a number of parts: the lines that follow are the part"),
+    (
+        "feeds the bar to a stop and repeats the following lines for a number of "
+        "parts; these lines make the part"
+    ),
     (
         Field("COUNT", "PARTS", Kind.COUNT, None, most=100_000),
         Field("LONG", "BAR PER PART, WITH CUT-OFF", Kind.LENGTH),
@@ -79,8 +87,11 @@ LOOP = Shape(
 def no_chuck(setting: Setting, word: str) -> Iterator[Refusal]:
     """A machine on which a SINUMERIK program cannot open the chuck; told at this field."""
     if setting.shop.chuck is None:
-        words = "No M code of this machine opens and closes the chuck: assign two to the output collet"
-        yield Refusal(word, f"{words} under [m_codes] in the machine file.")
+        words = (
+            "This machine has no M codes that open and close the chuck: assign two M codes "
+            "to the output named collet"
+        )
+        yield Refusal(word, Message("{words} under [m_codes] in the machine file.", words=words))
 
 
 def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from core.message import Message
 from core.shapes.code_lines import Code
 from core.shapes.shape import Filled
 from core.shapes.shape_fields import Field, Kind, Refusal, Value, Values, number
@@ -91,11 +92,22 @@ def reach(filled: Filled, setting: Setting, deep: float, word: str) -> Iterator[
         yield Refusal(
             word,
             (
-                f"Depth {deep:.4g} is more than {name} reaches, {shape.length / setting.mm:.4g}. Use "
-                "a longer blade."
+                Message(
+                    "Depth {depth} is more than the reach of {name}, which is {length}. Use a longer blade.",
+                    depth=f"{deep:.4g}",
+                    name=name,
+                    length=f"{shape.length / setting.mm:.4g}",
+                )
             ),
         )
     if shape.width and abs(shape.width / setting.mm - wide) > 0.001 / setting.mm * 25.4:
         yield Refusal(
-            "WIDE", (f"{name} is {shape.width / setting.mm:.4g} wide in its tool data: enter that width.")
+            "WIDE",
+            (
+                Message(
+                    "The blade width in the tool data of {name} is {width}: enter that width.",
+                    name=name,
+                    width=f"{shape.width / setting.mm:.4g}",
+                )
+            ),
         )

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from core.message import Message
 from core.shapes import cutting_data
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import MATERIALS, Work
@@ -58,7 +59,10 @@ def _taper_checks(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
     found = triangle({word: filled.n(word) for word in ("SMALL", "LARGE", "LONG")})
     angle = found.get("ANGLE", 0.0)
     if abs(angle - filled.n("ANGLE")) > 0.01:
-        words = f"These four values do not make a taper: the angle would be {angle:.4g}. Clear one of them."
+        words = Message(
+            "These four values do not define a taper: the angle would be {angle}. Clear one of the values.",
+            angle=f"{angle:.4g}",
+        )
         yield Refusal("ANGLE", words)
     if filled.n("SMALL") < 0.0 or filled.n("LARGE") < 0.0:
         yield Refusal("SMALL", "The taper crosses the axis: check the angle and the length.")
@@ -68,9 +72,9 @@ def _taper_says(filled: Filled, _setting: Setting) -> tuple[str, ...]:
     rise, long = (filled.n("LARGE") - filled.n("SMALL")) / 2.0, filled.n("LONG")
     ratio = f"1 : {plain(long / (2.0 * rise), 4)}" if rise else "none"
     return (
-        f"slant length {plain(math.hypot(rise, long), 4)}",
-        f"included angle {plain(2.0 * filled.n('ANGLE'), 4)}°",
-        f"taper on the diameter {ratio}",
+        Message("slant length {rise}", rise=plain(math.hypot(rise, long), 4)),
+        Message("included angle {number}°", number=plain(2.0 * filled.n("ANGLE"), 4)),
+        Message("taper ratio on the diameter: {ratio}", ratio=ratio),
     )
 
 
@@ -87,7 +91,7 @@ def _taper_sketch(_filled: Filled) -> Sketch:
 
 TRIANGLE = Shape(
     "TRIANGLE",
-    "a taper: enter any three of the two diameters, the length and the angle",
+    "calculates a taper from any three of four values: the two diameters, the length and the angle",
     (
         Field("SMALL", "DIAMETER AT THE FACE", Kind.COORDINATE, _of_triangle("SMALL")),
         Field("LARGE", "DIAMETER AT THE CHUCK", Kind.COORDINATE, _of_triangle("LARGE")),
@@ -154,9 +158,11 @@ def _speed_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     yield from too_fast(filled, setting)
     rate = filled.n("RPM") * filled.n("FEED")
     if abs(rate - filled.n("RATE")) > 0.01 * max(rate, 1e-6):
-        words = (
-            f"{filled.n('RPM'):g} rpm at {filled.n('FEED'):g} per revolution is {rate:.4g} per "
-            "minute: clear one of the values."
+        words = Message(
+            "{number} rpm at {number2} per revolution is {rate} per minute: clear one of the values.",
+            number=f"{filled.n('RPM'):g}",
+            number2=f"{filled.n('FEED'):g}",
+            rate=f"{rate:.4g}",
         )
         yield Refusal("RATE", words)
 
@@ -166,8 +172,13 @@ def _speed_says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     real = filled.n("RPM") / turns if turns else 0.0
     unit = "m/min" if setting.metric else "ft/min"
     return (
-        f"G94F{plain(filled.n('RATE'), 3)} is the same feed",
-        f"S{filled.n('RPM'):.0f} gives {real:.0f} {unit} at this diameter",
+        Message("equivalent feed per minute: G94F{number}", number=plain(filled.n("RATE"), 3)),
+        Message(
+            "S{number} gives a surface speed of {real} {unit} at this diameter",
+            number=f"{filled.n('RPM'):.0f}",
+            real=f"{real:.0f}",
+            unit=unit,
+        ),
         *_depth_says(filled, setting),
     )
 
@@ -178,7 +189,7 @@ def _depth_says(filled: Filled, setting: Setting) -> Iterator[str]:
     if work in {Work.TURN, Work.BORE}:
         now = _of_material(filled.values, setting)
         depth = rough_depth(now, 0.0, filled.n("DIA"), inside=work is Work.BORE)
-        yield f"roughing passes {plain(depth, 4)} deep per side"
+        yield Message("roughing passes {depth} deep per side", depth=plain(depth, 4))
 
 
 def _speed_sketch(_filled: Filled) -> Sketch:
@@ -189,7 +200,10 @@ def _speed_sketch(_filled: Filled) -> Sketch:
 
 SPEED = Shape(
     "FEED AND SPEED",
-    ("rpm, surface speed, feed per revolution and per minute: enter some, and the others are calculated"),
+    (
+        "rpm, surface speed, feed per revolution and feed per minute: TurnDesk calculates "
+        "the values that you leave empty"
+    ),
     (
         Field("MATERIAL", "MATERIAL", Kind.CHOICE, "STEEL", tuple(MATERIALS)),
         Field("WORK", "WORK", Kind.CHOICE, Work.TURN.upper(), tuple(each.upper() for each in Work)),
@@ -234,9 +248,10 @@ def _thread_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     yield from THREAD.checks(filled, setting)
     deep = first_depth(filled)
     if abs(deep - filled.n("FIRST")) > 1e-4:
-        words = (
-            f"{filled.n('PASSES'):g} passes need a first pass depth of {plain(deep, 5)}: clear "
-            "one of the two values."
+        words = Message(
+            "{number} passes require a first pass {depth} deep: clear one of the two values.",
+            number=f"{filled.n('PASSES'):g}",
+            depth=plain(deep, 5),
         )
         yield Refusal("FIRST", words)
 
@@ -259,9 +274,13 @@ def _thread_says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     ]
     start = filled.n("CREST") - outwards * 2.0 * first
     return (
-        f"depth {plain(deep, 4)} per side, first pass {plain(first, 4)}",
-        f"the tool starts at X {plain(shown * start, 4)}",
-        f"X of each pass: {' '.join(plain(shown * x, 4) for x in at)}",
+        Message(
+            ("thread depth {depth} per side, depth of the first pass {first}"),
+            depth=plain(deep, 4),
+            first=plain(first, 4),
+        ),
+        Message("the tool starts at X {value}", value=plain(shown * start, 4)),
+        Message("X position of each pass: {value}", value=" ".join(plain(shown * x, 4) for x in at)),
     )
 
 

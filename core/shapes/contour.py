@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from core.language.source import Dialect
+from core.message import Message
 from core.shapes.shape_fields import Refusal
 from core.shapes.shape_setting import Setting
 
@@ -107,7 +108,13 @@ def contour_refusals(rows: Sequence[Row]) -> Iterator[Refusal]:
     if any(r < -SAME for _, r in there):
         number = next(n for n, (_, r) in enumerate(there, 1) if r < -SAME)
         yield Refusal(
-            row_word(number), (f"Point {number} is beyond the axis: X is a diameter and must be 0 or more.")
+            row_word(number),
+            (
+                Message(
+                    ("Point {number} is past the spindle centerline: X is a diameter and must be 0 or more."),
+                    number=number,
+                )
+            ),
         )
 
 
@@ -115,14 +122,25 @@ def _row(row: Row, number: int, begin: Point, end: Point) -> Iterator[Refusal]:
     chord = math.dist(begin, end)
     if chord < SAME:
         yield Refusal(
-            row_word(number), (f"Point {number} is the same as the previous point: enter another X or Z.")
+            row_word(number),
+            (
+                Message(
+                    "Point {number} is the same as the previous point: enter another X or Z.", number=number
+                )
+            ),
         )
     elif row.arc and chord > 2.0 * abs(row.arc) + _OFF:
         yield Refusal(
             row_word(number),
             (
-                f"The arc to point {number} spans {chord:.4f}, but with radius {abs(row.arc):g} it "
-                f"can span only {2 * abs(row.arc):.4f}: enter a larger radius."
+                Message(
+                    "The arc to point {number} spans {chord}, but with radius {arc} it can span only "
+                    "{arc2}: enter a larger radius.",
+                    number=number,
+                    chord=f"{chord:.4f}",
+                    arc=f"{abs(row.arc):g}",
+                    arc2=f"{2 * abs(row.arc):.4f}",
+                )
             ),
         )
 
@@ -130,16 +148,33 @@ def _row(row: Row, number: int, begin: Point, end: Point) -> Iterator[Refusal]:
 def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) -> Iterator[Refusal]:
     if row.chamfer < 0 or row.radius < 0:
         yield Refusal(
-            row_word(number), (f"The corner at point {number} has a size below 0: enter the correct size.")
+            row_word(number),
+            (
+                Message(
+                    "The corner at point {number} has a size below 0: enter the correct size.", number=number
+                )
+            ),
         )
     size = row.chamfer or row.radius
     if size <= 0:
         return
     if number == len(rows):
-        yield Refusal(row_word(number), (f"The corner at point {number} needs a line after it: add a point."))
+        yield Refusal(
+            row_word(number),
+            (Message("The corner at point {number} needs a line after it: add a point.", number=number)),
+        )
     elif row.arc or rows[number].arc:
         yield Refusal(
-            row_word(number), (f"Point {number} has a corner next to an arc, which the control cannot cut.")
+            row_word(number),
+            (
+                Message(
+                    (
+                        "Point {number} has a chamfer or radius next to an arc. The control can cut a "
+                        "chamfer or radius only between two straight lines."
+                    ),
+                    number=number,
+                )
+            ),
         )
     else:
         back = _set_back(row, there[number - 2], there[number - 1], there[number])
@@ -150,8 +185,15 @@ def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) 
             yield Refusal(
                 row_word(number),
                 (
-                    f"The corner at point {number} uses {back:.4f} of a line that is {room:.4f} long: "
-                    "make it smaller."
+                    Message(
+                        (
+                            "The corner at point {number} needs {back} of line length, but the line is "
+                            "only {room} long: make the corner smaller."
+                        ),
+                        number=number,
+                        back=f"{back:.4f}",
+                        room=f"{room:.4f}",
+                    )
                 ),
             )
 

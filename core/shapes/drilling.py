@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import Work
@@ -38,16 +39,28 @@ def _drill_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     deep, start, peck, across = (filled.n(word) for word in ("DEEP", "START", "PECK", "DIA"))
     if start >= deep:
         yield Refusal(
-            "START", (f"The hole starts at a depth of {start:g} and ends at {deep:g}: nothing is drilled.")
+            "START",
+            (
+                Message(
+                    "The hole starts at a depth of {start} and ends at {depth}, so nothing is drilled.",
+                    start=f"{start:g}",
+                    depth=f"{deep:g}",
+                )
+            ),
         )
     if peck and peck > deep - start + setting.near:
-        yield Refusal("PECK", (f"A peck of {peck:g} is deeper than the hole: enter 0 for no pecking."))
+        yield Refusal(
+            "PECK",
+            (Message("A peck of {peck} is deeper than the hole: enter 0 for no pecking.", peck=f"{peck:g}")),
+        )
     if not peck and deep - start > _DEEP * across:
         yield Refusal(
             "PECK",
             (
-                f"Drilling {(deep - start) / across:.1f} diameters without pecking clogs the drill: "
-                "enter a peck."
+                Message(
+                    "Drilling {depth} diameters deep without pecking clogs the drill: enter a peck depth.",
+                    depth=f"{(deep - start) / across:.1f}",
+                )
             ),
         )
     shape = setting.tool(filled.n("T"))
@@ -57,8 +70,11 @@ def _drill_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal(
             "DIA",
             (
-                f"{name} is a drill of diameter {shape.diameter / setting.mm:.4g} in its tool data: "
-                "enter that diameter."
+                Message(
+                    "The drill diameter in the tool data of {name} is {diameter}: enter that diameter.",
+                    name=name,
+                    diameter=f"{shape.diameter / setting.mm:.4g}",
+                )
             ),
         )
     yield from too_fast(filled, setting)
@@ -82,7 +98,7 @@ def _drill_sketch(_filled: Filled) -> Sketch:
 
 DRILL = Shape(
     "DRILL",
-    "a hole on the axis, drilled in one pass or with pecking",
+    "a hole on the spindle centerline, drilled in one pass or with pecking",
     (
         tool_field(ToolKind.DRILL, ToolKind.CENTRE_DRILL),
         Field("DIA", "DRILL DIAMETER", Kind.DIAMETER, _across, marked=True),

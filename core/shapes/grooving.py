@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
+from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.shapes.blade import (
     BLADE_FIELD,
@@ -124,33 +125,75 @@ def _groove_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if wide > long + 1e-9:
         yield Refusal(
             "LONG",
-            (f"The groove is {long:g} wide, narrower than the blade of {wide:g}: use a narrower blade."),
+            (
+                Message(
+                    "The groove is {long} wide, but the blade is {wide} wide: use a narrower blade.",
+                    long=f"{long:g}",
+                    wide=f"{wide:g}",
+                )
+            ),
         )
     if inside and bottom <= top:
         yield Refusal(
             "BOTTOM",
-            (f"A groove in a bore of {top:g} is cut outward, so bottom diameter {bottom:g} is too small."),
+            (
+                Message(
+                    "A groove in a bore of {top} is cut outward, so bottom diameter {bottom} is too small.",
+                    top=f"{top:g}",
+                    bottom=f"{bottom:g}",
+                )
+            ),
         )
     if not inside and bottom >= top:
         yield Refusal(
-            "BOTTOM", (f"The bottom diameter of {bottom:g} must be less than the diameter of {top:g}.")
+            "BOTTOM",
+            (
+                Message(
+                    "The bottom diameter of {bottom} must be less than the diameter of {top}.",
+                    bottom=f"{bottom:g}",
+                    top=f"{top:g}",
+                )
+            ),
         )
     yield from reach(filled, setting, abs(top - bottom) / 2.0, "BOTTOM")
     if filled.n("COUNT") > 1 and filled.n("PITCH") < long:
-        words = (
-            f"Grooves of width {long:g} overlap at a pitch of {filled.n('PITCH'):g}: enter a larger pitch."
+        words = Message(
+            "Grooves of width {long} overlap at a pitch of {number}: enter a larger pitch.",
+            long=f"{long:g}",
+            number=f"{filled.n('PITCH'):g}",
         )
         yield Refusal("PITCH", words)
     if filled.n("EDGE") >= abs(top - bottom) / 2.0:
-        yield Refusal("EDGE", "The chamfer is at least as deep as the groove: enter less.")
+        yield Refusal("EDGE", "The chamfer is at least as deep as the groove: enter a smaller chamfer.")
     over = filled.n("OVER")
     if inside and over > top:
         yield Refusal(
             "OVER",
-            (f"{over:g} is more than the bore diameter of {top:g}, so there is nothing to clear: enter 0."),
+            (
+                Message(
+                    (
+                        "Diameter {excess} is more than the bore diameter of {top}, so the tool has "
+                        "nothing to clear: enter 0."
+                    ),
+                    excess=f"{over:g}",
+                    top=f"{top:g}",
+                )
+            ),
         )
     if not inside and 0.0 < over < top:
-        yield Refusal("OVER", (f"{over:g} is less than {top:g}, so there is nothing to clear: enter 0."))
+        yield Refusal(
+            "OVER",
+            (
+                Message(
+                    (
+                        "Diameter {excess} is less than diameter {top}, so the tool has nothing to "
+                        "clear: enter 0."
+                    ),
+                    excess=f"{over:g}",
+                    top=f"{top:g}",
+                )
+            ),
+        )
     yield from _slant_checks(filled, abs(top - bottom) / 2.0)
     yield from too_fast(filled, setting)
     yield from per_rev(filled, setting, "FEED")
@@ -161,15 +204,19 @@ def _slant_checks(filled: Filled, deep: float) -> Iterator[Refusal]:
     for word in ("FANGLE", "CANGLE"):
         if filled.n(word) < 0.0:
             yield Refusal(
-                word, ("No blade can reach under a wall that overhangs the groove: enter 0 or more.")
+                word, ("A blade cannot reach under a wall that overhangs the groove: enter 0 or more.")
             )
             return
     if not any(_slants(filled)):
         return
     bottom = long - deep * sum(_slants(filled))
     if bottom < wide - 1e-9:
-        words = f"With these walls the bottom is {bottom:.4g} wide, but the blade is {wide:g} wide"
-        yield Refusal("LONG", f"{words}: use a narrower blade, or check the angles.")
+        words = Message(
+            "With these walls the groove bottom is {bottom} wide, but the blade is {wide} wide",
+            bottom=f"{bottom:.4g}",
+            wide=f"{wide:g}",
+        )
+        yield Refusal("LONG", Message("{words}: use a narrower blade, or check the angles.", words=words))
     if filled.n("EDGE"):
         yield Refusal("EDGE", "Edges of sloped walls cannot be chamfered here: enter 0.")
 
@@ -202,7 +249,10 @@ def _several(values: Values) -> bool:
 
 GROOVE = Shape(
     "GROOVE",
-    ("one or more grooves, outside, from the rear or in a bore, with broken edges, square or sloped walls"),
+    (
+        "one or more grooves on the outside, with a rear tool or in a bore, with "
+        "chamfered edges, square or sloped walls"
+    ),
     (
         tool_field(ToolKind.GROOVING),
         Field("SIDE", "SIDE", Kind.CHOICE, FRONT, (FRONT, REAR, INSIDE)),
@@ -262,18 +312,36 @@ def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if not _by_cycle(filled.values):
         return
     if filled.n("DN") == 1.0:
-        yield Refusal("DN", "D1 is the corner that cuts: enter D of the other corner, or 0 for G1.")
+        yield Refusal(
+            "DN",
+            (
+                "D1 is the cutting corner of the blade: enter the D number of the other "
+                "corner, or 0 to use G1 instead of CYCLE93."
+            ),
+        )
     if filled.t("SIDE") == REAR:
         yield Refusal(
-            "SIDE", ("CYCLE93 does not support a tool at negative X: set D of the other corner to 0.")
+            "SIDE",
+            (
+                "CYCLE93 does not support a tool at negative X: enter 0 as the D number of the "
+                "other blade corner."
+            ),
         )
     if filled.n("EDGE"):
         yield Refusal(
-            "EDGE", ("CYCLE93 cannot break edges here: enter 0, or set D of the other corner to 0.")
+            "EDGE",
+            (
+                "CYCLE93 cannot break these edges: enter 0, or enter 0 as the D number of the "
+                "other blade corner."
+            ),
         )
     if any(_slants(filled)):
         yield Refusal(
-            "FANGLE", ("CYCLE93 cuts only square walls here: enter 0, or set D of the other corner to 0.")
+            "FANGLE",
+            (
+                "CYCLE93 can cut only square walls here: enter 0, or enter 0 as the D number "
+                "of the other blade corner."
+            ),
         )
 
 

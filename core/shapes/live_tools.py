@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from core.language.source import Dialect
+from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.shapes import cutting_data
 from core.shapes.code_lines import Code
@@ -70,14 +71,19 @@ def _cross_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal(
             "DEEP",
             (
-                f"Depth {deep:g} is more than the diameter of {across:g}: the drill would come out on "
-                "the far side."
+                Message(
+                    "Depth {depth} is more than the diameter of {across}: the drill would come out on the "
+                    "far side.",
+                    depth=f"{deep:g}",
+                    across=f"{across:g}",
+                )
             ),
         )
     if filled.n("COUNT") > 1 and abs(filled.n("STEP")) * filled.n("COUNT") > 360.0 + 1e-6:
-        words = (
-            f"{filled.n('COUNT'):.0f} holes at {filled.n('STEP'):g}° go around the part more than "
-            "once: enter a smaller angle."
+        words = Message(
+            "{number} holes at {number2}° go around the part more than once: enter a smaller angle.",
+            number=f"{filled.n('COUNT'):.0f}",
+            number2=f"{filled.n('STEP'):g}",
         )
         yield Refusal("STEP", words)
     yield from too_deep(filled, setting)
@@ -102,7 +108,7 @@ def _cross_sketch(_filled: Filled) -> Sketch:
 
 CROSS = Shape(
     "CROSS DRILL",
-    ("holes from the side, all around the part, with the spindle stopped in position"),
+    ("radial holes around the part, drilled with the spindle stopped in position"),
     (
         tool_field(ToolKind.DRILL, ToolKind.END_MILL),
         Field("SIDE", "SIDE", Kind.CHOICE, FRONT, (FRONT, REAR)),
@@ -158,17 +164,33 @@ def _flats_checks(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
     if across >= stock:
         yield Refusal(
             "ACROSS",
-            (f"{across:g} across flats is not less than the part diameter of {stock:g}: nothing is cut."),
+            (
+                Message(
+                    "{across} across flats is not less than the part diameter of {stock}, so nothing is cut.",
+                    across=f"{across:g}",
+                    stock=f"{stock:g}",
+                )
+            ),
         )
     corner = across / math.cos(math.pi / many) if many > 2 else 0.0
     if many > 2 and corner > stock + 1e-9 and filled.t("CORNERS") == "SHARP":
-        words = (
-            f"{many} flats of {across:g} have corners at diameter {corner:.4f}, but the part "
-            f"diameter is {stock:g}"
+        words = Message(
+            (
+                "{many} flats at {across} across flats have corners at diameter {corner}, but "
+                "the part diameter is {stock}"
+            ),
+            many=many,
+            across=f"{across:g}",
+            corner=f"{corner:.4f}",
+            stock=f"{stock:g}",
         )
-        yield Refusal("ACROSS", f"{words}: enter less, or choose CORNERS ROUND.")
+        yield Refusal(
+            "ACROSS", Message("{words}: enter a smaller value, or choose CORNERS ROUND.", words=words)
+        )
     if filled.n("DEEP") > filled.n("LONG"):
-        yield Refusal("DEEP", ("The depth per pass is more than the length of the flats: enter less."))
+        yield Refusal(
+            "DEEP", ("The depth per pass is more than the length of the flats: enter a smaller depth.")
+        )
 
 
 def _flats_sketch(filled: Filled) -> Sketch:
@@ -247,8 +269,14 @@ def _slot_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal(
             "DEEP",
             (
-                f"Depth {filled.n('DEEP'):g} goes past the axis of a part of diameter "
-                f"{filled.n('FROM'):g}: enter less."
+                Message(
+                    (
+                        "Depth {number} goes past the axis of a part of diameter {number2}: enter a "
+                        "smaller depth."
+                    ),
+                    number=f"{filled.n('DEEP'):g}",
+                    number2=f"{filled.n('FROM'):g}",
+                )
             ),
         )
     if not filled.n("LONG") and not filled.n("TURN"):
@@ -256,7 +284,9 @@ def _slot_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
             "LONG", ("The slot has no length: enter its length along Z, or its angle around the part.")
         )
     if filled.n("PASS") > filled.n("DEEP"):
-        yield Refusal("PASS", ("The depth per pass is more than the slot depth: enter less."))
+        yield Refusal(
+            "PASS", ("The depth per pass is more than the slot depth: enter a smaller depth per pass.")
+        )
     yield from too_deep(filled, setting)
 
 
@@ -307,11 +337,16 @@ def _live_checks(checks: Checks) -> Checks:
         if not setting.shop.third_axis:
             yield Refusal("T", ("This machine has no third axis that holds and turns the part."))
         elif setting.shop.third_axis.startswith("Y") and filled.shape.name != CROSS.name:
-            words = "The third axis of this machine is named Y, but this plane needs a separate Y"
-            yield Refusal("T", f"{words}: mill this shape on another machine.")
+            words = "The third axis of this machine is named Y, but this plane needs a separate Y axis"
+            yield Refusal("T", Message("{words}: mill this shape on another machine.", words=words))
         elif not setting.shop.live_output:
-            words = "No output of this machine drives a live tool"
-            yield Refusal("T", f"{words}: name an output live under [io.out] in the machine file.")
+            words = "This machine has no output that drives a live tool"
+            yield Refusal(
+                "T",
+                Message(
+                    "{words}: define an output named live under [io.out] in the machine file.", words=words
+                ),
+            )
         yield from checks(filled, setting)
 
     return checked

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.shapes.blade import BLADE_FIELD, CORNER_FIELD, FREE, FRONT, REAR, Blade, reach, side_of
 from core.shapes.code_lines import Code
@@ -53,13 +54,27 @@ def _part_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if end >= top:
         yield Refusal(
             "TO",
-            (f"Parting off starts at diameter {top:g} and runs inward: end diameter {end:g} must be less."),
+            (
+                Message(
+                    "Parting off starts at diameter {top} and runs inward: end diameter {end} must be less.",
+                    top=f"{top:g}",
+                    end=f"{end:g}",
+                )
+            ),
         )
     for word in ("BACK", "NEXT"):
         if filled.n(word) >= (top - end) / 2.0 > 0.0:
-            yield Refusal(word, (f"A chamfer of {filled.n(word):g} removes the whole wall: enter less."))
+            yield Refusal(
+                word,
+                (
+                    Message(
+                        "A chamfer of {word} removes the whole wall: enter a smaller chamfer.",
+                        word=f"{filled.n(word):g}",
+                    )
+                ),
+            )
     if filled.n("BACK") > filled.n("LONG"):
-        yield Refusal("BACK", "The chamfer is longer than the part: enter less.")
+        yield Refusal("BACK", "The chamfer is longer than the part: enter a smaller chamfer.")
     yield from reach(filled, setting, (top - end) / 2.0, "FROM")
     yield from too_fast(filled, setting)
     yield from per_rev(filled, setting, "FEED")
@@ -86,7 +101,7 @@ def _part_sketch(_filled: Filled) -> Sketch:
 
 PART_OFF = Shape(
     "PART OFF",
-    "to the center or to a bore, with chamfers on both sides of the cut",
+    "parts off to the center or to a bore, with chamfers on both sides of the cut",
     (
         tool_field(ToolKind.PARTING, ToolKind.GROOVING),
         Field("SIDE", "SIDE", Kind.CHOICE, FRONT, (FRONT, REAR)),

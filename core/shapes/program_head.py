@@ -50,7 +50,7 @@ def _sketch(_filled: Filled) -> Sketch:
 
 HEAD = Shape(
     "HEAD",
-    "the start of the program: unit, diameters, rapid, material",
+    "the start of the program: units, diameter programming, rapid rates, material",
     (
         Field("UNIT", "UNIT", Kind.CHOICE, _unit, (INCH, MM)),
         Field("WORDS", "X VALUES", Kind.CHOICE, DIAMETER, (DIAMETER, RADIUS)),

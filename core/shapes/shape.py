@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from core.language.source import Dialect
+from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code
 from core.shapes.contour import Row
@@ -92,11 +93,13 @@ class Filled:
         known, sheet = self.shape.field(TOOL_WORD), setting.tool(self.n(TOOL_WORD))
         if known is not None and sheet is not None and sheet.kind not in {*known.tools, ToolKind.FORM}:
             wanted = " or ".join(known.tools)
-            text = (
-                f"T{self.n(TOOL_WORD):.0f} is of type {sheet.kind} in its tool data, but this shape "
-                f"needs {wanted}"
+            text = Message(
+                "The tool data of T{tool_word} specifies the type {kind}, but this shape needs {expected}",
+                tool_word=f"{self.n(TOOL_WORD):.0f}",
+                kind=sheet.kind,
+                expected=wanted,
             )
-            yield Refusal(TOOL_WORD, f"{text}: enter another tool.")
+            yield Refusal(TOOL_WORD, Message("{what}: enter another tool.", what=text))
 
     def lines(self, setting: Setting) -> list[str]:
         """The lines with their comment; without a complete set of fields they mean nothing."""

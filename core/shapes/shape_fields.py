@@ -8,6 +8,8 @@ from enum import StrEnum
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple
 
+from core.message import Message
+
 if TYPE_CHECKING:
     from core.shapes.shape_setting import Setting
 
@@ -84,21 +86,40 @@ class Field:
     def _wrong_word(self, value: str | None) -> str:
         if value is None:
             if self.kind is Kind.NAME:
-                return f"{self.label} is missing: enter it, or choose one with the arrows."
-            return f"{self.label} is missing: enter it."
+                return Message(
+                    "{label} is missing: enter a value, or choose one with the arrows.",
+                    label=Message(self.label),
+                )
+            return Message("{label} is missing: enter a value.", label=Message(self.label))
         if self.choices and value not in self.choices:
-            return f"{self.label} {value} is not one of {', '.join(self.choices)}: choose one of these."
+            return Message(
+                "{label} {value} is not valid: choose one of {choices}.",
+                label=Message(self.label),
+                value=value,
+                choices=", ".join(self.choices),
+            )
         return ""
 
     def _wrong_number(self, value: float) -> str:
         if self.kind in WHOLE and value != int(value):
-            return f"{self.label} {value:g} is not a whole number: enter one such as 1, 2 or 3."
+            return Message(
+                "{label} {value} is not a whole number: enter a number such as 1, 2 or 3.",
+                label=Message(self.label),
+                value=f"{value:g}",
+            )
         if value > self.most:
-            return f"{self.label} {value:g} is more than {self.most:g}: enter less."
+            return Message(
+                "{label} {value} is more than {maximum}: enter a smaller value.",
+                label=Message(self.label),
+                value=f"{value:g}",
+                maximum=f"{self.most:g}",
+            )
         if self.kind in {Kind.COORDINATE, Kind.ANGLE}:
             return ""
         if value < 0.0 or (value == 0.0 and not self.zero):
-            return f"{self.label} is {value:g}, but must be more than 0."
+            return Message(
+                "{label} is {value}, but must be more than 0.", label=Message(self.label), value=f"{value:g}"
+            )
         return ""
 
 

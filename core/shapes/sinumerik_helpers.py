@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from core.message import Message
 from core.shapes.bar_lines import Bars, write_bars
 from core.shapes.bar_work import SINUMERIK_LOOP, no_chuck
 from core.shapes.calculators import SPEED, THREADS
@@ -29,7 +30,7 @@ def _speed(filled: Filled, _setting: Setting, code: Code) -> None:
 def _speed_says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     """The feed a minute as it is written here."""
     _, *others = SPEED.says(filled, setting)
-    return f"G94 F{figure(filled.n('RATE'), 3)} is the same feed", *others
+    return Message("equivalent feed per minute: G94 F{number}", number=figure(filled.n("RATE"), 3)), *others
 
 
 def _run_up(filled: Filled, setting: Setting) -> Filled:
@@ -81,6 +82,9 @@ SINUMERIK_THREADS = replace(THREADS, cut=_passes, says=_passes_say)
 SINUMERIK_START = replace(START, fields=SINUMERIK_HEAD.fields, cut=SINUMERIK_HEAD.cut)
 SINUMERIK_ROUGH = replace(ROUGH, name="CYCLE95 ROUGHING", cut=_rough, fields=(*ROUGH.fields, LABEL))
 SINUMERIK_THREADING = replace(
-    THREADING, name="THREAD CYCLE97", use="tool, run-up, passes with constant chip area", cut=_thread
+    THREADING,
+    name="THREAD CYCLE97",
+    use=("tool, lead-in, passes with constant chip cross-section"),
+    cut=_thread,
 )
 SINUMERIK_BAR_FEED = replace(BAR_FEED, cut=_bar_feed, checks=_bar_feed_checks, ends=SINUMERIK_LOOP.ends)

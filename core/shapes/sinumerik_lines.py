@@ -5,6 +5,7 @@ Grooves are cut by G1, or by CYCLE93 where the form is told the second cutting e
 
 from __future__ import annotations
 
+from core.message import Message
 from core.shapes.code_lines import Along, Code, Tap
 from core.shapes.contour import points
 from core.shapes.number_words import figure, with_zero
@@ -108,7 +109,15 @@ class SinumerikCode(Code):
         if way.rough:
             fast = figure(way.rough_feed, 6)
             words = f"{figure(way.rough)}, , , {figure(way.leave)}, {fast}, {fast}"
-            self.write(f'CYCLE95("{name}:{name}_END", {words}, , {3 if way.inside else 1})')
+            self.write(
+                Message(
+                    'CYCLE95("{name}:{name2}_END", {words}, , {value})',
+                    name=name,
+                    name2=name,
+                    words=words,
+                    value=3 if way.inside else 1,
+                )
+            )
             self.forget()
             self.rapid(x, z + self.setting.near)
         if way.offset:
@@ -138,7 +147,9 @@ class SinumerikCode(Code):
         planes = f"{figure(near)}, {figure(-start)}, {figure(near / 2.0)}, {figure(end)}"
         self.write(f"G17 {self._fresh(feed)}".rstrip())
         if peck:
-            self.write(f"CYCLE83({planes}, , , {figure(peck)}, 0, 0, 0, 1, 1)")
+            self.write(
+                Message("CYCLE83({planes}, , , {peck}, 0, 0, 0, 1, 1)", planes=planes, peck=figure(peck))
+            )
         else:
             self.write(f"CYCLE81({planes})")
         self.write("G18")
@@ -151,9 +162,18 @@ class SinumerikCode(Code):
         self.write("G17")
         if tap.rigid:
             lead, speed = tap.pitch * (-1.0 if tap.into == "M04" else 1.0), figure(tap.rpm, 0)
-            self.write("M5", f"CYCLE84({hole}, 5, , {figure(lead, 6)}, 0, {speed}, {speed})")
+            self.write(
+                "M5",
+                Message(
+                    "CYCLE84({hole}, 5, , {lead}, 0, {speed}, {speed2})",
+                    hole=hole,
+                    lead=figure(lead, 6),
+                    speed=speed,
+                    speed2=speed,
+                ),
+            )
         else:
-            self.write(f"CYCLE840({hole}, 0, , 0, , {figure(tap.pitch, 6)})")
+            self.write(Message("CYCLE840({hole}, 0, , 0, , {pitch})", hole=hole, pitch=figure(tap.pitch, 6)))
         self.write("G18")
         self.forget()
 
@@ -161,7 +181,9 @@ class SinumerikCode(Code):
 
     def surface_speed(self, surface: float, most: float) -> None:
         """Constant surface speed up to ``most`` rpm."""
-        self.write(f"G96 S{figure(surface, 0)} LIMS={figure(most, 0)}")
+        self.write(
+            Message("G96 S{surface} LIMS={maximum}", surface=figure(surface, 0), maximum=figure(most, 0))
+        )
 
     def constant_speed(self) -> None:
         """Back to rpm, before another tool."""

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
+from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code, Tap
 from core.shapes.cutting_data import Work, rpm
@@ -71,27 +72,62 @@ def _tap(filled: Filled, setting: Setting, code: Code) -> None:
 def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     series, pitch = series_of(filled.values), filled.n("PITCH")
     if series in TAPERED or series is Series.ACME:
-        yield Refusal("SERIES", f"{series} cannot be tapped here: cut it with G33.")
+        yield Refusal(
+            "SERIES", Message("{series} cannot be tapped here: cut the thread with G33.", series=series)
+        )
     if pitch * setting.mm / 25.4 > _COARSEST:
         most = _COARSEST * 25.4 / setting.mm
         yield Refusal(
-            "PITCH", (f"A pitch of {pitch:g} is more than the largest feed, {most:g}: cut it with G33.")
+            "PITCH",
+            (
+                Message(
+                    "A pitch of {pitch} is more than the largest feed, {maximum}: cut the thread with G33.",
+                    pitch=f"{pitch:g}",
+                    maximum=f"{most:g}",
+                )
+            ),
         )
     if filled.n("SHORT") >= filled.n("DEEP") and not _rigid(filled.values):
         yield Refusal(
             "SHORT",
-            (f"The tap stops {filled.n('SHORT'):g} short of depth {filled.n('DEEP'):g}: nothing is cut."),
+            (
+                Message(
+                    "The tap would stop {number} short of depth {number2}, so nothing is cut.",
+                    number=f"{filled.n('SHORT'):g}",
+                    number2=f"{filled.n('DEEP'):g}",
+                )
+            ),
         )
     speed = pitch * filled.n("RPM") * setting.mm / 25.4
     if speed > 300.0:
         yield Refusal(
             "RPM",
-            (f"At S{filled.n('RPM'):g} the axis needs {speed:.0f} in/min, but its limit is 300: enter less."),
+            (
+                Message(
+                    (
+                        "At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: "
+                        "enter a lower speed."
+                    ),
+                    number=f"{filled.n('RPM'):g}",
+                    speed=f"{speed:.0f}",
+                )
+            ),
         )
     shape, name = setting.tool(filled.n("T")), f"T{filled.n('T'):.0f}"
     if shape is not None and shape.pitch and abs(shape.pitch / setting.mm - pitch) > 0.01 * pitch:
-        words = f"{name} has a pitch of {shape.pitch / setting.mm:.5g} in its tool data"
-        yield Refusal("T", f"{words}, but this thread has {pitch:.5g}: use another tap.")
+        words = Message(
+            "The tool data of {name} specifies a pitch of {pitch}",
+            name=name,
+            pitch=f"{shape.pitch / setting.mm:.5g}",
+        )
+        yield Refusal(
+            "T",
+            Message(
+                "{words}, but this thread has a pitch of {pitch}: use another tap.",
+                words=words,
+                pitch=f"{pitch:.5g}",
+            ),
+        )
     yield from too_deep(filled, setting)
     yield from too_fast(filled, setting)
 
@@ -103,17 +139,30 @@ def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     series = series_of(filled.values)
     places, unit = (2 if setting.metric else 4), in_unit(1.0, series, metric=setting.metric)
     least, most = (plain(value * unit, places) for value in known.minor)
-    told = f"hole before tapping: {plain(known.crest * unit, places)}, from {least} to {most}"
+    told = Message(
+        "hole diameter before tapping: {crest}; limits {minimum} to {maximum}",
+        crest=plain(known.crest * unit, places),
+        minimum=least,
+        maximum=most,
+    )
     drill = drill_for(*known.minor, metric=series in METRIC)
-    return (told,) if drill is None else (told, f"tap drill: {_called(*drill, series, setting)}")
+    return (
+        (told,)
+        if drill is None
+        else (told, Message("tap drill: {series}", series=_called(*drill, series, setting)))
+    )
 
 
 def _called(name: str, size: float, series: Series, setting: Setting) -> str:
     """By its name, and its size in the unit of the program where the name is another."""
     size = in_unit(size, series, metric=setting.metric)
     shown = plain(size, 3 if setting.metric else 4)
-    named = f"{name} mm" if series in METRIC else name
-    return named if series in METRIC and setting.metric else f"{named}, {shown}"
+    named = Message("{unit} mm", unit=name) if series in METRIC else name
+    return (
+        named
+        if series in METRIC and setting.metric
+        else Message("{named}, {value}", named=named, value=shown)
+    )
 
 
 def _usual_class(filled: Filled) -> str:
@@ -131,7 +180,7 @@ def _sketch(_filled: Filled) -> Sketch:
 
 TAP = Shape(
     "TAP",
-    "tapping on the axis: feed in, reverse the spindle, feed out at the pitch",
+    "tapping on the spindle centerline: feed in, reverse the spindle, feed out at the pitch",
     (
         tool_field(ToolKind.TAP),
         Field("SERIES", "SERIES", Kind.CHOICE, Series.UNC.value, tuple(each.value for each in Series)),
@@ -164,12 +213,22 @@ def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if not _rigid(filled.values):
         return
     if not setting.shop.spindle_is_c:
-        words = "The spindle of this machine cannot be positioned and turned together with Z"
-        yield Refusal("HOLDER", f"{words}: use a floating tap holder.")
+        words = "The spindle of this machine cannot be positioned and turned in sync with Z"
+        yield Refusal("HOLDER", Message("{words}: use a floating tap holder.", words=words))
     elif filled.n("RPM") > setting.shop.c_rpm:
         most = f"{setting.shop.c_rpm:g}"
         yield Refusal(
-            "RPM", (f"A rigid tap turns with the C axis, which reaches {most} rpm: enter {most} or less.")
+            "RPM",
+            (
+                Message(
+                    (
+                        "A rigid tap turns with the C axis, which reaches {maximum} rpm: enter "
+                        "{maximum2} or less."
+                    ),
+                    maximum=most,
+                    maximum2=most,
+                )
+            ),
         )
 
 

@@ -84,11 +84,16 @@ def _loop_sketch(_filled: Filled) -> Sketch:
 
 
 START = Shape(
-    "START OF PROGRAM", "unit, diameters, rapid, coolant", HEAD.fields, HEAD.cut, HEAD.sketch, noted=False
+    "START OF PROGRAM",
+    ("units, diameter programming, rapid rates, coolant"),
+    HEAD.fields,
+    HEAD.cut,
+    HEAD.sketch,
+    noted=False,
 )
 TOOL_CHANGE = Shape(
     "TOOL CHANGE",
-    "retract, tool, spindle, move to the part",
+    "retracts, changes the tool, starts the spindle and moves to the part",
     (_TOOL, _SPEED, _ACROSS),
     _change,
     _bar,
@@ -109,7 +114,7 @@ ROUGH = Shape(
 )
 THREADING = Shape(
     "THREAD G33",
-    "tool, run-up, passes with constant chip area, pull-out",
+    "tool, lead-in, passes with constant chip cross-section, pull-out",
     (
         _TOOL,
         _SPEED,
@@ -123,7 +128,7 @@ THREADING = Shape(
 )
 BAR_FEED = Shape(
     "BAR FEED LOOP",
-    "a stop, the collet opens, the bar feeds; the part is a subroutine",
+    "positions a stop, opens the collet and feeds the bar; the part program is a subroutine",
     (
         Field("COUNT", "PARTS", Kind.COUNT, 10.0, most=100_000),
         _TOOL,

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 from core.language.source import Dialect
+from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Code
 from core.shapes.cutting_data import Work, rpm
@@ -240,12 +241,34 @@ def _says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     if series_of(filled.values) in TAPERED:
         far = plain(_far(filled), places)
         return (
-            f"pitch diameter {low} at the start",
-            (f"taper before threading: {plain(filled.n('CREST'), places)} at the start, {far} at the end"),
+            Message("pitch diameter {low} at the start of the thread", low=low),
+            (
+                Message(
+                    "taper before threading: diameter {number} at the start, {distance} at the end",
+                    number=plain(filled.n("CREST"), places),
+                    distance=far,
+                )
+            ),
         )
     if inside:
-        return (f"minor diameter {least} to {most}, pitch diameter {low} to {high}",)
-    return (f"major diameter {least} to {most}, pitch diameter {low} to {high}",)
+        return (
+            Message(
+                "minor diameter {minimum} to {maximum}, pitch diameter {low} to {high}",
+                minimum=least,
+                maximum=most,
+                low=low,
+                high=high,
+            ),
+        )
+    return (
+        Message(
+            "major diameter {minimum} to {maximum}, pitch diameter {low} to {high}",
+            minimum=least,
+            maximum=most,
+            low=low,
+            high=high,
+        ),
+    )
 
 
 def _coarse_step(filled: Filled, setting: Setting) -> float:
@@ -265,20 +288,40 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if inside and root <= crest:
         yield Refusal(
             "ROOT",
-            (f"An inside thread is cut outward, so the last pass at {root:g} must be more than {crest:g}."),
+            (
+                Message(
+                    (
+                        "An internal thread is cut outward, so the diameter at the last pass, {root}, "
+                        "must be larger than the diameter before threading, {crest}."
+                    ),
+                    root=f"{root:g}",
+                    crest=f"{crest:g}",
+                )
+            ),
         )
     if not inside and root >= crest:
         yield Refusal(
             "ROOT",
-            (f"An outside thread is cut inward, so the last pass at {root:g} must be less than {crest:g}."),
+            (
+                Message(
+                    (
+                        "An external thread is cut inward, so the diameter at the last pass, {root}, "
+                        "must be smaller than the diameter before threading, {crest}."
+                    ),
+                    root=f"{root:g}",
+                    crest=f"{crest:g}",
+                )
+            ),
         )
     sharp = pitch / 2.0 / math.tan(math.radians(flank_angle(filled.values, setting) / 2.0))
     if filled_depth(filled) > 1.02 * sharp:
-        words = (
-            f"The thread is {filled_depth(filled):.4f} deep, but at a pitch of {pitch:.5g} its "
-            f"flanks meet at a depth of {sharp:.4f}"
+        words = Message(
+            "The thread is {filled} deep, but at a pitch of {pitch} its flanks meet at a depth of {sharp}",
+            filled=f"{filled_depth(filled):.4f}",
+            pitch=f"{pitch:.5g}",
+            sharp=f"{sharp:.4f}",
         )
-        yield Refusal("ROOT", f"{words}. Check both diameters.")
+        yield Refusal("ROOT", Message("{words}. Check both diameters.", words=words))
     if setting.dialect is Dialect.OMNITURN:
         yield from _lead_checks(filled, setting)
     pulls = filled.t("PULL") == YES or filled.shape.field("RELIEF") is None
@@ -293,11 +336,15 @@ def _flank_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     """Passes that come in flatter than the flank cut away what the last one leaves."""
     angle, flank = filled.n("INFEED"), flank_angle(filled.values, setting) / 2.0
     if angle > flank + 1e-9:
-        words = (
-            f"An infeed angle of {angle:g}° is more than the flank angle of {flank:g}°, so the "
-            "first passes would cut into the flank"
+        words = Message(
+            "An infeed angle of {angle}° is more than the flank angle of {flank}°, so the first "
+            "passes would cut into the flank",
+            angle=f"{angle:g}",
+            flank=f"{flank:g}",
         )
-        yield Refusal("INFEED", f"{words}. Enter {math.floor(flank):g} or less.")
+        yield Refusal(
+            "INFEED", Message("{words}. Enter {flank} or less.", words=words, flank=f"{math.floor(flank):g}")
+        )
 
 
 def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
@@ -306,7 +353,13 @@ def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if inch > _COARSE[2]:
         yield Refusal(
             "PITCH",
-            (f"A lead of {lead:g} is more than the control can cut, {_COARSE[2] / setting.mm * 25.4:g}."),
+            (
+                Message(
+                    "A lead of {lead} is more than the maximum that the control can cut, {coarse}.",
+                    lead=f"{lead:g}",
+                    coarse=f"{_COARSE[2] / setting.mm * 25.4:g}",
+                )
+            ),
         )
     speed = inch * filled.n("RPM")
     if speed > 300.0:
@@ -314,13 +367,20 @@ def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal(
             "RPM",
             (
-                f"At S{filled.n('RPM'):g} the axis needs {speed:.0f} in/min, but its limit is 300: "
-                f"enter S{slow} or less."
+                Message(
+                    (
+                        "At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: "
+                        "enter S{slow} or less."
+                    ),
+                    number=f"{filled.n('RPM'):g}",
+                    speed=f"{speed:.0f}",
+                    slow=slow,
+                )
             ),
         )
     turns = math.sqrt(filled_depth(filled) / max(first_depth(filled), 1e-9))
     if turns > 60:
-        yield Refusal("PASSES", "This thread needs more than 60 passes: enter fewer.")
+        yield Refusal("PASSES", "This thread needs more than 60 passes: reduce the number of passes.")
 
 
 def _relief(filled: Filled) -> Iterator[Refusal]:
@@ -337,7 +397,14 @@ def _relief(filled: Filled) -> Iterator[Refusal]:
         yield Refusal("RELIEF", text_)
     elif relief < 1.5 * lead:
         yield Refusal(
-            "RELIEF", (f"A relief width of {relief:g} is less than 1.5 times the lead, {1.5 * lead:.4g}.")
+            "RELIEF",
+            (
+                Message(
+                    "A relief width of {relief} is less than {lead}, which is 1.5 times the lead.",
+                    relief=f"{relief:g}",
+                    lead=f"{1.5 * lead:.4g}",
+                )
+            ),
         )
 
 
@@ -347,13 +414,32 @@ def _by_sheet(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         return
     angle = flank_angle(filled.values, setting)
     if shape.kind is ToolKind.THREADING and shape.point and abs(shape.point - angle) > 0.5:
-        words = f"{name} cuts {shape.point:g}°, but this thread has {angle:g}°: use another insert."
+        words = Message(
+            "{name} cuts a thread angle of {point}°, but this thread needs {angle}°: use another insert.",
+            name=name,
+            point=f"{shape.point:g}",
+            angle=f"{angle:g}",
+        )
         yield Refusal("T", words)
     if shape.pitch and abs(shape.pitch / setting.mm - filled.n("PITCH")) > 0.02 * filled.n("PITCH"):
-        words = f"{name} is made for a pitch of {shape.pitch / setting.mm:.5g}"
-        yield Refusal("T", f"{words}, not {filled.n('PITCH'):.5g}: use another insert.")
+        words = Message(
+            "{name} is made for a pitch of {pitch}", name=name, pitch=f"{shape.pitch / setting.mm:.5g}"
+        )
+        yield Refusal(
+            "T",
+            Message(
+                "{words}, not {number}: use another insert.", words=words, number=f"{filled.n('PITCH'):.5g}"
+            ),
+        )
     if filled.t("SIDE") == INSIDE and shape.diameter and shape.diameter / setting.mm > filled.n("CREST"):
-        yield Refusal("T", f"The bar of {name} does not fit into a bore of {filled.n('CREST'):g}.")
+        yield Refusal(
+            "T",
+            Message(
+                "The bar of {name} does not fit into a bore of {number}.",
+                name=name,
+                number=f"{filled.n('CREST'):g}",
+            ),
+        )
 
 
 def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
@@ -361,10 +447,24 @@ def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
     series, allowed = series_of(filled.values), class_choices(filled.values)
     size, tolerance = filled.t("SIZE"), filled.t("CLASS")
     if series is not Series.OWN and size and size_of(series, size) is None:
-        yield Refusal("SIZE", f"{series} has no size {size}: choose one with the arrows.")
+        yield Refusal(
+            "SIZE",
+            Message(
+                "{series} does not include size {size}: choose a size with the arrows.",
+                series=series,
+                size=size,
+            ),
+        )
     elif filled.shape.field("CLASS") is not None and allowed and tolerance not in allowed:
         yield Refusal(
-            "CLASS", (f"CLASS {tolerance} is not one of {', '.join(allowed)}: choose one of these.")
+            "CLASS",
+            (
+                Message(
+                    "CLASS {tolerance} is not valid: choose one of {allowed}.",
+                    tolerance=tolerance,
+                    allowed=", ".join(allowed),
+                )
+            ),
         )
 
 
@@ -405,7 +505,7 @@ _ALL_CLASSES = tuple(
 
 THREAD = Shape(
     "THREAD",
-    "by series, size and class: UNC, UNF, M, NPT, BSP, ACME, or custom dimensions",
+    "a thread defined by series, size and class (UNC, UNF, M, NPT, BSP, ACME) or by custom dimensions",
     (
         tool_field(ToolKind.THREADING),
         Field("SERIES", "SERIES", Kind.CHOICE, Series.UNC.value, tuple(each.value for each in Series)),

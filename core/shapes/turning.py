@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from core.language.source import Dialect
+from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.shapes.code_lines import Along, Code
 from core.shapes.contour import SAME, Row, contour_refusals, outline, points, row_word
@@ -77,7 +78,7 @@ def _leave(values: Values, setting: Setting) -> Value | None:
 _ROUGH = Field("ROUGH", "ROUGHING DEPTH OF CUT", Kind.LENGTH, _depth, zero=True)
 _LEAVE = Field("LEAVE", "FINISHING ALLOWANCE", Kind.LENGTH, _leave, zero=True, only=_roughs)
 _RFEED = feed_field(Work.TURN, "RFEED", "ROUGHING FEED", only=_roughs)
-_COMP = Field("COMP", "NOSE COMPENSATION D", Kind.OFFSET, 0.0, zero=True, most=32)
+_COMP = Field("COMP", "NOSE COMPENSATION: D NUMBER", Kind.OFFSET, 0.0, zero=True, most=32)
 
 
 def _next_label(_values: Values, setting: Setting) -> Value | None:
@@ -141,8 +142,12 @@ def _contour_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("ROUGH"):
         for at, (before, here) in enumerate(pairwise(there), 2):
             if here[0] > before[0] + 1e-9:
-                text_ = (
-                    f"Point {at} runs back toward the face, but roughing moves only toward the chuck along Z."
+                text_ = Message(
+                    (
+                        "Point {position} runs back toward the face, but roughing can move only toward "
+                        "the chuck along Z."
+                    ),
+                    position=at,
                 )
                 yield Refusal(row_word(at), text_)
                 break
@@ -153,7 +158,11 @@ def _contour_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         and max((r for _, r in there), default=0.0) > filled.n("FROM") / 2 + 1e-9
     ):
         at = max(range(len(there)), key=lambda n: there[n][1])
-        words = f"Point {at + 1} is outside the stock of diameter {filled.n('FROM'):g}: enter a smaller X."
+        words = Message(
+            "Point {position} is outside the stock diameter of {number}: enter a smaller X.",
+            position=at + 1,
+            number=f"{filled.n('FROM'):g}",
+        )
         yield Refusal(row_word(at + 1), words)
 
 
@@ -161,13 +170,30 @@ def _falls_at_once(there: Sequence[tuple[float, float]], *, inside: bool) -> Ite
     """Roughing comes back across a contour that leads into the metal from its first point on."""
     side = -1.0 if inside else 1.0
     if len(there) > 1 and there[1][0] < there[0][0] - SAME and side * (there[0][1] - there[1][1]) > SAME:
-        words = "The contour drops from its first point, and roughing cannot return past that point"
-        yield Refusal(row_word(1), (f"{words}: add a point before it at the same Z and at the lowest X."))
+        words = (
+            "The contour cuts deeper directly after its first point, and roughing cannot "
+            "return past that point"
+        )
+        yield Refusal(
+            row_word(1),
+            (
+                Message(
+                    "{words}: add a point before the first point, at the same Z and at the lowest X.",
+                    words=words,
+                )
+            ),
+        )
 
 
 def _compensated(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("COMP") and setting.called and setting.dialect is Dialect.OMNITURN:
-        yield Refusal("COMP", ("G41 does not work in a subroutine, and a bar loop is one: enter 0."))
+        yield Refusal(
+            "COMP",
+            (
+                "G41 does not work in a subroutine, and a bar feed loop runs this shape in a "
+                "subroutine: enter 0."
+            ),
+        )
 
 
 def _cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
@@ -176,7 +202,15 @@ def _cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     rough, leave = filled.n("ROUGH"), filled.n("LEAVE")
     if rough and leave >= rough:
         yield Refusal(
-            "LEAVE", (f"A finishing allowance of {leave:g} is more than a pass of {rough:g}: enter less.")
+            "LEAVE",
+            (
+                Message(
+                    "A finishing allowance of {leave} is more than a pass of {rough}: enter a smaller "
+                    "allowance.",
+                    leave=f"{leave:g}",
+                    rough=f"{rough:g}",
+                )
+            ),
         )
     stock, end = _stock_and_end({**filled.shape.extent(filled.rows), **filled.values})
     if filled.shape.field("ROUGH") is not None:
@@ -187,10 +221,13 @@ def _too_deep(filled: Filled, setting: Setting, word: str, deep: float) -> Itera
     """Refuse a pass that is deeper than the insert takes."""
     most = most_depth(setting, filled.n("T"))
     if deep > most + SAME:
-        words = (
-            f"A pass would be {deep:.4g} deep, but the insert of T{filled.n('T'):.0f} allows only {most:.4g}"
+        words = Message(
+            "A pass would be {depth} deep, but the insert of T{number} allows a depth of only {maximum}",
+            depth=f"{deep:.4g}",
+            number=f"{filled.n('T'):.0f}",
+            maximum=f"{most:.4g}",
         )
-        yield Refusal(word, f"{words}: enter a smaller depth of cut.")
+        yield Refusal(word, Message("{words}: enter a smaller depth of cut.", words=words))
 
 
 def _turn(filled: Filled, setting: Setting, code: Code) -> None:
@@ -275,8 +312,14 @@ def _face_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal(
             "TO",
             (
-                f"Facing starts at diameter {filled.n('FROM'):g} and runs inward: end diameter "
-                f"{filled.n('TO'):g} must be less."
+                Message(
+                    (
+                        "Facing starts at diameter {number} and runs inward: end diameter {number2} "
+                        "must be less."
+                    ),
+                    number=f"{filled.n('FROM'):g}",
+                    number2=f"{filled.n('TO'):g}",
+                )
             ),
         )
     yield from too_fast(filled, setting)
@@ -345,7 +388,13 @@ def _taper_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("FROM") and filled.n("LARGE") > filled.n("FROM") + 1e-9:
         yield Refusal(
             "LARGE",
-            (f"Diameter {filled.n('LARGE'):g} is more than the stock diameter of {filled.n('FROM'):g}."),
+            (
+                Message(
+                    "Diameter {number} is more than the stock diameter of {number2}.",
+                    number=f"{filled.n('LARGE'):g}",
+                    number2=f"{filled.n('FROM'):g}",
+                )
+            ),
         )
     yield from _compensated(filled, setting)
     yield from _cutting_checks(filled, setting)
@@ -370,7 +419,7 @@ _USUAL_CONTOUR = (_ROUGH, _LEAVE, _RFEED, feed_field(Work.FINISH))
 
 TAPER = Shape(
     "TAPER TURN",
-    ("a taper from two diameters, or from a diameter and an angle"),
+    ("a taper defined by two diameters, or by one diameter and an angle"),
     (
         tool_field(ToolKind.TURNING),
         Field("FROM", "STOCK DIAMETER", Kind.DIAMETER, bar, zero=True),
@@ -409,8 +458,13 @@ def _edge_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal(
             "EDGE",
             (
-                f"An edge size of {edge:g} is more than the radius of diameter {across:g}: enter "
-                f"{across / 2:g} or less."
+                Message(
+                    "An edge size of {edge} is more than the radius of diameter {across}: enter "
+                    "{across2} or less.",
+                    edge=f"{edge:g}",
+                    across=f"{across:g}",
+                    across2=f"{across / 2:g}",
+                )
             ),
         )
     yield from _compensated(filled, setting)
@@ -429,7 +483,7 @@ def _edge_sketch(filled: Filled) -> Sketch:
 
 EDGE = Shape(
     "EDGE TURN",
-    ("an edge with a chamfer or a radius, outside or in a bore"),
+    ("a chamfer or a radius on an edge, on the outside or in a bore"),
     (
         tool_field(ToolKind.TURNING, ToolKind.BORING),
         Field("SIDE", "SIDE", Kind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
@@ -461,20 +515,54 @@ def _bore_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     across, deep, hole = filled.n("DIAM"), filled.n("DEEP"), filled.n("HOLE")
     if hole >= across:
         yield Refusal(
-            "HOLE", (f"A hole of {hole:g} is not less than the bore diameter of {across:g}: nothing is cut.")
+            "HOLE",
+            (
+                Message(
+                    "A hole of {hole} is not less than the bore diameter of {across}, so nothing is cut.",
+                    hole=f"{hole:g}",
+                    across=f"{across:g}",
+                )
+            ),
         )
     if filled.n("EDGE") >= deep:
-        yield Refusal("EDGE", (f"The chamfer is at least as long as the bore depth of {deep:g}: enter less."))
+        yield Refusal(
+            "EDGE",
+            (
+                Message(
+                    "The chamfer is at least as long as the bore depth of {depth}: enter a smaller chamfer.",
+                    depth=f"{deep:g}",
+                )
+            ),
+        )
     tool = setting.tool(filled.n("T"))
     if tool is not None and tool.diameter and tool.diameter > hole * setting.mm:
-        words = (
-            f"The bar of T{filled.n('T'):.0f} is {tool.diameter / setting.mm:.4g} thick, but the "
-            f"hole is {hole:g} wide"
+        words = Message(
+            "The boring bar of T{number} has a diameter of {diameter}, but the hole diameter is {hole}",
+            number=f"{filled.n('T'):.0f}",
+            diameter=f"{tool.diameter / setting.mm:.4g}",
+            hole=f"{hole:g}",
         )
-        yield Refusal("T", f"{words}, so the bar does not fit; drill larger, or use a thinner bar.")
+        yield Refusal(
+            "T",
+            Message(
+                "{words}, so the bar does not fit; drill a larger hole, or use a smaller boring bar.",
+                words=words,
+            ),
+        )
     if tool is not None and tool.stick_out and tool.stick_out < deep * setting.mm:
-        words = f"T{filled.n('T'):.0f} reaches only {tool.stick_out / setting.mm:.4g}"
-        yield Refusal("DEEP", f"{words}, but the bore is {deep:g} deep: use a longer boring bar.")
+        words = Message(
+            "The reach of T{number} is only {stick_out}",
+            number=f"{filled.n('T'):.0f}",
+            stick_out=f"{tool.stick_out / setting.mm:.4g}",
+        )
+        yield Refusal(
+            "DEEP",
+            Message(
+                "{words}, but the bore is {depth} deep: use a longer boring bar.",
+                words=words,
+                depth=f"{deep:g}",
+            ),
+        )
     yield from _compensated(filled, setting)
     yield from _cutting_checks(filled, setting)
 
@@ -495,7 +583,7 @@ def _bore_sketch(_filled: Filled) -> Sketch:
 
 BORE = Shape(
     "BORE",
-    ("a drilled hole bored to a diameter, with a chamfer at its mouth"),
+    ("a drilled hole bored to a diameter, with a chamfer at the mouth of the hole"),
     (
         tool_field(ToolKind.BORING),
         Field("HOLE", "HOLE DIAMETER", Kind.DIAMETER),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from core.message import Message
 from core.part.tool_shape import ToolKind
 from core.shapes import cutting_data
 from core.shapes.cutting_data import Work
@@ -77,7 +78,18 @@ def too_fast(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if turns > setting.shop.max_rpm:
         most = f"{setting.shop.max_rpm:g}"
         yield Refusal(
-            "RPM", (f"S{turns:g} is more than the {most} rpm limit of this spindle: enter {most} or less.")
+            "RPM",
+            (
+                Message(
+                    (
+                        "S{revolutions} is more than the {maximum} rpm limit of this spindle: enter "
+                        "{maximum2} or less."
+                    ),
+                    revolutions=f"{turns:g}",
+                    maximum=most,
+                    maximum2=most,
+                )
+            ),
         )
 
 
@@ -86,7 +98,11 @@ def per_rev(filled: Filled, setting: Setting, *words: str) -> Iterator[Refusal]:
     most = 0.05 * 25.4 / setting.mm
     for word in words:
         if filled.n(word) > most:
-            text = f"A feed of {filled.n(word):g} per revolution is more than {most:g}: did you mean F.003?"
+            text = Message(
+                "A feed of {word} per revolution is more than {maximum}: did you mean F.003?",
+                word=f"{filled.n(word):g}",
+                maximum=f"{most:g}",
+            )
             yield Refusal(word, text)
 
 
@@ -94,8 +110,10 @@ def too_deep(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     """DEEP beyond what the flutes of the tool reach by its sheet."""
     shape, deep = setting.tool(filled.n("T")), filled.n("DEEP")
     if shape is not None and shape.length and deep > shape.length / setting.mm + 1e-9:
-        words = (
-            f"Depth {deep:g} is more than the flute length of T{filled.n('T'):.0f}, "
-            f"{shape.length / setting.mm:.4g}"
+        words = Message(
+            "Depth {depth} is more than the flute length of T{number}, which is {length}",
+            depth=f"{deep:g}",
+            number=f"{filled.n('T'):.0f}",
+            length=f"{shape.length / setting.mm:.4g}",
         )
-        yield Refusal("DEEP", f"{words}: use a longer tool.")
+        yield Refusal("DEEP", Message("{words}: use a longer tool.", words=words))

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from ipaddress import ip_address
 from pathlib import Path
 
+from core.message import Message
 from core.sharing.sharing_errors import Cause
 
 _SHOWN = ("service", "user", "host", "hostaddr", "port", "dbname")
@@ -36,7 +37,11 @@ def parsed(conninfo: str) -> dict[str, str]:
 def shown(values: Mapping[str, str]) -> str:
     """The parameters that sentences may name; also whether the server's certificate goes unchecked."""
     named = " ".join(f"{key}={values[key]}" for key in _SHOWN if key in values)
-    return named if is_local(values) or values.get("sslmode") in _VERIFIED else f"{named} (TLS not verified)"
+    return (
+        named
+        if is_local(values) or values.get("sslmode") in _VERIFIED
+        else Message("{named} (TLS not verified)", named=named)
+    )
 
 
 def with_tls(values: Mapping[str, str]) -> dict[str, str]:

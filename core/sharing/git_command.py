@@ -10,6 +10,7 @@ import threading
 from collections.abc import Sequence
 from pathlib import Path
 
+from core.message import Message
 from core.sharing.sharing_errors import Cause, SharingError
 
 PATIENCE = 60.0  # s: a transfer that takes longer is given up
@@ -51,7 +52,9 @@ class GitCommand:
         try:
             out, told = process.communicate(data, timeout=self._patience)
         except subprocess.TimeoutExpired:
-            raise Cause.AWAY.error(self._remote, f"no answer in {self._patience:g} s") from None
+            raise Cause.AWAY.error(
+                self._remote, Message("no response for {patience} s", patience=f"{self._patience:g}")
+            ) from None
         finally:
             self._running = None
             if process.poll() is None:  # no answer, or Ctrl+C: it is in a session of its own
@@ -72,7 +75,7 @@ class GitCommand:
     def _started(self, words: Sequence[str]) -> subprocess.Popen[bytes]:
         with self._lock:
             if self._closed:
-                raise Cause.AWAY.error(self._remote, "this desk is closing")
+                raise Cause.AWAY.error(self._remote, "TurnDesk is closing")
             try:
                 self._running = subprocess.Popen(
                     [
@@ -93,7 +96,9 @@ class GitCommand:
             except FileNotFoundError:
                 raise Cause.NO_GIT.error(self._remote) from None
             except OSError as error:
-                raise Cause.AWAY.error(self._remote, f"git cannot be started: {error.strerror}") from error
+                raise Cause.AWAY.error(
+                    self._remote, Message("git cannot be started: {cause}", cause=error.strerror)
+                ) from error
             return self._running
 
     def _refusal(self, told: str) -> SharingError:

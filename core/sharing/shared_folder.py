@@ -14,6 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from core.input_file import NotAFileError, TooLargeError, input_bytes
+from core.message import Message
 from core.sharing.shared_place import Found, Published, folder_at
 from core.sharing.sharing_errors import Cause, of_system
 from core.sharing.version_record import (
@@ -152,7 +153,9 @@ class SharedFolder:
         except FileNotFoundError:
             raise Cause.NOT_BEGUN.error(self.name) from None
         except (NotAFileError, TooLargeError) as error:
-            raise Cause.OTHER.error(self.name, f"{MARK}: {error.strerror}") from error
+            raise Cause.OTHER.error(
+                self.name, Message("{mark}: {cause}", mark=MARK, cause=error.strerror)
+            ) from error
         check_mark(self.name, data)
 
     @contextmanager
@@ -169,7 +172,7 @@ def check_mark(place: str, data: bytes) -> None:
     with suppress(ValueError, RecursionError, AttributeError):
         number = json.loads(data).get("format")
     if not isinstance(number, int):
-        raise Cause.OTHER.error(place, f"{MARK} is damaged")
+        raise Cause.OTHER.error(place, Message("{mark} is damaged", mark=MARK))
     if number != FORMAT:
         raise Cause.NEWER.error(place, number)
 

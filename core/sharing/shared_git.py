@@ -12,6 +12,7 @@ import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from core.message import Message
 from core.sharing.git_command import GitCommand
 from core.sharing.shared_folder import DESKS, LONGEST, MARK, VERSIONS, check_mark
 from core.sharing.shared_place import Found, Published, repository_at
@@ -101,11 +102,17 @@ class SharedGit:
         }
         files[f"{DESKS}/{state.home}.json"] = state.written()
         for _ in range(_TRIES):
-            self._commit(files, f"{state.desk}: {len(versions)} versions", onto=_THERE)
+            self._commit(
+                files,
+                Message(
+                    "{machine}: {versions_count} versions", machine=state.desk, versions_count=len(versions)
+                ),
+                onto=_THERE,
+            )
             if self._push():
                 return
             self._fetch()
-        raise Cause.AWAY.error(self.name, "other desks push all the time")
+        raise Cause.AWAY.error(self.name, "other controls keep pushing changes")
 
     def text(self, version: SharedVersion) -> bytes:
         """From the copy: also while the repository is away, once the version was fetched."""

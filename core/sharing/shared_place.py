@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
+from core.message import Message
 from core.sharing.version_record import DeskState
 from core.store.shared_versions import SharedVersion
 
@@ -62,14 +63,14 @@ class SharedPlace(Protocol):
 
 def folder_at(folder: object) -> str:
     """What sentences call a folder."""
-    return f"the folder {folder}"
+    return Message("the folder {folder}", folder=folder)
 
 
 def repository_at(address: str) -> str:
     """What they call a git repository; ``address`` without a password."""
-    return f"the git repository {address}"
+    return Message("the git repository {address}", address=address)
 
 
 def database_at(address: str) -> str:
     """What they call a database; ``address`` without a password."""
-    return f"the database {address}"
+    return Message("the database {address}", address=address)

@@ -7,6 +7,7 @@ from enum import Enum
 
 from core.coded_error import CodedError
 from core.input_file import NotAFileError, TooLargeError
+from core.message import Message
 
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 _NO_RIGHT = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
@@ -20,36 +21,45 @@ class Cause(Enum):
         "{place} does not respond ({why}); this control continues to work, and shares "
         "programs when the connection returns"
     )
-    NO_RIGHT = "this user has no permission for this in {place} ({why}); ask the administrator for permission"
+    NO_RIGHT = (
+        "this user does not have permission for this action in {place} ({why}); ask the "
+        "administrator for permission"
+    )
     NOT_THERE = "{place} was not found ({why}); check that it is mounted and that its name is right"
     NOT_BEGUN = (
-        "{place} contains no shared programs; check that it is mounted and that its name is "
-        "right. For a new place, run: turndesk share begin"
+        "{place} contains no shared programs; check that it is mounted and that its "
+        "name is right. To set up a new location, run: turndesk share begin"
     )
     NEWER = "{place} was set up by a newer TurnDesk (format {why}); update TurnDesk on this control"
-    OTHER = "{place} is not set up for shared programs ({why}); name another place"
-    FULL = "the disk of {place} is full; free space on it"
+    OTHER = "{place} is not set up for shared programs ({why}); specify another location"
+    FULL = "the disk of {place} is full; free up space on that disk"
     REFUSED = "{place} rejected the request: {why}"
     DAMAGED = "{place}: {why}"
     UNKNOWN_HOST = (
-        "the host of {place} is unknown here ({why}); log in there once by ssh, as the user "
-        "of this control, and compare its key"
+        "the SSH host key of {place} is not known to this control ({why}); log in to "
+        "that host once with ssh, from the user account that runs this control, and "
+        "verify the host key"
     )
     OTHER_HOST = (
-        "the host key of {place} has changed ({why}); ask the administrator of that host, "
-        "and only then remove the old key with ssh-keygen -R"
+        "the SSH host key of {place} has changed ({why}); confirm the new key with the "
+        "administrator of that host, and only then remove the old key with ssh-keygen "
+        "-R"
     )
     NO_GIT = "git is not installed on this computer; install git"
     NO_SSH = "{place} needs ssh, which is not installed on this computer; install openssh-client"
     NO_GIT_THERE = (
-        "the host of {place} responds, but not like git ({why}); check that git is installed "
-        "there and that this user may start it by ssh"
+        "the host of {place} responds, but not with a git response ({why}); check that "
+        "git is installed on that host and that this user can start git by ssh"
     )
     UNREADABLE = (
-        "[sharing] postgresql cannot be read as a connection string; write a value with blanks in quotation "
-        "marks, and / and @ of a password in an address as %2F and %40"
+        "[sharing] postgresql is not a valid connection string; put a value that contains "
+        "spaces in quotation marks, and write / and @ in the password of an address as %2F "
+        "and %40"
     )
-    WRONG_PASSWORD = "{place} rejects the user or the password ({why}); correct them in [sharing] postgresql"
+    WRONG_PASSWORD = (
+        "{place} rejects the user name or the password ({why}); correct the user name "
+        "or the password in [sharing] postgresql"
+    )
     NOT_TRUSTED = (
         "the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in "
         "[sharing] postgresql to the certificate of its issuer"
@@ -59,15 +69,15 @@ class Cause(Enum):
         "issuer: git config --global http.sslCAInfo FILE"
     )
     NO_TLS = (
-        "{place} does not support TLS ({why}); turn TLS on there, or, on a network where you "
-        "trust every user, write sslmode=disable in [sharing] postgresql"
+        "{place} does not support TLS ({why}); turn on TLS at that server, or, on a network "
+        "where you trust every user, write sslmode=disable in [sharing] postgresql"
     )
     TLS_ONLY = "{place} accepts TLS only ({why}); remove sslmode from [sharing] postgresql"
     NO_PSYCOPG = "[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]"
     NAME_TAKEN = (
-        "{place}: another control is also named {why}; give this control a different name "
-        "(desk in [sharing]) or, if that computer does not exist any more, run: turndesk "
-        "share publish --claim"
+        "{place}: another control is also named {why}; give this control a name that "
+        "no other control uses (desk in [sharing]) or, if the other computer no longer "
+        "exists, run: turndesk share publish --claim"
     )
 
     @property
@@ -77,7 +87,7 @@ class Cause(Enum):
 
     def error(self, place: str, why: object = "") -> SharingError:
         """The sentence for it, on one line."""
-        made = SharingError(self.value.format(place=place, why=" ".join(str(why).split())), self.code)
+        made = SharingError(Message(self.value, place=place, why=" ".join(str(why).split())), self.code)
         made.cause = self
         return made
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 
 from core.coded_error import CodedError
+from core.message import Message
 from core.store.program_records import check_name
 from core.store.shared_versions import SharedVersion
 from core.store.store_errors import StoreError
@@ -42,23 +43,25 @@ def written(version: SharedVersion) -> bytes:
 def read_version(name: str, record: bytes) -> SharedVersion:
     """The version whose record is kept under this id. Raises RecordError."""
     if sha256(record).hexdigest() != name:
-        raise RecordError("it is not what was published under its name", "not-as-published")
+        raise RecordError("the record does not match the checksum in the record name", "not-as-published")
     values = _object(record)
     texts = [values.get(key) for key in _TEXTS]
     size, follows = values.get("size"), values.get("follows")
     if values.get("format") != FORMAT or not isinstance(size, int) or not isinstance(follows, list):
-        raise RecordError("it is no record of this format", "not-this-format")
+        raise RecordError(
+            ("the record is in a format that this TurnDesk version does not support"), "not-this-format"
+        )
     if not all(isinstance(each, str) and each.isprintable() for each in texts) or not all(
         map(is_id, follows)
     ):
-        raise RecordError("it is no record of a version", "not-a-version")
+        raise RecordError("the record is not a valid version record", "not-a-version")
     program, text, desk, saved, why = map(str, texts)
     try:
         check_name(program)
     except StoreError as error:
         raise RecordError(str(error), "invalid-name") from error
     if not is_id(text) or not 0 <= size <= MOST_BYTES:
-        raise RecordError("it is no record of a text", "not-a-text")
+        raise RecordError("the version record has an invalid text ID or size", "not-a-text")
     return SharedVersion(name, program, text, size, tuple(follows), desk, saved, why)
 
 
@@ -66,7 +69,11 @@ def checked_text(version: SharedVersion, text: bytes) -> bytes:
     """The text, when it is that of the version. Raises RecordError."""
     if sha256(text).hexdigest() != version.text:
         raise RecordError(
-            f"the text of {version.program} by {version.desk} is not what was published",
+            Message(
+                "the text of {program} from {machine} differs from the published text",
+                program=version.program,
+                machine=version.desk,
+            ),
             "text-not-as-published",
         )
     return text
@@ -94,9 +101,9 @@ def read_state(home: str, data: bytes) -> DeskState:
     values = _object(data)
     desk, at, has = values.get("desk"), values.get("at"), values.get("has")
     if not is_home(home) or not isinstance(desk, str) or not isinstance(at, str) or not isinstance(has, dict):
-        raise RecordError("it is not what a desk tells of itself", "not-a-desk")
+        raise RecordError("the record is not a valid status record of a control", "not-a-desk")
     if not desk.isprintable() or not at.isprintable():
-        raise RecordError("it is not what a desk tells of itself", "not-a-desk")
+        raise RecordError("the record is not a valid status record of a control", "not-a-desk")
     return DeskState(home, desk, at, {name: each for name, each in has.items() if is_id(each)})
 
 
@@ -114,9 +121,9 @@ def _object(data: bytes) -> dict[str, object]:
     try:
         values = json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise RecordError("it is no text of ours", "not-ours") from error
+        raise RecordError("the record was not written by TurnDesk", "not-ours") from error
     if not isinstance(values, dict):
-        raise RecordError("it is no text of ours", "not-ours")
+        raise RecordError("the record was not written by TurnDesk", "not-ours")
     return values
 
 

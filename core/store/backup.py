@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 
 from core.file_placing import put_in_place
+from core.message import Message
 from core.store import damaged_rows, database, people, program_records, row_sums
 from core.store.database import WriterLock, make_folder
 from core.store.people import PersonRow
@@ -39,7 +40,7 @@ def _looked_through(path: Path, look: Callable[[sqlite3.Connection], tuple[str, 
             database.check_log(path, connection)
             return look(connection)
     except sqlite3.Error as error:
-        return (f"the file is damaged: {error}",)
+        return (Message("the file is damaged: {text}", text=error),)
 
 
 def _of_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
@@ -49,12 +50,19 @@ def _of_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
     pages = [str(row[0]) for row in connection.execute("PRAGMA integrity_check")]
-    found = [f"the file is damaged: {' '.join(text.split())}" for text in pages if text != "ok"]
+    found: list[str] = [
+        Message("the file is damaged: {text}", text=" ".join(text.split())) for text in pages if text != "ok"
+    ]
     found += [
-        f"a row of {table} refers to a row of {parent} that does not exist"
+        Message(
+            "a row in table {table} refers to a missing row in table {parent}", table=table, parent=parent
+        )
         for table, _, parent, _ in connection.execute("PRAGMA foreign_key_check")
     ]
-    found += [f"{which} differs from what was saved" for which in program_records.spoilt(connection)]
+    found += [
+        Message("{which} does not match its checksum", which=which)
+        for which in program_records.spoilt(connection)
+    ]
     found += damaged_rows.damaged(connection, row_sums.sealed_before(database.version_of(connection)))
     return tuple(found)
 
@@ -67,18 +75,27 @@ def backup(folder: Path, target: Path) -> None:
     """
     path = folder / FILE_NAME
     if not has_store(folder):
-        raise StoreError(f"no data store exists in {folder} yet, so there is nothing to back up", "no-store")
+        raise StoreError(
+            Message("no data store exists in {folder} yet, so there is nothing to back up", folder=folder),
+            "no-store",
+        )
     if _is_there(target):
         database.check_kind(target)
         if target.samefile(path):
             raise StoreError(
-                f"{target} is the data store itself; name another file for the backup", "store-itself"
+                Message("{target} is the data store itself; name another file for the backup", target=target),
+                "store-itself",
             )
         database.check_header(target)
     found = problems(path)
     if found:
         raise StoreError(
-            f"{path}: {found[0]}; a backup of it would be useless. Restore an older backup", "damaged"
+            Message(
+                "{path}: {value}; a backup of this file would be useless. Restore an older backup",
+                path=path,
+                value=found[0],
+            ),
+            "damaged",
         )
     _copy(path, target, people.forget_pins)
 
@@ -93,7 +110,11 @@ def restore(folder: Path, source: Path) -> Path | None:
     found = problems(source)
     if found:
         raise StoreError(
-            f"{source} cannot be restored: {found[0]}; nothing was changed. Use another backup",
+            Message(
+                "{source} cannot be restored: {value}; nothing was changed. Use another backup",
+                source=source,
+                value=found[0],
+            ),
             "damaged-backup",
         )
     make_folder(folder)
@@ -103,7 +124,9 @@ def restore(folder: Path, source: Path) -> Path | None:
         if there:
             database.check_kind(path)
         if there and path.samefile(source):
-            raise StoreError(f"{source} is the data store itself; name a backup", "store-itself")
+            raise StoreError(
+                Message("{source} is the data store itself; name a backup", source=source), "store-itself"
+            )
         here = _people_of(path) if there else None
         kept = _keep(path) if there else None
         for leftover in database.companions(path):
@@ -162,7 +185,10 @@ def _empty_log(path: Path) -> None:
         busy = connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
     if busy:
         raise StoreError(
-            f"{path} is being read by another program; close that program, then restore again", "in-use"
+            Message(
+                "{path} is being read by another program; close that program, then restore again", path=path
+            ),
+            "in-use",
         )
 
 
@@ -189,6 +215,12 @@ def _unwritable(target: Path, error: Exception) -> StoreError:
     if isinstance(error, OSError | sqlite3.Error) and cause_of(target, error) in {Cause.FULL, Cause.LOCKED}:
         return why(target, error)
     return StoreError(
-        (f"{target} cannot be written ({said(error)}); check the folder, its free space and its permissions"),
+        (
+            Message(
+                "{target} cannot be written ({error}); check the folder, its free space and its permissions",
+                target=target,
+                error=said(error),
+            )
+        ),
         "cannot-write",
     )

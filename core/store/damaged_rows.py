@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlite3
 from collections.abc import Collection
 
+from core.message import Message
 from core.store import row_sums
 from core.store.offset_tables import history_of, named
 from core.store.row_sums import HISTORIES, KEYS, Key
@@ -16,7 +17,7 @@ def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
     The last entry of the history has the sum with which the row was saved, or is the row itself and the sum
     is damaged.
     """
-    told = []
+    told: list[str] = []
     connection.execute("DELETE FROM row_sums WHERE typeof(key) = 'blob'")  # nobody has such a key
     for table, key in _broken(connection, KEYS):
         row = history_of(connection, table, key, row_sums.columns(connection, table))
@@ -25,7 +26,12 @@ def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
             marks = ", ".join("?" * len(row))
             connection.execute(f"DELETE FROM {table} WHERE {KEYS[table]} = ?", (key,))
             connection.execute(f"INSERT INTO {table} VALUES ({marks})", row_sums.readable(row))
-            told.append(f"{named(table, key)} was damaged in the data store; it was restored as entered")
+            told.append(
+                Message(
+                    "{table} was damaged in the data store; the values were restored as entered",
+                    table=named(table, key),
+                )
+            )
         elif table in _PUT_AWAY:
             told.append(_put_away(connection, table, key))
     return tuple(told)
@@ -33,16 +39,19 @@ def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 def _begin_anew(connection: sqlite3.Connection, program: Key) -> str:
     connection.execute("DELETE FROM runs WHERE program = ?", (program,))
-    return f"{named('runs', program)} was damaged in the data store and starts over"
+    return Message("{program} was damaged in the data store and was cleared", program=named("runs", program))
 
 
 def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
     """A feature is retired, as it stands; one with a value that no feature has goes with its readings."""
     row = row_sums.row(connection, "part_features", feature)
-    which = f"{_shown(row[1])} {_shown(row[2])}" if row else feature
-    told = (
-        f"{named('part_features', which)} was damaged in the data store and is not measured "
-        "any more; enter it again"
+    which = Message("{row} {row2}", row=_shown(row[1]), row2=_shown(row[2])) if row else feature
+    told = Message(
+        (
+            "{which} was damaged in the data store and was removed from the list of "
+            "measured features; enter the feature again"
+        ),
+        which=named("part_features", which),
     )
     every = ", ".join(
         f"{column} = {column}"  # SQLite looks only at the bounds of what is set
@@ -61,7 +70,11 @@ def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
         return told
     gone = connection.execute("DELETE FROM part_readings WHERE feature = ?", (feature,)).rowcount
     connection.execute("DELETE FROM part_features WHERE id = ?", (feature,))
-    return f"{told}. Its readings ({gone}) were lost with it"
+    return Message(
+        ("{details}. The readings of this feature (number of readings: {gone}) were also lost"),
+        details=told,
+        gone=gone,
+    )
 
 
 _PUT_AWAY = {"runs": _begin_anew, "part_features": _measure_no_more}
@@ -89,7 +102,13 @@ def damaged(
     """
     looked = [table for table in KEYS if table in tables or (table == "settings" and settings)]
     return tuple(
-        (f"{named(table, key)} differs from what was saved and is not used; {_REMEDY.get(table, _ANEW)}")
+        (
+            Message(
+                "{table} does not match its checksum and is not used; {table2}",
+                table=named(table, key),
+                table2=_REMEDY.get(table, _ANEW),
+            )
+        )
         for table, key in _broken(connection, looked)
         if table in tables or key in settings
     )
@@ -99,20 +118,21 @@ def damaged_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
     """The same of what grows for years, and of the tables as they were made: ``verify`` asks for it."""
     tables = () if row_sums.schema_is_whole(connection) else (TABLES_CHANGED,)
     return tables + tuple(
-        f"{named(table, key)} was damaged in the data store" for table, key in _broken(connection, HISTORIES)
+        Message("{table} was damaged in the data store", table=named(table, key))
+        for table, key in _broken(connection, HISTORIES)
     )
 
 
-TABLES_CHANGED = "the tables differ from those that were created"
+TABLES_CHANGED = "the database schema differs from the schema that TurnDesk created"
 
 OF_PROGRAMS = ("tool_offsets", "secondary_offsets", "zero_offsets", "mill_tools", "datum_presets")
 """The tables of what programs are proved with."""
 
-_ANEW = "enter it again, or restore a backup"
+_ANEW = "enter the data again, or restore a backup"
 _REMEDY = {
     "part_counts": "count the parts and enter them, or restore a backup",
-    "jobs": "clear it from the queue ('turndesk jobs clear') and enter it again",
-    "people": "enter it again, or reset the levels ('turndesk access reset')",
+    "jobs": "clear the job from the queue ('turndesk jobs clear') and enter the job again",
+    "people": "enter the PIN again, or reset the access levels ('turndesk access reset')",
 }
 
 

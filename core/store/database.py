@@ -17,6 +17,7 @@ from core import file_placing
 from core.file_lock import is_locked, lock, mark_locked
 from core.file_placing import put_in_place, write_in_place
 from core.input_file import open_input
+from core.message import Message
 from core.private_files import NEW_FILE, restrict, restrict_folder
 from core.store import row_sums
 from core.store.log_damage import lost_changes
@@ -60,12 +61,20 @@ def check_header(path: Path) -> None:
         raise why(path, error) from error
     if len(header) < 100 or not header.startswith(_MAGIC):
         raise StoreError(
-            (f"{path} is not a database and was not changed. Restore a backup: turndesk store restore FILE"),
+            (
+                Message(
+                    "{path} is not a database and was not changed. Restore a backup: turndesk store "
+                    "restore FILE",
+                    path=path,
+                )
+            ),
             "not-a-database",
         )
     if int.from_bytes(header[68:72], "big") != APPLICATION_ID:
         raise StoreError(
-            f"{path} is a database of another program and was not changed. Name another file",
+            Message(
+                "{path} is a database of another program and was not changed. Name another file", path=path
+            ),
             "foreign-database",
         )
 
@@ -78,18 +87,28 @@ def check_kind(path: Path) -> None:
         if not (isinstance(error, FileNotFoundError) and path.is_symlink()):
             raise why(path, error) from error
         raise StoreError(
-            (f"{path} is a link to {path.readlink()}, which does not exist; mount its disk, then try again"),
+            (
+                Message(
+                    "{path} is a link to {readlink}, which does not exist; mount its disk, then try again",
+                    path=path,
+                    readlink=path.readlink(),
+                )
+            ),
             "link-without-target",
         ) from error
     except ValueError as error:  # a zero byte in the name
         raise StoreError(
-            f"{str(path)!r} is not a valid file name; enter another name", "not-a-file"
+            Message("{path} is not a valid file name; enter another name", path=f"{str(path)!r}"),
+            "not-a-file",
         ) from error
     if not stat.S_ISREG(mode):
         raise StoreError(
             (
-                f"{path} is a folder, a pipe or a device, not a file, and was not changed. Move it to "
-                "another place"
+                Message(
+                    "{path} is a folder, a pipe or a device, not a file, and was not changed. Move it to "
+                    "another place",
+                    path=path,
+                )
             ),
             "not-a-file",
         )
@@ -175,8 +194,13 @@ def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
     if version > newest:
         raise StoreError(
             (
-                f"{path} was written by a newer TurnDesk (store version {version}, this one supports "
-                f"{newest}) and was not changed. Use the newer TurnDesk"
+                Message(
+                    "{path} was written by a newer TurnDesk (store version {version}, this one supports "
+                    "{newest}) and was not changed. Use the newer TurnDesk",
+                    path=path,
+                    version=version,
+                    newest=newest,
+                )
             ),
             "newer-version",
         )
@@ -192,7 +216,9 @@ def _found_wrong(connection: sqlite3.Connection) -> list[str]:
     return [str(text) for (text,) in found if text != "ok"]
 
 
-INDEX_REBUILT = "an index of the data store was damaged; it was rebuilt from its table, and no data was lost"
+INDEX_REBUILT = (
+    "an index of the stored data was damaged; TurnDesk rebuilt the index from its table, and no data was lost"
+)
 _MOST_WORDS = 1000  # those of pages come first
 _INDEX = re.compile(r"\bindex \S+$")  # row 3 missing from index …, wrong # of entries in index …
 _VALUE = rf"(?:value in|constraint failed in) (?:{'|'.join(row_sums.KEYS)})\b"
@@ -226,8 +252,12 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
                 connection.rollback()
             raise StoreError(
                 (
-                    f"the data store cannot be upgraded to version {number} and stays at the previous "
-                    f"version: {why(_path_of(connection), error)}"
+                    Message(
+                        "the data store cannot be upgraded to version {number} and stays at the previous "
+                        "version: {connection}",
+                        number=number,
+                        connection=why(_path_of(connection), error),
+                    )
                 ),
                 "migration-failed",
             ) from error
@@ -303,11 +333,15 @@ class WriterLock:
         except OSError as error:
             owner = os.read(self._file, 32).decode("ascii", "replace").strip()
             os.close(self._file)
-            who = f" (process {owner})" if owner else ""
+            who = Message(" (process {owner})", owner=owner) if owner else ""
             raise StoreError(
                 (
-                    f"the data store in {folder} is in use by another TurnDesk{who}; close that TurnDesk, "
-                    "or make the entry there"
+                    Message(
+                        "the data store in {folder} is in use by another TurnDesk{who}; close that TurnDesk, "
+                        "or make the entry there",
+                        folder=folder,
+                        who=who,
+                    )
                 ),
                 "in-use",
             ) from error
@@ -384,7 +418,8 @@ def open_to_read(folder: Path) -> Opened:
     version = check_file(path, thorough=False)
     if version < len(migrations()):
         raise StoreError(
-            f"{path} is from an older TurnDesk; upgrade it: turndesk store upgrade", "older-version"
+            Message("{path} is from an older TurnDesk; upgrade it: turndesk store upgrade", path=path),
+            "older-version",
         )
     reader = connect(path, read_only=True)
     try:
@@ -427,9 +462,15 @@ def check_log(path: Path, reader: sqlite3.Connection) -> None:
     if lost:
         raise StoreError(
             (
-                f"{path}: its log is damaged, and {_changes(lost)} cannot be read; start turndesk "
-                "once, which saves a copy of the log and continues with the earlier data, or restore "
-                "a backup"
+                Message(
+                    (
+                        "{path}: the log of this database is damaged, and {lost} cannot be read. Start "
+                        "turndesk once to save a copy of the log and continue with the earlier data, "
+                        "or restore a backup"
+                    ),
+                    path=path,
+                    lost=_changes(lost),
+                )
             ),
             "damaged-log",
         )
@@ -452,9 +493,13 @@ def _put_damaged_log_aside(path: Path) -> tuple[str, ...]:
         writer.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     return (
         (
-            f"the log of the data store was damaged and lost {_changes(lost)} from before the "
-            "control ended. Check offsets, counts and settings before you make a part; the log "
-            f"is saved as {kept.name}"
+            Message(
+                "the log of the data store was damaged and lost {lost} made before the control shut "
+                "down. Check offsets, counts and settings before you make a part; the log is saved "
+                "as {saved}",
+                lost=_changes(lost),
+                saved=kept.name,
+            )
         ),
     )
 
@@ -475,7 +520,7 @@ def _lost_changes(path: Path, reader: sqlite3.Connection) -> int:
 
 
 def _changes(count: int) -> str:
-    return "the last saved change" if count == 1 else f"the last {count} saved changes"
+    return "the last saved change" if count == 1 else Message("the last {count} saved changes", count=count)
 
 
 def make_folder(folder: Path) -> None:
@@ -490,8 +535,12 @@ def make_folder(folder: Path) -> None:
             raise why(folder, error) from error
         raise StoreError(
             (
-                f"the folder {folder} cannot be created ({error.strerror}); set TURNDESK_HOME to a "
-                "folder of yours"
+                Message(
+                    "the folder {folder} cannot be created ({cause}); set TURNDESK_HOME to a folder "
+                    "that you own",
+                    folder=folder,
+                    cause=error.strerror,
+                )
             ),
             "cannot-make-folder",
         ) from error
@@ -505,8 +554,14 @@ def _refuse_lost_file(path: Path) -> None:
         log, _ = companions(path)
         raise StoreError(
             (
-                f"{path} is missing, but its log {log.name} still exists; put the file back, or move "
-                "the log away"
+                Message(
+                    (
+                        "{path} is missing, but its log {log} still exists; put the file back, or move "
+                        "the log to another folder"
+                    ),
+                    path=path,
+                    log=log.name,
+                )
             ),
             "database-gone",
         )

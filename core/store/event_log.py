@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import sqlite3
 from collections.abc import Collection, Iterable
+from typing import Any
 
+from core.message import Message, pack_message, unpack_message
 from core.store import row_sums
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow
@@ -14,7 +16,8 @@ from core.store.store_rows import EventRow
 def log(connection: sqlite3.Connection, events: Iterable[EventRow]) -> None:
     """Adds to the log."""
     connection.executemany(
-        "INSERT INTO events (at, kind, text, line, record, who) VALUES (?, ?, ?, ?, ?, ?)", events
+        "INSERT INTO events (at, kind, text, line, record, who, message) VALUES (?, ?, ?, ?, ?, ?, ?)",
+        ((*event, pack_message(event.text)) for event in events),
     )
 
 
@@ -23,13 +26,18 @@ def events(
 ) -> tuple[EventRow, ...]:
     """The last events whose kind or text holds ``search``, newest first; no ``kinds``: of every kind."""
     rows = connection.execute(
-        "SELECT at, kind, text, line, record, who FROM events"
+        "SELECT at, kind, text, line, record, who, message FROM events"
         " WHERE (?1 = '' OR instr(lower(text), lower(?1)) OR instr(lower(kind), lower(?1)))"
         " AND (?2 = '[]' OR kind IN (SELECT value FROM json_each(?2)))"
         " ORDER BY id DESC LIMIT ?3",
         (search, json.dumps(sorted(kinds)), limit),
     )
-    return tuple(EventRow(*row) for row in rows)
+    return tuple(map(_event, rows))
+
+
+def _event(row: tuple[Any, ...]) -> EventRow:
+    at, kind, text, *more, packed = row
+    return EventRow(at, kind, unpack_message(packed, text), *more)
 
 
 def setting(connection: sqlite3.Connection, key: str) -> object:
@@ -55,7 +63,9 @@ def setting_text(key: str, value: object) -> str:
     try:
         return json.dumps(value, allow_nan=False)
     except (TypeError, ValueError) as error:
-        raise StoreError(f"the setting {key} cannot be stored: {error}", "unstorable-setting") from error
+        raise StoreError(
+            Message("the setting {key} cannot be stored: {error}", key=key, error=error), "unstorable-setting"
+        ) from error
 
 
 def events_between(
@@ -63,8 +73,8 @@ def events_between(
 ) -> tuple[EventRow, ...]:
     """Events of these kinds within this time (UTC), in their order."""
     rows = connection.execute(
-        "SELECT at, kind, text, line, record, who FROM events WHERE at >= ?1 AND at < ?2"
+        "SELECT at, kind, text, line, record, who, message FROM events WHERE at >= ?1 AND at < ?2"
         " AND kind IN (SELECT value FROM json_each(?3)) ORDER BY id",
         (since, until, json.dumps(sorted(kinds))),
     )
-    return tuple(EventRow(*row) for row in rows)
+    return tuple(map(_event, rows))

@@ -10,6 +10,7 @@ import sqlite3
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from core.message import Message
 from core.store import event_log, program_records, program_texts, row_sums
 from core.store.program_settings import text_key
 from core.store.store_errors import StoreError
@@ -88,7 +89,10 @@ def add(connection: sqlite3.Connection, program: str, wanted: int, note: str = "
     _check(wanted, note)
     count, last = connection.execute("SELECT count(*), coalesce(max(place), 0) FROM jobs").fetchone()
     if count >= MOST_JOBS:
-        raise StoreError(f"the queue is full ({MOST_JOBS} jobs); remove finished jobs", "queue-full")
+        raise StoreError(
+            Message("the queue is full ({most_jobs} jobs); remove finished jobs", most_jobs=MOST_JOBS),
+            "queue-full",
+        )
     done = connection.execute(
         "INSERT INTO jobs (place, program, wanted, note, added) VALUES (?, ?, ?, ?, ?)",
         (last + 1, program, wanted, note, utc_now()),
@@ -136,7 +140,11 @@ def begin(connection: sqlite3.Connection, job: int) -> None:
     row = next((row for row in jobs(connection) if row.id == job), None)
     if row is None:
         raise StoreError(
-            "that job differs from what was saved; clear it from the queue and enter it again", "damaged-job"
+            (
+                "the data of this job does not match its checksum; clear the job from the "
+                "queue and enter the job again"
+            ),
+            "damaged-job",
         )
     connection.execute("UPDATE jobs SET base = ? WHERE id = ?", (row.counted, job))
 
@@ -172,13 +180,24 @@ def load_text(connection: sqlite3.Connection, program: str, text: str) -> None:
 
 def _check(wanted: int, note: str) -> None:
     if not 1 <= wanted <= MOST_PARTS:
-        raise StoreError(f"a job must have 1 to {MOST_PARTS} parts, not {wanted}", "part-count")
+        raise StoreError(
+            Message(
+                "a job must have 1 to {most_parts} parts, not {expected}",
+                most_parts=MOST_PARTS,
+                expected=wanted,
+            ),
+            "part-count",
+        )
     if len(note) > NOTE_LONGEST or not note.isprintable():
         raise StoreError(
-            f"a job note can have at most {NOTE_LONGEST} characters, on one line", "invalid-note"
+            Message(
+                "a job note can have at most {note_longest} characters, on one line",
+                note_longest=NOTE_LONGEST,
+            ),
+            "invalid-note",
         )
 
 
 def _demand(connection: sqlite3.Connection, job: int) -> None:
     if connection.execute("SELECT 1 FROM jobs WHERE id = ?", (job,)).fetchone() is None:
-        raise StoreError("that job is not in the queue any more", "job-gone")
+        raise StoreError("that job is not in the queue anymore", "job-gone")

@@ -6,6 +6,7 @@ import math
 import sqlite3
 from typing import Any, NamedTuple
 
+from core.message import Message
 from core.store import row_sums
 from core.store.store_errors import StoreError
 from core.store.store_rows import utc_now
@@ -67,7 +68,12 @@ def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
     ).fetchone()
     if taken is not None:
         raise StoreError(
-            f"{row.program} already has a feature {row.name!r}; give this feature another name", "name-in-use"
+            Message(
+                "{program} already has a feature named {row}; give this feature another name",
+                program=row.program,
+                row=f"{row.name!r}",
+            ),
+            "name-in-use",
         )
     values = row[1:]
     if not row.id:
@@ -81,7 +87,13 @@ def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
         f"UPDATE part_features SET {setting} WHERE id = ? AND retired = 0", (*values, row.id)
     )
     if not done.rowcount:
-        raise StoreError(f"{row.name} is not measured any more; enter it again", "feature-gone")
+        raise StoreError(
+            Message(
+                ("{row} is not in the list of measured features anymore; enter the feature again"),
+                row=row.name,
+            ),
+            "feature-gone",
+        )
     return row.id
 
 
@@ -99,7 +111,8 @@ def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
     ).fetchone()
     if there is None:
         raise StoreError(
-            "the feature of this reading is not measured any more; nothing was saved", "feature-gone"
+            "the feature of this reading is not in the list of measured features anymore; nothing was saved",
+            "feature-gone",
         )
     done = connection.execute(
         "INSERT INTO part_readings (feature, part, value, unit, at, source, gauge)"

@@ -8,6 +8,8 @@ from enum import StrEnum
 from math import isfinite
 from typing import get_args, get_type_hints
 
+from core.message import Message
+
 MM_PER_INCH = 25.4
 TOOL_REACH = 1270.0  # mm: 50 in, more than any such lathe travels
 SECONDARY_REACH = 254.0  # mm: 10 in, what the control's display has digits for
@@ -65,11 +67,15 @@ class Field:
         if self.choices:
             return ", ".join(self.choices)
         if self.sort is Sort.LENGTH:
-            return f"{self.low / MM_PER_INCH:g}…{self.high / MM_PER_INCH:g} in"
+            return Message(
+                "{low}…{high} in", low=f"{self.low / MM_PER_INCH:g}", high=f"{self.high / MM_PER_INCH:g}"
+            )
         if self.sort in _UNITS:
-            return f"{self.low:g}…{self.high:g} {_UNITS[self.sort]}"
+            return Message(
+                "{low}…{high} {units}", low=f"{self.low:g}", high=f"{self.high:g}", units=_UNITS[self.sort]
+            )
         if self.sort is Sort.TEXT:
-            return f"up to {self.high:g} characters on one line"
+            return Message("up to {high} characters on one line", high=f"{self.high:g}")
         return f"{self.low:g}…{self.high:g}"
 
     def takes(self, value: object) -> bool:

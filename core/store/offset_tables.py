@@ -11,6 +11,7 @@ from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from core.message import Message
 from core.store import row_sums
 from core.store.offset_fields import Field, Sort
 from core.store.store_errors import StoreError
@@ -79,7 +80,7 @@ def _columns(kind: Kind) -> tuple[str, ...]:
 
 # Columns of a secondary offset are the first of those of a tool: both share one history.
 _OFFSETS = _Log("offset_changes", "number", _columns(Kind.TOOL), "kind", "no offset change to undo")
-_ZEROS = _Log("zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "no change of G54…G59 to undo")
+_ZEROS = _Log("zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "no G54…G59 change to undo")
 _NO_SHAPE = "no tool shape change to undo"
 _SHAPES = _Log("tool_shape_changes", "number", _columns(Kind.SHAPE), "'shape'", _NO_SHAPE)
 _MILL_TOOLS = _Log(
@@ -147,7 +148,11 @@ def change(
     new = changed(kind, number, old, wanted)
     if isinstance(new, ShapeRow) and not new.kind:
         raise StoreError(
-            f"{edge_name(number)} has no shape yet; enter its kind first: {FIELDS[kind]['kind'].range}",
+            Message(
+                "{number} does not have a tool shape yet; enter the tool type first: {range}",
+                number=edge_name(number),
+                range=FIELDS[kind]["kind"].range,
+            ),
             "no-shape",
         )
     if new != old:
@@ -164,12 +169,29 @@ def _check_edge(kind: Kind, number: int, rows: Mapping[int, Row], wanted: Mappin
         return
     if tool_of(number) not in rows:
         raise StoreError(
-            (f"{edge_name(tool_of(number))} has never been set; set its D1 before {edge_name(number)}"),
+            (
+                Message(
+                    (
+                        "the offset of {number} has never been set; set cutting edge D1 of this tool "
+                        "before {number2}"
+                    ),
+                    number=edge_name(tool_of(number)),
+                    number2=edge_name(number),
+                )
+            ),
             "never-set",
         )
     if wanted.get("master"):
         raise StoreError(
-            (f"{edge_name(number)} is an additional cutting edge; a tool is made the master at its D1"),
+            (
+                Message(
+                    (
+                        "{number} is an additional cutting edge; set cutting edge D1 of this tool as "
+                        "the master"
+                    ),
+                    number=edge_name(number),
+                )
+            ),
             "not-first-edge",
         )
 
@@ -180,7 +202,13 @@ def _other_masters(rows: Mapping[int, Row], number: int) -> list[tuple[int, Tool
 
 def never_set(number: int) -> str:
     """Why a tool cannot be the master."""
-    return f"{edge_name(number)} has never been set, so no tool can be relative to it; touch it off first"
+    return Message(
+        (
+            "the offset of {number} has never been set, so the offsets of other tools "
+            "cannot be relative to this tool; touch off this tool first"
+        ),
+        number=edge_name(number),
+    )
 
 
 def check_number(kind: Kind, number: int) -> None:
@@ -189,12 +217,28 @@ def check_number(kind: Kind, number: int) -> None:
     if number in table.numbers:
         return
     if kind is Kind.ZERO:
-        raise StoreError(f"G{number} does not exist; settable offsets are G54…G59", "unknown-number")
+        raise StoreError(
+            Message("G{number} does not exist; settable offsets are G54…G59", number=number), "unknown-number"
+        )
     if kind in {Kind.MILL_TOOL, Kind.PRESET}:
         last = MILL_TOOLS[-1] if kind is Kind.MILL_TOOL else PRESETS[-1]
-        raise StoreError(f"{table.letter}{number} does not exist; use 1 to {last}", "unknown-number")
+        raise StoreError(
+            Message(
+                "{letter}{number} does not exist; use 1 to {last}",
+                letter=table.letter,
+                number=number,
+                last=last,
+            ),
+            "unknown-number",
+        )
     raise StoreError(
-        f"{table.letter}{number} does not exist; offsets are {table.letter}1…32", "unknown-number"
+        Message(
+            "{letter}{number} does not exist; offsets are {letter2}1…32",
+            letter=table.letter,
+            number=number,
+            letter2=table.letter,
+        ),
+        "unknown-number",
     )
 
 
@@ -206,9 +250,12 @@ def changed(kind: Kind, number: int, old: Row | None, wanted: Mapping[str, Value
         if field is None or not field.takes(value):
             word, shown = (field.word, _told(field, value)) if field else (name, value)
             whose = edge_name(number) if table.letter == "T" else f"{table.letter}{number}"
-            told = f"{whose} {word} {shown}"
+            told = Message("{whose} {word} {value}", whose=whose, word=word, value=shown)
             accepted = field.range if field else ", ".join(fields)
-            raise StoreError(f"{told} is out of range; enter {accepted}", "out-of-range")
+            raise StoreError(
+                Message("{details} is out of range; enter {accepted}", details=told, accepted=accepted),
+                "out-of-range",
+            )
     before = old or table.row()
     return _row(kind, [wanted.get(name, getattr(before, name)) for name in fields])
 
@@ -216,7 +263,7 @@ def changed(kind: Kind, number: int, old: Row | None, wanted: Mapping[str, Value
 def _told(field: Field, value: Value) -> str:
     if isinstance(value, str):
         return repr(value)
-    return f"{inches(value):g} in" if field.sort is Sort.LENGTH else f"{value:g}"
+    return Message("{mm} in", mm=f"{inches(value):g}") if field.sort is Sort.LENGTH else f"{value:g}"
 
 
 def _row(kind: Kind, values: Sequence[Value | None]) -> Row:
@@ -244,7 +291,11 @@ def remove(connection: sqlite3.Connection, kind: Kind, number: int, reason: Reas
     edges = [edge_name(n) for n in rows if kind is Kind.TOOL and n != number and tool_of(n) == number]
     if edges:
         raise StoreError(
-            f"{edge_name(number)} has other cutting edges; clear {', '.join(edges)} first",
+            Message(
+                "{number} has other cutting edges; clear {edges} first",
+                number=edge_name(number),
+                edges=", ".join(edges),
+            ),
             "has-further-edges",
         )
     if old is not None:
@@ -404,30 +455,30 @@ def named(name: str, key: row_sums.Key) -> str:
     """A row of a table with a sum, as people call it."""
     table = next((each for each in _TABLES.values() if each.name == name), None)
     if any(log.name == name for log in _LOGS):
-        return f"entry {key} of the offset history"
+        return Message("entry {key} of the offset history", key=key)
     if table is None:
-        return f"{_OTHERS[name]} {' '.join(str(key).split())}"
+        return Message("{others} {text}", others=_OTHERS[name], text=" ".join(str(key).split()))
     if table.letter != "T" or not isinstance(key, int):
         return f"{table.letter}{key}"
-    return f"{edge_name(key)}'s shape" if table.row is ShapeRow else edge_name(key)
+    return Message("{key}'s shape", key=edge_name(key)) if table.row is ShapeRow else edge_name(key)
 
 
 _OTHERS = {
     "settings": "the setting",
-    "part_counts": "the part count of",
-    "tool_lives": "the life of tool",
-    "mill_tool_lives": "the life of tool",
+    "part_counts": "the part-count record",
+    "tool_lives": "the tool-life record",
+    "mill_tool_lives": "the tool-life record",
     "jobs": "the job",
-    "people": "the PIN of",
-    "runs": "the run record of",
+    "people": "the PIN entry",
+    "runs": "the program-run record",
     "part_features": "the measured feature",
     "part_readings": "the reading",
-    "insert_changes": "the insert change",
+    "insert_changes": "the insert-change record",
     "events": "the event",
-    "programs": "the program entry",
-    "program_versions": "the version entry",
-    "part_cycles": "the part cycle",
-    "production_stops": "the production stop",
+    "programs": "the program record",
+    "program_versions": "the program-version record",
+    "part_cycles": "the part-cycle record",
+    "production_stops": "the production-stop record",
     "shared_versions": "the shared version",
     "shared_here": "the shared program",
 }
@@ -466,8 +517,11 @@ def _select(
 def _damaged_entry(entry: object) -> StoreError:
     return StoreError(
         (
-            f"entry {entry} of the offset history is damaged; the offsets themselves are verified "
-            "by separate checksums. Restore a backup to recover the history"
+            Message(
+                "entry {entry} of the offset history is damaged; the offsets themselves are verified "
+                "by separate checksums. Restore a backup to recover the history",
+                entry=entry,
+            )
         ),
         "damaged-history",
     )

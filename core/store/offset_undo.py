@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlite3
 from collections.abc import Mapping
 
+from core.message import Message
 from core.store import offset_tables
 from core.store.offset_tables import Reason
 from core.store.store_errors import StoreError
@@ -23,7 +24,12 @@ def undo_step(
     changed_since = [str(row.number) for row in rows if now.get(row.number) != row.new]
     if not rows or rows[0].step != step or changed_since:
         raise StoreError(
-            (f"offset {', '.join(changed_since) or number or ''} was changed later; undo that change first"),
+            (
+                Message(
+                    "offset {changed_since} was changed later; undo that change first",
+                    changed_since=", ".join(changed_since) or number or "",
+                )
+            ),
             "changed-since",
         )
     after = {**now, **{row.number: row.old for row in rows}}
@@ -38,9 +44,17 @@ def _check(kind: Kind, rows: Mapping[int, Row]) -> None:
     masters = [edge_name(n) for n, row in rows.items() if isinstance(row, ToolRow) and row.master]
     if len(masters) > 1:
         raise StoreError(
-            f"{' and '.join(masters)} would both be the master; clear the master first", "two-masters"
+            Message(
+                ("{masters} would both be master tools; clear the current master first"),
+                masters=" and ".join(masters),
+            ),
+            "two-masters",
         )
     if orphans := [edge_name(n) for n in rows if tool_of(n) not in rows]:
         raise StoreError(
-            f"{', '.join(orphans)} would be left without a tool; clear it first", "has-further-edges"
+            Message(
+                ("{orphans} would be left without a tool; clear this cutting edge first"),
+                orphans=", ".join(orphans),
+            ),
+            "has-further-edges",
         )

@@ -6,6 +6,7 @@ import sqlite3
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from core.message import Message
 from core.store import row_sums
 from core.store.store_errors import StoreError
 
@@ -57,7 +58,10 @@ def check_person(name: str) -> str:
     """The name as it is kept, in capitals. Raises StoreError for what names nobody."""
     name = " ".join(name.split()).upper()
     if not name or len(name) > NAME_LONGEST or not name.isprintable():
-        raise StoreError(f"a name must have 1 to {NAME_LONGEST} characters", "invalid-name")
+        raise StoreError(
+            Message("a name must have 1 to {name_longest} characters", name_longest=NAME_LONGEST),
+            "invalid-name",
+        )
     return name
 
 
@@ -72,7 +76,7 @@ def keep_person(connection: sqlite3.Connection, row: PersonRow) -> None:
 def remove_person(connection: sqlite3.Connection, name: str) -> None:
     """He works here no more. Raises StoreError where nobody of the highest level would stay among others."""
     if not connection.execute("DELETE FROM people WHERE name = ?", (name,)).rowcount:
-        raise StoreError(f"{name} is not in the list of people", "unknown-person")
+        raise StoreError(Message("{name} is not in the list of people", name=name), "unknown-person")
     _demand_service(connection)
 
 
@@ -101,6 +105,9 @@ def _demand_service(connection: sqlite3.Connection) -> None:
     levels = {level for (level,) in connection.execute("SELECT level FROM people")}
     if levels and max(levels) < 3:
         raise StoreError(
-            "one person with SERVICE level must remain to enter the others; enter one first",
+            (
+                "the list of people must contain one person with SERVICE level who can enter "
+                "the others; enter this person first"
+            ),
             "last-service-person",
         )

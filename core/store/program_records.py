@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlite3
 from hashlib import sha256
 
+from core.message import Message
 from core.store import program_texts, row_sums
 from core.store.program_settings import notes_key, part_key, stock_key, text_key
 from core.store.store_errors import StoreError
@@ -19,7 +20,12 @@ def check_name(name: str) -> None:
     clean = name.strip() == name and name not in ("", ".", "..")
     if not clean or not name.isprintable() or _FORBIDDEN & set(name) or len(name.encode()) > _NAME_BYTES:
         raise StoreError(
-            (f"{name!r} is not a valid program name; use letters, digits, periods, dashes and spaces"),
+            (
+                Message(
+                    "{name} is not a valid program name; use letters, digits, periods, dashes and spaces",
+                    name=f"{name!r}",
+                )
+            ),
             "invalid-name",
         )
 
@@ -75,16 +81,29 @@ def load(connection: sqlite3.Connection, name: str, version: int | None) -> byte
         (name, version, version),
     ).fetchone()
     if row is None:
-        which = "" if version is None else f" version {version}"
+        which = "" if version is None else Message(" version {version}", version=version)
         raise StoreError(
-            f"the data store has no program {name!r}{which}; see the list of programs and versions",
+            Message(
+                "the data store has no program {name}{which}; see the list of programs and versions",
+                name=f"{name!r}",
+                which=which,
+            ),
             "no-program",
         )
     number, text, digest = row
     if not _is_whole(text, digest):
         shown = _in_line(number)
         raise StoreError(
-            (f"{name!r} version {shown} differs from what was saved; load another version or a backup"),
+            (
+                Message(
+                    (
+                        "{name} version {value} does not match its checksum; load another version or "
+                        "restore a backup"
+                    ),
+                    name=f"{name!r}",
+                    value=shown,
+                )
+            ),
             "damaged-version",
         )
     return bytes(text)
@@ -96,7 +115,7 @@ def spoilt(connection: sqlite3.Connection) -> tuple[str, ...]:
         "SELECT name, number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
     )
     return tuple(
-        f"{name!r} version {_in_line(number)}"
+        Message("{name} version {number}", name=f"{name!r}", number=_in_line(number))
         for name, number, text, digest in rows
         if not _is_whole(text, digest)
     )

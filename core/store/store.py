@@ -10,6 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
+from core.message import Message
 from core.store import (
     damaged_rows,
     event_log,
@@ -130,7 +131,7 @@ class Store:
                     yield connection
             except sqlite3.ProgrammingError as error:
                 raise StoreError(
-                    f"{self.path} is closed; nothing more can be read from it", "closed"
+                    Message("{path} is closed; nothing more can be read from it", path=self.path), "closed"
                 ) from error
             except sqlite3.Error as error:
                 raise why(self.path, error) from error
@@ -251,7 +252,9 @@ class Store:
     def write(self, operation: Operation[T]) -> Future[T]:
         """Posts one transaction to the writer. Raises StoreError in a read-only store."""
         if self._writer is None:
-            raise StoreError(f"{self.path} is open read-only; nothing can be stored", "read-only")
+            raise StoreError(
+                Message("{path} is open read-only; nothing can be stored", path=self.path), "read-only"
+            )
         return self._writer.post(operation)
 
     def keep(self, keeping: Keeping) -> Future[None]:
@@ -260,7 +263,9 @@ class Store:
         The future is answered when it is on the disk, and with StoreError when it is held for later.
         """
         if self._writer is None:
-            raise StoreError(f"{self.path} is open read-only; nothing can be stored", "read-only")
+            raise StoreError(
+                Message("{path} is open read-only; nothing can be stored", path=self.path), "read-only"
+            )
         return self._writer.keep(keeping)
 
     def set_offset(
@@ -390,12 +395,15 @@ class Store:
         key = self._key(program)
         return self._keep_latest("end", key, lambda c: program_records.ended(c, key, outcome))
 
-    def runs_cut_off(self, outcome: str, words: str) -> Future[None]:
-        """How those ended whose end was never told; a warning for each, its name before ``words``."""
+    def runs_cut_off(self, outcome: str, template: str) -> Future[None]:
+        """Record an outcome for runs without an end, and log a warning ``template`` for each program."""
 
         def operation(connection: sqlite3.Connection) -> None:
             cut_off = program_records.cut_off(connection, outcome)
-            event_log.log(connection, (EventRow(utc_now(), "warning", f"{name}{words}") for name in cut_off))
+            event_log.log(
+                connection,
+                (EventRow(utc_now(), "warning", Message(template, program=name)) for name in cut_off),
+            )
 
         return self._keep_latest("start", "", operation)
 

@@ -8,6 +8,7 @@ from enum import Enum
 from pathlib import Path
 
 from core.coded_error import CodedError
+from core.message import Message
 
 
 class StoreError(CodedError):
@@ -28,11 +29,11 @@ _FORBIDDEN = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 class Cause(Enum):
     """What is wrong, and what to do about it."""
 
-    FULL = "the disk is full, so nothing more can be written to {path}; free space on that disk"
+    FULL = "the disk is full, so nothing more can be written to {path}; free up space on that disk"
     LOCKED = "{path} is locked by another program; close that program, then try again"
     FORBIDDEN = (
-        "this user has no permission for this use of {path} ({error}); check its permissions "
-        "and those of its folder"
+        "this user does not have the required permission for {path} ({error}); check its "
+        "permissions and the permissions of its folder"
     )
     GONE = "{path} was not found: check the name, or put the file back and start turndesk again"
     FAILING = "{path}: the disk is failing ({error}); check that it is connected and in good condition"
@@ -49,7 +50,7 @@ class Cause(Enum):
 
     def error(self, path: Path, error: object) -> StoreError:
         """The sentence for it."""
-        made = StoreError(self.value.format(path=path, error=" ".join(str(error).split())), self.code)
+        made = StoreError(Message(self.value, path=path, error=" ".join(str(error).split())), self.code)
         made.passing = self in {Cause.FULL, Cause.LOCKED}
         return made
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from core.file_placing import folder_in_place
 from core.input_file import MB, input_bytes
+from core.message import Message
 from core.store.offset_fields import Field, Sort
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError, cause_of, said, why
@@ -41,7 +42,10 @@ def export(store: Store, folder: Path) -> int:
     """
     try:
         if folder.exists() and any(folder.iterdir()):
-            raise StoreError(f"{folder} is not empty; name a new folder for the export", "folder-not-empty")
+            raise StoreError(
+                Message("{folder} is not empty; name a new folder for the export", folder=folder),
+                "folder-not-empty",
+            )
         with unfinished_folder(folder) as scratch:
             unfinished = scratch / folder.name
             count = _write_all(store, unfinished)
@@ -51,8 +55,12 @@ def export(store: Store, folder: Path) -> int:
             raise why(folder, error) from error
         raise StoreError(
             (
-                f"{folder} cannot be written ({said(error)}); check the folder, its free space and "
-                "its permissions"
+                Message(
+                    "{target} cannot be written ({error}); check the folder, its free space and its "
+                    "permissions",
+                    target=folder,
+                    error=said(error),
+                )
             ),
             "cannot-write",
         ) from error
@@ -81,14 +89,17 @@ def _file_name(name: object) -> str:
     if isinstance(name, str) and name and Path(name).name == name and "\0" not in name:
         return name
     raise StoreError(
-        f"the data store has a program with the invalid name {name!r}; restore a backup", "invalid-name"
+        Message(
+            "the data store has a program with the invalid name {name}; restore a backup", name=f"{name!r}"
+        ),
+        "invalid-name",
     )
 
 
 def _offset_lines(store: Store) -> Iterator[str]:
     yield "# Offsets in inches; X is a radius."
     for code, zero in store.zero_offsets().items():
-        yield f"[zero.{code}]  # mm and degrees"
+        yield Message("[zero.{code}]  # mm and degrees", code=code)
         yield from (f"{name} = {value!r}" for name, value in zero._asdict().items())
     tools, shapes = store.tools(), store.shapes()
     for number in sorted({*tools, *shapes}):
@@ -150,7 +161,10 @@ def _rows(path: Path, kind: Kind) -> dict[int, dict[str, Value]]:
         text = input_bytes(path, _LARGEST).decode("utf-8")
         table = list(csv.DictReader(io.StringIO(text, newline="")))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise StoreError(f"{path} cannot be read ({error}); export it again", "unreadable-export") from error
+        raise StoreError(
+            Message("{path} cannot be read ({error}); export the data again", path=path, error=error),
+            "unreadable-export",
+        ) from error
     return dict(_numbered(path, line, row, kind) for line, row in enumerate(table, start=2))
 
 
@@ -165,9 +179,12 @@ def _numbered(path: Path, line: int, row: dict[str, str], kind: Kind) -> tuple[i
         }
         return int(row["number"]), values
     except (KeyError, ValueError, TypeError) as error:
-        text = (
-            f"{path} line {line}: {error}; each row must have a number and its values, as written "
-            "by 'store export'"
+        text = Message(
+            "{path} line {line}: {error}; each row must have a number and its values, as written "
+            "by 'store export'",
+            path=path,
+            line=line,
+            error=error,
         )
         raise StoreError(text, "unreadable-export") from error
 
@@ -182,6 +199,15 @@ def program_files(folder: Path) -> dict[str, bytes]:
         return {path.name: input_bytes(path, _LARGEST) for path in sorted((folder / PROGRAMS).iterdir())}
     except OSError as error:
         raise StoreError(
-            (f"{folder} is not an exported folder ({said(error)}); name a folder that 'store export' wrote"),
+            (
+                Message(
+                    (
+                        "{folder} is not an exported folder ({error}); specify a folder that 'store "
+                        "export' created"
+                    ),
+                    folder=folder,
+                    error=said(error),
+                )
+            ),
             "not-an-export",
         ) from error

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
+from core.message import Message, join_messages
 from core.store import event_log, job_queue, program_records
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_rows import EventRow, utc_now
@@ -42,8 +43,10 @@ class Backlog:
     def words(self) -> str:
         """What would be lost if the control ended now."""
         counts = ((self.parts, "part"), (self.events, "event"), (self.others, "other entry"))
-        found = [f"{count} {_many(name, count)}" for count, name in counts if count]
-        return ", ".join(found) or "nothing"
+        found = [
+            Message("{count} {name}", count=count, name=_many(name, count)) for count, name in counts if count
+        ]
+        return join_messages(", ", found) if found else "nothing"
 
 
 class _Parts(NamedTuple):
@@ -116,7 +119,10 @@ class Unwritten:
         refused = [why for why in (_done(each, connection) for each in self._operations()) if why]
         if self._dropped:
             refused.append(
-                f"{self._dropped} events were lost for lack of memory while nothing could be written"
+                Message(
+                    "{dropped} events were lost because memory was full while no data could be saved",
+                    dropped=self._dropped,
+                )
             )
         now = utc_now()
         event_log.log(connection, (*self._events, *(EventRow(now, "warning", why) for why in refused)))
@@ -142,7 +148,7 @@ def _done(operation: Deferred, connection: sqlite3.Connection) -> str:
     try:
         operation(connection)
     except (StoreError, sqlite3.IntegrityError) as error:
-        return f"not saved: {error}"
+        return Message("not saved: {error}", error=error)
     return ""
 
 
@@ -327,8 +333,13 @@ class StoreWriter:
         if not isinstance(error, sqlite3.Error):
             return error
         if isinstance(error, sqlite3.IntegrityError):
-            return StoreError(f"nothing was stored ({error})", "constraint")  # nothing is wrong with the disk
+            return StoreError(
+                Message("nothing was stored ({error})", error=error), "constraint"
+            )  # nothing is wrong with the disk
         self._trouble = str(why(self._path, error))
         cause = cause_of(self._path, error)
-        told = StoreError(f"nothing was stored: {self._trouble}, then make the entry again", cause.code)
+        told = StoreError(
+            Message("nothing was stored: {problem}. Then make the entry again", problem=self._trouble),
+            cause.code,
+        )
         return StoreError(self._trouble, cause.code) if cause is Cause.DAMAGED else told

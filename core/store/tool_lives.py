@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlite3
 from typing import NamedTuple
 
+from core.message import Message
 from core.store import row_sums
 from core.store.store_errors import StoreError
 from core.store.store_rows import MILL_TOOLS, OFFSETS, Kind, utc_now
@@ -99,5 +100,11 @@ def _demand_tool(number: int, kind: Kind) -> None:
     numbers = _NUMBERS[kind]
     if number not in numbers:
         raise StoreError(
-            f"tool T{number} does not exist; tools are T{numbers[0]} to T{numbers[-1]}", "unknown-tool"
+            Message(
+                "tool T{number} does not exist; tools are T{numbers} to T{numbers2}",
+                number=number,
+                numbers=numbers[0],
+                numbers2=numbers[-1],
+            ),
+            "unknown-tool",
         )

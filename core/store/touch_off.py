@@ -10,6 +10,7 @@ from __future__ import annotations
 import sqlite3
 from typing import NamedTuple
 
+from core.message import Message
 from core.store import offset_tables
 from core.store.offset_tables import Reason
 from core.store.store_errors import StoreError
@@ -40,7 +41,13 @@ def touch_off(
     rows = offset_tables.tools(connection)
     old = rows.get(number)
     if old is None and (touch.x is None or touch.z is None):
-        raise StoreError(f"{edge_name(number)} has never been set; touch off both X and Z", "needs-both-axes")
+        raise StoreError(
+            Message(
+                ("the offset of {number} has never been set; touch off both X and Z"),
+                number=edge_name(number),
+            ),
+            "needs-both-axes",
+        )
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
     new = _tool(number, old, {**geometry, **{f"wear_{name}": 0.0 for name in geometry}})
     changes: dict[int, tuple[Row | None, Row | None]] = {number: (old, new)}

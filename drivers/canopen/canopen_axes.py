@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from core.message import Message
 from core.ports import AxisSample, DriverError, Segments, Stop, at_rest, code_of
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
@@ -102,7 +103,10 @@ class CanopenAxes:
         self._need_power()
         homing = self.homing or self._given_up
         if homing is not None:
-            raise DriverError(f"{homing.config.name} is homing; wait until it is done", reason="homing")
+            raise DriverError(
+                Message("{name} is homing; wait until homing is complete", name=homing.config.name),
+                reason="homing",
+            )
         check_limits(segments, self.config.axes, self._homed())
         self.follower.check(segments)
         self.queue.splice(segments, self.now())
@@ -136,7 +140,13 @@ class CanopenAxes:
             self.drives.power_off()
             return
         if self.fault:
-            raise DriverError(f"drives stay off: {self.fault}; clear the fault first", "no-power")
+            raise DriverError(
+                Message(
+                    "the drives stay off because of a fault ({fault}); clear the fault first",
+                    fault=self.fault,
+                ),
+                "no-power",
+            )
         if self._powered():
             return
         self.follower.prepare()
@@ -156,14 +166,18 @@ class CanopenAxes:
     def home(self, axis: str) -> None:
         """Start the drive's homing. Raises DriverError."""
         if axis not in self.axes:
-            raise DriverError(f"there is no axis {axis!r}", reason="no-axis")
+            raise DriverError(Message("axis {axis} does not exist", axis=f"{axis!r}"), reason="no-axis")
         driven = next((a for a in self.drives.axes if a.config.name == axis), None)
         if driven is None or driven.config.absolute:
             return
         self._need_power()
         if self.sample().moving:
             raise DriverError(
-                f"{axis} cannot home while an axis moves; wait for standstill", "homing", reason="axis-moves"
+                Message(
+                    "{axis} cannot home while an axis is moving; wait until all axes are at rest", axis=axis
+                ),
+                "homing",
+                reason="axis-moves",
             )
         self.follower.abort()
         self.homing = Homing(driven, self.follower.mode, self.now())
@@ -252,7 +266,9 @@ class CanopenAxes:
 
     def _need_power(self) -> None:
         if self.fault:
-            raise DriverError(f"{self.fault}; clear the fault first", code_of(self.fault, "axis"))
+            raise DriverError(
+                Message("{fault}; clear the fault first", fault=self.fault), code_of(self.fault, "axis")
+            )
         if not self._powered():
             raise DriverError("the drives are off; switch them on first", "power-lost")
 

@@ -15,6 +15,7 @@ from canopen.sdo.client import SdoClient
 from canopen.sdo.constants import RESPONSE_ABORTED
 from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
+from core.message import Message
 from core.ports import Clock, DriverError, Fault
 from drivers.canopen.canopen_nodes import BusConfig
 
@@ -74,7 +75,7 @@ class Bus(canopen.Network):
             try:
                 message = self.bus.recv(wait)
             except (can.CanError, OSError) as error:
-                self.lost(f"the CAN interface has failed: {error}")
+                self.lost(Message("the CAN interface has failed: {error}", error=error))
                 return
             if message is None:
                 return
@@ -92,15 +93,22 @@ class Bus(canopen.Network):
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
         """Send one frame. Raises DriverError when the interface does not take it."""
         if self.bus is None or self.trouble:
-            raise DriverError(f"CAN {self.config.channel}: {self.trouble or 'closed'}", "bus")
+            raise DriverError(
+                Message(
+                    "CAN {channel}: {problem}", channel=self.config.channel, problem=self.trouble or "closed"
+                ),
+                "bus",
+            )
         frame = can.Message(
             arbitration_id=can_id, data=bytes(data), is_extended_id=False, is_remote_frame=remote
         )
         try:
             self.bus.send(frame)
         except (can.CanError, OSError) as error:
-            self.lost(f"the CAN interface does not send: {error}")
-            raise DriverError(f"CAN {self.config.channel}: {self.trouble}", "bus") from error
+            self.lost(Message("the CAN interface cannot send: {error}", error=error))
+            raise DriverError(
+                Message("CAN {channel}: {problem}", channel=self.config.channel, problem=self.trouble), "bus"
+            ) from error
 
     def synchronise(self) -> None:
         """One SYNC: drives apply what was sent before it, and answer."""
@@ -140,7 +148,10 @@ class Bus(canopen.Network):
     def _take(self, message: can.Message) -> None:
         if message.is_error_frame:
             if message.arbitration_id & _BUS_OFF:
-                self.lost("bus-off: the CAN controller has switched itself off; check cable and termination")
+                self.lost(
+                    "bus-off: the CAN controller has disconnected itself from the bus; check cable and "
+                    "termination"
+                )
         elif not message.is_remote_frame and not message.is_extended_id:
             self._deliver(message)
 
@@ -153,12 +164,18 @@ class Bus(canopen.Network):
             _log.warning("CAN frame %03X makes no sense: %s", message.arbitration_id, error)
             if self.garbled >= _GARBLED:
                 self.lost(
-                    f"frames that make no sense, the last {message.arbitration_id:03X}: check node numbers"
+                    Message(
+                        (
+                            "invalid CAN frames received, the last with ID {arbitration_id}; check the "
+                            "node numbers"
+                        ),
+                        arbitration_id=f"{message.arbitration_id:03X}",
+                    )
                 )
 
     def _another_master(self, can_id: int, _data: bytearray, _timestamp: float) -> None:
         what = {_SYNC: "SYNC", _NMT: "NMT commands"}.get(can_id, "our heartbeat")
-        self.lost(f"another master sends {what} on this bus; switch it off")
+        self.lost(Message("another master is sending {what} on this bus; switch that master off", what=what))
 
 
 class WaitingSdo(SdoClient):
@@ -220,8 +237,20 @@ def opened(config: BusConfig) -> can.BusABC:
 
 
 def _refuse(config: BusConfig, error: Exception) -> NoReturn:
-    hint = f"is it up? ip link set {config.channel} up type can bitrate {config.bitrate}"
-    how = hint if config.interface == "socketcan" else "check [canopen] interface and channel"
+    hint = Message(
+        "bring the interface up: ip link set {channel} up type can bitrate {bitrate}",
+        channel=config.channel,
+        bitrate=config.bitrate,
+    )
+    how = hint if config.interface == "socketcan" else "check the interface and channel in [canopen]"
     if "not installed" in str(error):  # msgpack, of udp_multicast
-        how = "pip install 'turndesk[canopen]'"
-    raise DriverError(f"CAN {config.interface} {config.channel} cannot be opened: {error}; {how}") from error
+        how = "run: pip install 'turndesk[canopen]'"
+    raise DriverError(
+        Message(
+            "CAN interface {interface}, channel {channel}, cannot be opened: {error}; {method}",
+            interface=config.interface,
+            channel=config.channel,
+            error=error,
+            method=how,
+        )
+    ) from error

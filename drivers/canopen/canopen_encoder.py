@@ -7,6 +7,7 @@ from collections import deque
 import canopen
 from canopen.emcy import EmcyError
 
+from core.message import Message
 from core.ports import DriverError, Fault
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
@@ -67,9 +68,14 @@ class CanEncoder:
         """Supervise."""
         silent = self._bus.clock.now() - self._heard
         if self._drive is None and silent > 3.0 * self._bus.config.heartbeat:
-            self._wrong(f"no heartbeat for {silent:.2f} s; check cable and power")
+            self._wrong(
+                Message(
+                    ("no heartbeat from the encoder for {silent} s; check cable and power"),
+                    silent=f"{silent:.2f}",
+                )
+            )
         elif self.missing > SYNCS:
-            self._wrong("it does not answer SYNC; check cable and power")
+            self._wrong("the encoder does not respond to SYNC; check cable and power")
 
     def clear_fault(self) -> None:
         """Configure it anew where something was wrong; without it the slides go on, the spindle does not."""
@@ -79,7 +85,7 @@ class CanEncoder:
             self.connect()
             self.operational()
         except DriverError as error:
-            self.trouble = Fault(f"spindle encoder {error}", "spindle-encoder")
+            self.trouble = Fault(Message("spindle encoder {error}", error=error), "spindle-encoder")
 
     def speed(self) -> float:
         """rpm, signed, over the last tenth of a second."""
@@ -104,8 +110,14 @@ class CanEncoder:
         if counts != abs(config.counts_per_rev):
             where = "6001:0" if scaled else "6501:0"
             raise DriverError(
-                f"{config.name}: the encoder has {counts} counts a turn (object {where}),"
-                f" spindle.encoder.counts_per_rev says {abs(config.counts_per_rev)}"
+                Message(
+                    "{name}: the encoder reports {counts} counts per revolution (object {place}), but "
+                    "spindle.encoder.counts_per_rev is {counts_per_rev}",
+                    name=config.name,
+                    counts=counts,
+                    place=where,
+                    counts_per_rev=abs(config.counts_per_rev),
+                )
             )
         turns = setup.read(od.ENCODER_TURNS)
         self._range = (setup.read(od.ENCODER_RANGE) if scaled else counts * max(turns, 1)) or _WORD
@@ -113,8 +125,15 @@ class CanEncoder:
         between = (SYNCS + 1) * wait * config.rpm_max / 60.0  # turns, at most
         if self._range < 2.0 * between * counts:
             raise DriverError(
-                f"{config.name}: the encoder begins anew after {self._range / counts:.3g} turns, and the"
-                f" spindle may make {between:.2g} between two answers; it needs {2.0 * between:.3g} or more"
+                Message(
+                    "{name}: the encoder count wraps around after {range} rev, but the spindle may turn "
+                    "{between} rev between two responses; use an encoder that counts at least "
+                    "{between2} rev",
+                    name=config.name,
+                    range=f"{self._range / counts:.3g}",
+                    between=f"{between:.2g}",
+                    between2=f"{2.0 * between:.3g}",
+                )
             )
 
     def _told(self, map_: canopen.pdo.PdoMap) -> None:
@@ -142,20 +161,35 @@ class CanEncoder:
             * max(passed, self._bus.config.sync * self._bus.config.seldom)
         )
         if turns > most:
-            self._wrong(f"its counts leap by {turns:.2f} turns at once; check cable and shield")
+            self._wrong(
+                Message(
+                    (
+                        "the encoder count jumped by {revolutions} revolutions in one step; check "
+                        "cable and shield"
+                    ),
+                    revolutions=f"{turns:.2f}",
+                )
+            )
 
     def _heartbeat(self, state: int) -> None:
         self._heard = self._bus.clock.now()
         if state == 0:
-            self._wrong("it has restarted")
+            self._wrong("the encoder has restarted")
 
     def _emergency(self, error: EmcyError) -> None:
         if error.code & 0xFF00:
-            self._wrong(f"{error.get_desc().lower() or 'device error'} (EMCY {error.code:04X})")
+            self._wrong(
+                Message(
+                    "{description} (EMCY {code})",
+                    description=error.get_desc().lower() or "device error",
+                    code=f"{error.code:04X}",
+                )
+            )
 
     def _wrong(self, what: str) -> None:
         self.trouble = self.trouble or Fault(
-            f"spindle encoder {self._config.name}: {what}", "spindle-encoder"
+            Message("spindle encoder {name}: {what}", name=self._config.name, what=what),
+            "spindle-encoder",
         )
 
 
@@ -178,7 +212,7 @@ class MeasuredSpindle:
         """There is nothing to turn. Raises DriverError, unless asked to stop."""
         if rpm:
             raise DriverError(
-                "there is no spindle drive on this bus; see spindle.driver", "spindle-off", reason="no-drive"
+                "this bus has no spindle drive; check spindle.driver", "spindle-off", reason="no-drive"
             )
 
     def coast(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from enum import Enum
 
+from core.message import Message
 from core.ports import DriverError, Fault
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_objects import BIT_12, BIT_13, HALT, HM, NEW, REACHED, DriveState
@@ -17,12 +18,12 @@ _STILL = 0.1  # s without a count before a drive that was halted counts as stand
 
 
 class _Step(Enum):
-    MODE = "waits for the homing mode"
-    RUN = "looks for the switch"
-    SETTLE = "has found it, and begins to count anew"
-    HALT = "brakes, given up"
-    BACK = "waits for the old mode"
-    DONE = "back in its old mode"
+    MODE = "waiting for the drive to change to homing mode"
+    RUN = "searching for the home switch"
+    SETTLE = "switch found; the position count is being reset"
+    HALT = "homing canceled; the axis is braking"
+    BACK = "waiting for the drive to return to the previous mode"
+    DONE = "the drive has returned to the previous mode"
 
 
 class Homing:
@@ -59,7 +60,7 @@ class Homing:
         elif self._step is _Step.BACK and drive.shown_mode == self._back:
             self._enter(_Step.DONE, now)
         elif self._step in {_Step.MODE, _Step.BACK} and waited > _MODE:
-            self._fail(f"the drive stays in mode {drive.shown_mode}")
+            self._fail(Message("the drive stays in mode {shown_mode}", shown_mode=drive.shown_mode))
 
     def give_up(self) -> None:
         """Halt: the drive brakes. Its mode changes back once it stands; some refuse that in motion."""
@@ -84,7 +85,7 @@ class Homing:
         elif waited > _FIRST and status & BIT_12 and status & REACHED:
             self._enter(_Step.SETTLE, now)
         elif waited > self._longest():
-            self._fail("no switch was found within the travel")
+            self._fail("no home switch was found within the axis travel")
 
     def _longest(self) -> float:
         low, high = self.config.travel or (0.0, 360.0)
@@ -95,7 +96,9 @@ class Homing:
 
     def _fail(self, why: str) -> None:
         self._drive.extra &= ~NEW
-        self.trouble = Fault(f"{self.config.name}: homing has failed: {why}", "homing")
+        self.trouble = Fault(
+            Message("{name}: homing failed: {why}", name=self.config.name, why=why), "homing"
+        )
 
     def _write(self) -> None:
         """Method, speeds, acceleration and place, as far as the drive has them. Raises DriverError."""
@@ -111,8 +114,13 @@ class Homing:
         place = round(config.home_offset / config.count)
         if not setup.try_write(config.profile.home_place, 0, place) and place:
             raise DriverError(
-                f"{config.name}: the drive has no object {config.profile.home_place:04X}h, home offset:"
-                f" axis.{config.name}.home.offset must be 0",
+                Message(
+                    "{name}: the drive has no object {home_place}h (home offset), so "
+                    "axis.{name2}.home.offset must be 0",
+                    name=config.name,
+                    home_place=f"{config.profile.home_place:04X}",
+                    name2=config.name,
+                ),
                 "homing",
             )
 
@@ -142,13 +150,13 @@ class Referencing:
 
     def index(self, now: float) -> None:
         """Look for the index. Raises DriverError."""
-        self._limit, self._why = _SEARCH, "no index was found within a turn"
+        self._limit, self._why = _SEARCH, "no encoder index was found within one revolution"
         self._drive.setup.write(od.HOME_METHOD, 0, _INDEX)
         self._begin(0, now)
 
     def set_position(self, place: int, now: float) -> None:
         """It counts ``place`` where it stands. Raises DriverError."""
-        self._limit, self._why = _CHANGE, "it does not take its position"
+        self._limit, self._why = _CHANGE, "the drive does not accept its new position"
         try:
             self._drive.setup.write(od.HOME_METHOD, 0, _HERE[0])
         except DriverError:
@@ -163,7 +171,12 @@ class Referencing:
                 drive.extra, self._told, self._since = NEW, True, now
             elif waited > _CHANGE:
                 raise DriverError(
-                    f"C: the spindle's drive is {drive.state} in mode {drive.shown_mode}", "c-coupling"
+                    Message(
+                        "C: the spindle drive remains in state {state}, mode {shown_mode}",
+                        state=drive.state,
+                        shown_mode=drive.shown_mode,
+                    ),
+                    "c-coupling",
                 )
             return False
         if drive.status & BIT_13 or waited > self._limit:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from core.message import Message
 from core.ports import (
     ALL_UNKNOWN,
     PROBE,
@@ -30,7 +31,7 @@ from drivers.sample_log import KEPT, SampleLog
 
 _NAN = float("nan")
 _UNTRACED = (
-    'the drives plan single moves by themselves ([canopen] mode = "pp"): no test can be played to them'
+    'drive tests are not available, because with [canopen] mode = "pp" the drives plan their own moves'
 )
 _BEFORE, _PART_BEFORE = 0.0004, 0.3  # s, and of a period: before a SYNC its answers are taken in
 _EPSILON = 1e-9
@@ -186,9 +187,19 @@ class CanopenMachine:
         if not isinstance(follower, CyclicFollower) or not follower.gaps or now < self._told + _QUIET:
             return ()
         schedule = follower.schedule
-        told = f"setpoints came late {follower.gaps} times, by {1000 * schedule.worst:.1f} ms at most"
+        told = Message(
+            "setpoints were late {gaps} times, by up to {worst} ms",
+            gaps=follower.gaps,
+            worst=f"{1000 * schedule.worst:.1f}",
+        )
         follower.gaps, schedule.worst, self._told = 0, 0.0, now
-        return (f"{told}: the path waited for them; has the feeder real-time priority?",)
+        return (
+            Message(
+                "{details}, and the axes waited for the setpoints; check that the driver host has "
+                "real-time priority",
+                details=told,
+            ),
+        )
 
     def _cycle(self) -> None:
         """SYNC at its time, then what the drives take at the next one."""

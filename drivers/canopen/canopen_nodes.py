@@ -13,6 +13,7 @@ from core.table_schema import (
     FileReading,
     Finding,
     Kind,
+    TableReference,
     expected_table,
     read_named,
     unknown_keys,
@@ -34,11 +35,58 @@ _ANSWERS, _ANSWER_TIME = 3, 0.02  # SYNCs, s
 CYCLIC = ("csp", "ip")  # modes with a setpoint each SYNC
 EVENED_OUT = 0.25  # of a period that a SYNC may be late
 _NODE = (
-    Field("id", Kind.WHOLE, low=1, high=127),
-    Field("profile", Kind.WHOLE, low=401, high=406, default=402),
-    Field("drive", Kind.CHOICE, choices=tuple(PROFILES), default=""),
-    Field("eds", Kind.TEXT, default=""),
-    Field("counts_per_rev", Kind.WHOLE, low=0, high=100_000_000, default=0),
+    Field("id", Kind.WHOLE, low=1, high=127, meaning="Node number set at the device."),
+    Field(
+        "profile",
+        Kind.WHOLE,
+        low=401,
+        high=406,
+        default=402,
+        meaning="Device profile of CiA: 402 (drive), 401 (input and output module) or 406 (encoder).",
+    ),
+    Field(
+        "drive",
+        Kind.CHOICE,
+        choices=tuple(PROFILES),
+        default="",
+        meaning=(
+            "Family of the drive. Default: `drive` of [canopen]; without it the family that the EDS "
+            "file names, or plain CiA 402."
+        ),
+    ),
+    Field(
+        "eds",
+        Kind.TEXT,
+        default="",
+        meaning=(
+            "EDS file of the device, in the folder of the machine file. Default: the objects of the "
+            "family or of the standard."
+        ),
+    ),
+    Field(
+        "counts_per_rev",
+        Kind.WHOLE,
+        low=0,
+        high=100_000_000,
+        default=0,
+        meaning=(
+            "Encoder counts per motor revolution, 4 × the lines, for drives that count speeds in "
+            "rpm. 0: the drive counts speeds in counts/s. For the spindle: counts per spindle "
+            "revolution, needed for threads and C."
+        ),
+    ),
+)
+NODE_REFERENCE = TableReference(
+    "canopen.nodes.…",
+    "A device on the bus. A drive has the name of its axis or `spindle`; other devices have any name.",
+    _NODE,
+)
+SDO_REFERENCE = TableReference(
+    "canopen.sdo.…",
+    "Objects that TurnDesk writes to a node at each start and reads back; the last word of the heading "
+    "is the "
+    'node, or `all` for every drive. The key is index:sub-index, such as `"6007:0"`, with the index in '
+    "hexadecimal; the value is an integer of 32 bits.",
 )
 Objects = tuple[tuple[int, int, int], ...]  # index, sub-index, value: written at every start and read back
 
@@ -154,11 +202,11 @@ def _wrong_object(key: str, value: object) -> str:
     """What was expected instead; empty where the entry is good."""
     address = sdo_address(key)
     if address is None:
-        return 'expected the address of an object as the key: "6007:0", index in hexadecimal'
+        return 'the key must be an object address with the index in hexadecimal, such as "6007:0"'
     if not _whole(value) or not _LOW <= value <= _HIGH:
-        return "expected a whole number of 32 bits"
+        return "the value must be a 32-bit integer"
     if address[0] == _WINDOW and value % 2**32 == _OFF:
-        return "expected a window: this value switches the drive's following error monitoring off"
+        return "this value turns off the drive's following error monitoring; enter a following error window"
     return ""
 
 

@@ -15,6 +15,7 @@ from canopen.objectdictionary import ODArray, ODRecord, ODVariable
 from canopen.objectdictionary import datatypes as kind
 
 from core.input_file import MB, input_text
+from core.message import Message
 from core.ports import DriverError
 from drivers.canopen.canopen_nodes import CanNode
 from drivers.canopen.drive_profiles import CIA402, DriveProfile, profile_of
@@ -126,9 +127,17 @@ def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) ->
         found = _read(Path(eds))
     except (OSError, ValueError, KeyError, configparser.Error) as error:
         reason = str(error).splitlines()[0]
-        raise DriverError(f"{name}: the EDS file {eds} cannot be read: {reason}") from error
+        raise DriverError(
+            Message("{name}: the EDS file {eds} cannot be read: {reason}", name=name, eds=eds, reason=reason)
+        ) from error
     if DEVICE_TYPE not in found:
-        raise DriverError(f"{name}: the EDS file {eds} has no object 1000h, which every device has")
+        raise DriverError(
+            Message(
+                "{name}: the EDS file {eds} does not contain object 1000h, which every device has",
+                name=name,
+                eds=eds,
+            )
+        )
     return found
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from core.message import Message
 from core.table_schema import FileReading, Finding, Values, written
 from drivers.canopen.bus_load import cyclic_load
 from drivers.canopen.canopen_nodes import (
@@ -56,7 +57,11 @@ def _times(values: Values) -> Iterator[Finding]:
     if values.has("canopen.heartbeat_ms", "canopen.sync_ms"):
         beat, sync = values.number("canopen.heartbeat_ms"), values.number("canopen.sync_ms")
         if beat < 2 * sync:
-            yield Finding("canopen.heartbeat_ms", f"{1000 * beat:g}", "expected two times sync_ms or more")
+            yield Finding(
+                "canopen.heartbeat_ms",
+                f"{1000 * beat:g}",
+                ("the heartbeat time must be at least twice sync_ms"),
+            )
     if values.says("canopen.mode", "pvt") and values.has("canopen.record_ms", "machine.commit_ms"):
         yield from _queue(values.number("canopen.record_ms"), values.number("machine.commit_ms"), values)
 
@@ -64,11 +69,20 @@ def _times(values: Values) -> Iterator[Finding]:
 def _queue(record: float, commit: float, values: Values) -> Iterator[Finding]:
     if abs(1000 * record - round(1000 * record)) > 1e-6:
         yield Finding(
-            "canopen.record_ms", f"{1000 * record:g}", "expected whole milliseconds: PVT counts in them"
+            "canopen.record_ms",
+            f"{1000 * record:g}",
+            "the record time must be a whole number of milliseconds, the time unit of PVT",
         )
     least = _RECORDS * record + _RESTART
     if values.says("machine.backend", "canopen") and commit < least - 1e-9:
-        expected = f"expected {1000 * least:g} or more: {_RECORDS} records in the drives and a restart"
+        expected = Message(
+            (
+                "the time must be at least {minimum} ms to cover {records} PVT records queued "
+                "in the drives and a restart"
+            ),
+            minimum=f"{1000 * least:g}",
+            records=_RECORDS,
+        )
         yield Finding("machine.commit_ms", f"{1000 * commit:g}", expected)
 
 
@@ -83,12 +97,24 @@ def _families(file: FileReading) -> Iterator[Finding]:
             continue
         known = family or said(file, f"{path}.eds")
         if values.says("canopen.mode", "pvt") and (not known or (family and family not in QUEUED)):
-            why = f'expected {queued}: mode "pvt" needs a queue in the drive; others take "csp", "ip" or "pp"'
+            why = Message(
+                (
+                    'the drive must be {queued}, because mode "pvt" needs a drive with a queue; '
+                    'with other drives, use "csp", "ip" or "pp"'
+                ),
+                queued=queued,
+            )
             yield Finding(f"{path}.drive", written(family) if family else "", why)
         counts = f"{path}.counts_per_rev"
         if family in IN_RPM and values.has(counts) and values.number(counts) == 0:
             title = PROFILES[family].title
-            why = f"missing; {title} counts speeds in rpm: 4 × the pulses a turn of its encoder"
+            why = Message(
+                (
+                    "this entry is missing; {title} reports speeds in rpm, so enter 4 × the "
+                    "encoder pulses per revolution"
+                ),
+                title=title,
+            )
             yield Finding(counts, "", why)
 
 
@@ -100,12 +126,17 @@ def _cyclic(file: FileReading) -> Iterator[Finding]:
     sync, bitrate = values.number("canopen.sync_ms"), values.whole("canopen.bitrate")
     if abs(1000 * sync - round(1000 * sync)) > 1e-6:
         yield Finding(
-            "canopen.sync_ms", f"{1000 * sync:g}", "expected whole milliseconds: 60C2 counts in them"
+            "canopen.sync_ms",
+            f"{1000 * sync:g}",
+            "the time must be a whole number of milliseconds, the time unit of object 60C2",
         )
     if values.has("machine.commit_ms"):
         commit, least = values.number("machine.commit_ms"), max(_CYCLES * sync, _CYCLIC_LEAST)
         if commit < least - 1e-9:
-            expected = f"expected {1000 * least:g} or more: what is on its way to the drives"
+            expected = Message(
+                "the time must be at least {minimum} ms to cover the setpoints in transit to the drives",
+                minimum=f"{1000 * least:g}",
+            )
             yield Finding("machine.commit_ms", f"{1000 * commit:g}", expected)
     nodes = file.names(NODES)
     slides = sum(name in file.axes for name in nodes)
@@ -113,8 +144,13 @@ def _cyclic(file: FileReading) -> Iterator[Finding]:
     load = cyclic_load(slides, len(nodes) - slides, bitrate, sync, seldom)
     if not load.fits:
         fits = next((ms for ms in range(1, 101) if _fits(slides, len(nodes) - slides, bitrate, ms)), 0)
-        expected = f"{slides} drives take {load.share:.0%} of {bitrate:g} bit/s, more than has room"
-        best = f"; expected {fits} or more" if fits else ""
+        expected = Message(
+            "{axes} axis drives use {share} of the bus capacity of {bitrate} bit/s, which is too much",
+            axes=slides,
+            share=f"{load.share:.0%}",
+            bitrate=f"{bitrate:g}",
+        )
+        best = Message("; set sync_ms to at least {fits}", fits=fits) if fits else ""
         yield Finding("canopen.sync_ms", f"{1000 * sync:g}", expected + best)
 
 
@@ -136,12 +172,20 @@ def _numbers(file: FileReading) -> Iterator[Finding]:
         number, profile = values.whole(f"{path}.id"), values.whole(f"{path}.profile")
         first = taken.setdefault(number, path)
         if first != path:
-            yield Finding(f"{path}.id", str(number), f"expected a number of its own; {first} has it")
+            yield Finding(
+                f"{path}.id",
+                str(number),
+                Message("{first} already uses this node number; choose another number", first=first),
+            )
         if profile == DRIVE and name not in moved:
-            why = f"a drive is named after what it moves: {', '.join(moved)}; I/O has profile = 401"
+            why = Message(
+                "a drive must be named after the axis or spindle that it moves: {moved}; for an I/O "
+                "module, set profile = 401",
+                moved=", ".join(moved),
+            )
             yield Finding(path, "", why)
         if profile != DRIVE and name in moved:
-            yield Finding(f"{path}.profile", str(profile), "expected 402, a drive")
+            yield Finding(f"{path}.profile", str(profile), "the profile must be 402 (drive)")
 
 
 def _heartbeat(file: FileReading) -> Iterator[Finding]:
@@ -157,15 +201,21 @@ def _heartbeat(file: FileReading) -> Iterator[Finding]:
             watched, patience = value >> 16 & 0x7F, (value & 0xFFFF) / 1000.0
             if watched != host or patience < 2 * beat:
                 best = host << 16 | round(3000 * beat)
-                expected = (
-                    f"watches node {watched} for {1000 * patience:g} ms; expected {best}: the host, 3 beats"
+                expected = Message(
+                    (
+                        "this entry monitors node {watched} with a timeout of {patience} ms; set "
+                        "{best} to monitor the host with a timeout of 3 heartbeats"
+                    ),
+                    watched=watched,
+                    patience=f"{1000 * patience:g}",
+                    best=best,
                 )
                 yield Finding(object_path(node, index, sub), str(value), expected)
 
 
 _C_WITHOUT = (
-    ', or counts_per_rev of the spindle\'s drive, which is C as well with canopen mode = "pvt"'
-    " and without axis.C.own_drive"
+    ", or set counts_per_rev of the spindle drive, which also serves as the C axis with "
+    'canopen mode = "pvt" and without axis.C.own_drive'
 )
 
 
@@ -178,11 +228,21 @@ def _drives(file: FileReading) -> Iterator[Finding]:
         method = f"axis.{axis}.home.method"
         if axis not in nodes and not (axis == "C" and _turned_by_spindle(file)):
             own = _C_WITHOUT if axis == "C" and values.says("spindle.driver", "cia402") else ""
-            yield Finding(f"{NODES}.{axis}", "", f"missing; axis {axis} needs a drive{own}")
+            yield Finding(
+                f"{NODES}.{axis}",
+                "",
+                Message(("this entry is missing; axis {axis} needs a drive{own}"), axis=axis, own=own),
+            )
         if values.has(method) and values.number(method) == 0:
-            yield Finding(method, "", "missing; expected the drive's method, 1 or 2 for a limit switch")
+            yield Finding(
+                method,
+                "",
+                ("this entry is missing; enter the drive's homing method, 1 or 2 for a limit switch"),
+            )
     if values.says("spindle.driver", "cia402") and SPINDLE not in nodes:
-        yield Finding(f"{NODES}.spindle", "", 'missing; spindle.driver = "cia402" needs a drive')
+        yield Finding(
+            f"{NODES}.spindle", "", ('this entry is missing; spindle.driver = "cia402" needs a drive')
+        )
 
 
 def _turned_by_spindle(file: FileReading) -> bool:
@@ -204,7 +264,15 @@ def _outside(file: FileReading) -> Iterator[Finding]:
         if math.inf in map(abs, ends):
             continue  # a rotary axis without an end
         if max(map(abs, ends)) / count > _MOST:
-            yield Finding(path, "", f"is more than a drive can count: {_MOST} counts of {count:g}")
+            yield Finding(
+                path,
+                "",
+                Message(
+                    "the travel exceeds the counting range of a drive: {maximum} counts of {count} each",
+                    maximum=_MOST,
+                    count=f"{count:g}",
+                ),
+            )
         for node in ("all", axis):
             for index, sub, value in objects_of(file, node):
                 if index != _LIMITS or sub not in {1, 2}:
@@ -212,7 +280,14 @@ def _outside(file: FileReading) -> Iterator[Finding]:
                 signed = value - 2**32 if value > _MOST else value
                 needed = round(ends[sub - 1] / count)
                 if signed > needed if sub == 1 else signed < needed:
-                    why = f"cuts {path}, which needs {needed} counts"
+                    why = Message(
+                        (
+                            "this software limit allows less travel than {path}, which needs a limit of "
+                            "{needed} counts"
+                        ),
+                        path=path,
+                        needed=needed,
+                    )
                     yield Finding(object_path(node, index, sub), str(value), why)
 
 
@@ -235,17 +310,28 @@ def _wrong_terminal(file: FileReading, text: str, *, output: bool, analog: bool)
     terminal = can_terminal(text)
     sample = "401.6401.1" if analog else "401.6200.1.0" if output else "401.6000.1.0"
     if terminal is None or (terminal.bit < 0) != analog:
-        return f'expected node, object, sub-index{"" if analog else " and bit"}: "{sample}"'
+        return Message(
+            'the address must consist of node, object, sub-index{ending}, such as "{sample}"',
+            ending="" if analog else " and bit",
+            sample=sample,
+        )
     modules = module_names(file)
     plain = terminal.node == PLAIN_MODULE
     profile = (MODULE if modules else 0) if plain else profile_of(file, terminal.node)
     if not profile:
-        return f"expected an I/O module of [canopen.nodes]: {', '.join(modules) or 'none is there'}"
+        return Message(
+            "the address must name an I/O module of [canopen.nodes]: {modules}",
+            modules=", ".join(modules) or "none defined",
+        )
     if profile == DRIVE:
         right = terminal.index == _DRIVE_INPUT and not output and not analog and terminal.bit < 32
-        return "" if right else "a drive has inputs only: 60FD.0 and bits 0…31"
+        return "" if right else ("a drive provides only digital inputs; use object 60FD.0 and bits 0…31")
     wanted = _ANALOG if analog else _OUTPUT if output else INPUT
     most = _WORDS if analog else _BYTES
     if terminal.index != wanted or not 1 <= terminal.sub <= most:
-        return f"expected object {wanted:04X}, sub-index 1…{most}"
-    return "" if terminal.bit < BITS else "expected a bit, 0…7"
+        return Message(
+            ("the address must contain object {expected} with sub-index 1…{maximum}"),
+            expected=f"{wanted:04X}",
+            maximum=most,
+        )
+    return "" if terminal.bit < BITS else "the bit number must be from 0 to 7"

@@ -9,6 +9,7 @@ import canopen
 from canopen.pdo import PdoBase, PdoMap
 from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
+from core.message import Message
 from core.ports import DriverError, Segments
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus, Node
@@ -47,7 +48,14 @@ class Setup:
         if not self.lacks:
             return ()
         told = "; ".join(f"{index:04X}h {what}" for index, what in sorted(self.lacks.items()))
-        return (f"{self._name}: node {self.node.id} has not: {told}",)
+        return (
+            Message(
+                "{name}: node {node} lacks these objects: {details}",
+                name=self._name,
+                node=self.node.id,
+                details=told,
+            ),
+        )
 
     def pre_operational(self) -> None:
         """PDO mapping may only change there."""
@@ -73,8 +81,15 @@ class Setup:
         if kept != data:
             shown = int.from_bytes(kept, "little")
             raise DriverError(
-                f"{self._name}: object {index:04X}:{sub} stays at {shown} instead of {value};"
-                f" check what the drive allows and [canopen.sdo]",
+                Message(
+                    "{name}: object {index}:{sub} remains at {shown} instead of {value}; check which "
+                    "values the drive allows, and check [canopen.sdo]",
+                    name=self._name,
+                    index=f"{index:04X}",
+                    sub=sub,
+                    shown=shown,
+                    value=value,
+                ),
                 "drive-setup",
             )
 
@@ -97,13 +112,25 @@ class Setup:
         missing = [f"{index:04X}h {self.lacks[index]}" for index in needed if index in self.lacks]
         if missing:
             raise DriverError(
-                f"{self._name}: node {self.node.id} cannot be used here, it has not: {'; '.join(missing)}",
+                Message(
+                    "{name}: node {node} cannot be used because it lacks these objects: {missing}",
+                    name=self._name,
+                    node=self.node.id,
+                    missing="; ".join(missing),
+                ),
                 "drive-setup",
             )
         if absent:
-            where = "; take them out of [canopen.sdo], or check the EDS file"
+            where = "; remove these objects from [canopen.sdo], or check the EDS file"
             raise DriverError(
-                f"{self._name}: node {self.node.id} has no object {', '.join(absent)}{where}", "drive-setup"
+                Message(
+                    "{name}: node {node} has no object {absent}{place}",
+                    name=self._name,
+                    node=self.node.id,
+                    absent=", ".join(absent),
+                    place=where,
+                ),
+                "drive-setup",
             )
 
     def try_write(self, index: int, sub: int, value: int) -> bool:
@@ -130,8 +157,14 @@ class Setup:
         found = self.read(od.DEVICE_TYPE) & _PROFILE
         if found != profile:
             raise DriverError(
-                f"{self._name}: node {self.node.id} is a device of profile {found}, expected {profile};"
-                " check the node numbers in [canopen.nodes]",
+                Message(
+                    "{name}: node {node} has device profile {value} instead of {profile}; check the node "
+                    "numbers in [canopen.nodes]",
+                    name=self._name,
+                    node=self.node.id,
+                    value=found,
+                    profile=profile,
+                ),
                 "drive-setup",
             )
 
@@ -141,7 +174,12 @@ class Setup:
         lacking = [_NAMES[mode] for mode, bit in MODE_BITS.items() if modes & bit and not offered & bit]
         if lacking:
             raise DriverError(
-                f"{self._name}: the drive has no mode {', '.join(lacking)}; see [canopen] mode", "drive-setup"
+                Message(
+                    "{name}: the drive does not support mode {lacking}; check [canopen] mode",
+                    name=self._name,
+                    lacking=", ".join(lacking),
+                ),
+                "drive-setup",
             )
 
     def demand(self, *entries: Entry) -> None:
@@ -151,8 +189,13 @@ class Setup:
         ]
         if missing:
             raise DriverError(
-                f"{self._name}: node {self.node.id} cannot be used in this mode, it has not:"
-                f" {', '.join(missing)}; see [canopen] mode and its EDS file",
+                Message(
+                    "{name}: node {node} cannot be used in this mode because it lacks these objects: "
+                    "{missing}; check [canopen] mode and the node's EDS file",
+                    name=self._name,
+                    node=self.node.id,
+                    missing=", ".join(missing),
+                ),
                 "drive-setup",
             )
 
@@ -163,8 +206,14 @@ class Setup:
         if offered and method not in offered:
             known = ", ".join(map(str, offered))
             raise DriverError(
-                f"{self._name}: the drive has no homing method {method} (60E3h: {known});"
-                f" see axis.{self._name}.home",
+                Message(
+                    "{name}: the drive does not support homing method {method} (60E3h: {known}); check "
+                    "axis.{name2}.home",
+                    name=self._name,
+                    method=method,
+                    known=known,
+                    name2=self._name,
+                ),
                 "drive-setup",
             )
 
@@ -179,8 +228,14 @@ class Setup:
         found = feed * shaft / (turns * motor)
         if abs(found - counts) > 0.5:
             raise DriverError(
-                f"{self._name}: a turn of the motor is {found:g} counts by the drive (6091h, 6092h),"
-                f" canopen.nodes.{self._name}.counts_per_rev says {counts}",
+                Message(
+                    "{name}: the drive uses {value} counts per motor revolution (6091h, 6092h), but "
+                    "canopen.nodes.{name2}.counts_per_rev is {counts}",
+                    name=self._name,
+                    value=f"{found:g}",
+                    name2=self._name,
+                    counts=counts,
+                ),
                 "drive-setup",
             )
 
@@ -220,8 +275,16 @@ class Setup:
                 raise
             now, wanted = (self._number(index, sub, each) for each in (there, data))
             raise DriverError(
-                f"{self._name}: node {self.node.id}, object {index:04X}:{sub} is read-only: it is {now}, and"
-                f" {wanted} is needed. Set it with the drive's own software, or correct [canopen.sdo]",
+                Message(
+                    "{name}: node {node}, object {index}:{sub} is read-only; its value is {now}, but "
+                    "{expected} is needed. Set it with the drive's own software, or correct [canopen.sdo]",
+                    name=self._name,
+                    node=self.node.id,
+                    index=f"{index:04X}",
+                    sub=sub,
+                    now=now,
+                    expected=wanted,
+                ),
                 "drive-setup",
                 reason="read-only",
             ) from error
@@ -259,7 +322,8 @@ class Setup:
             found: PdoMap = pdos[number]
         except KeyError as error:
             raise DriverError(
-                f"{self._name}: PDO {number} is not in the node's EDS file", "drive-setup"
+                Message("{name}: PDO {number} is not in the node's EDS file", name=self._name, number=number),
+                "drive-setup",
             ) from error
         return found
 
@@ -306,17 +370,27 @@ class Setup:
 
     def _sdo(self, index: int, sub: int, do: Callable[[], _Answer]) -> _Answer:
         """Do something with one object; what can go wrong becomes one sentence."""
-        where = f"{self._name}: node {self.node.id}, object {index:04X}:{sub}"
+        where = Message(
+            "{name}: node {node}, object {index}:{sub}",
+            name=self._name,
+            node=self.node.id,
+            index=f"{index:04X}",
+            sub=sub,
+        )
         try:
             return do()
         except SdoAbortedError as error:
-            raise DriverError(f"{where}: refused by the node: {error}", "drive-setup") from error
+            raise DriverError(
+                Message("{place}: the node rejected the request: {error}", place=where, error=error),
+                "drive-setup",
+            ) from error
         except SdoCommunicationError as error:
-            why = self._bus.trouble or f"{error}; check cable, power and node number"
+            why = self._bus.trouble or Message("{error}; check cable, power and node number", error=error)
             raise DriverError(f"{where}: {why}", "drive-silent") from error
         except KeyError as error:
             raise DriverError(
-                f"{where}: not in the node's object dictionary; check its EDS file", "drive-setup"
+                Message("{place} is not in the node's object dictionary; check its EDS file", place=where),
+                "drive-setup",
             ) from error
 
 
@@ -372,7 +446,11 @@ def check_limits(segments: Segments, axes: Sequence[AxisConfig], homed: Sequence
     for i, axis in enumerate(axes):
         if abs(segments.v[:, i]).max() > axis.vmax * 1.001 + 0.01:
             raise DriverError(
-                f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued",
+                Message(
+                    "{axis}: the setpoint speed exceeds {vmax}/s; nothing was queued",
+                    axis=axis.name,
+                    vmax=f"{axis.vmax:.1f}",
+                ),
                 "drive-limits",
                 reason="too-fast",
             )
@@ -381,7 +459,12 @@ def check_limits(segments: Segments, axes: Sequence[AxisConfig], homed: Sequence
         low, high = axis.travel
         if segments.p[:, i].min() < low - 0.01 or segments.p[:, i].max() > high + 0.01:
             raise DriverError(
-                f"{axis.name}: setpoints leave {low:.2f}…{high:.2f}; nothing was queued",
+                Message(
+                    "{axis}: setpoints are outside the range {low}…{high}; nothing was queued",
+                    axis=axis.name,
+                    low=f"{low:.2f}",
+                    high=f"{high:.2f}",
+                ),
                 "drive-limits",
                 reason="leaves-travel",
             )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from core.message import Message
 from core.ports import DriverError, Fault
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
@@ -74,7 +75,9 @@ class CanopenSpindle:
             drive.goal, drive.target = DriveState.OFF, 0
         elif not drive.enabled and now - self._ordered > _POWER:
             drive.trouble = Fault(
-                "spindle: the drive does not come on; is E-stop pressed, is power there?", "spindle"
+                "spindle: the drive does not switch on; check that the E-stop is released and the "
+                "drive has power",
+                "spindle",
             )
         elif drive.target == 0 and abs(drive.speed) < _STANDS:
             drive.goal = DriveState.OFF
@@ -83,11 +86,15 @@ class CanopenSpindle:
         """Turn at ``rpm``, signed. Raises DriverError with a fault, unless asked to stop."""
         if rpm and (self._bus.trouble or self.drive.trouble):
             raise DriverError(
-                f"the spindle stays off: {self._bus.trouble or self.drive.trouble}", "spindle-off"
+                Message("the spindle stays off: {problem}", problem=self._bus.trouble or self.drive.trouble),
+                "spindle-off",
             )
         if rpm and self.kept:
             raise DriverError(
-                "the spindle stays off: its drive is held as C; let it go first, by M05",
+                (
+                    "the spindle stays off because its drive is engaged as the C axis; release the "
+                    "drive with M05 first"
+                ),
                 "spindle-off",
                 reason="held-as-c",
             )

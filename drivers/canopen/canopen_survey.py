@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import NamedTuple
 
+from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
@@ -91,7 +92,9 @@ def _fits(setup: Setup, family: DriveProfile, axis: AxisConfig | None, mode: str
     if watched and not any(setup.has(*each) for each in watched):
         lacking.add(od.COMMANDED)
     if lacking:
-        yield f"has not {' '.join(f'{index:04X}h' for index in sorted(lacking))}"
+        yield Message(
+            "missing objects: {index}", index=" ".join(f"{index:04X}h" for index in sorted(lacking))
+        )
 
 
 def _shown(word: str, setup: Setup, sub: int) -> str:

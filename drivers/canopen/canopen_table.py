@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from core.table_schema import Driver, DriverTable, Field, FileReading, Kind, Unit
 from drivers.canopen import encoder_table
 from drivers.canopen.canopen_nodes import (
+    NODE_REFERENCE,
     NODES,
+    SDO_REFERENCE,
     BusConfig,
     CanNode,
     input_addresses,
@@ -20,15 +22,72 @@ from drivers.canopen.drive_profiles import PROFILES
 
 MODES = ("pvt", "csp", "ip", "pp")
 _BUS = (
-    Field("interface", Kind.TEXT, default="socketcan"),
-    Field("channel", Kind.TEXT),
-    Field("bitrate", Kind.WHOLE, low=10_000, high=1_000_000, default=1_000_000),
-    Field("sync_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.001, 0.1, default=0.01),
-    Field("host_id", Kind.WHOLE, low=1, high=127, default=127),
-    Field("heartbeat_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.02, 2.0, default=0.1),
-    Field("mode", Kind.CHOICE, choices=MODES),
-    Field("drive", Kind.CHOICE, choices=tuple(PROFILES), default=""),
-    Field("record_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.002, 0.05, default=0.02),
+    Field(
+        "interface",
+        Kind.TEXT,
+        default="socketcan",
+        meaning="Interface of python-can, such as `socketcan`, or `virtual` for a bus within one process.",
+    ),
+    Field("channel", Kind.TEXT, meaning="Channel of the interface, such as `can0`."),
+    Field(
+        "bitrate",
+        Kind.WHOLE,
+        low=10_000,
+        high=1_000_000,
+        default=1_000_000,
+        meaning="Bit rate of the bus in bit/s.",
+    ),
+    Field(
+        "sync_ms",
+        Kind.NUMBER,
+        Unit.MILLISECONDS,
+        0.001,
+        0.1,
+        default=0.01,
+        meaning='Time from one SYNC to the next; with "csp" and "ip", the time from setpoint to setpoint.',
+    ),
+    Field(
+        "host_id",
+        Kind.WHOLE,
+        low=1,
+        high=127,
+        default=127,
+        meaning="Node number of TurnDesk, under which it sends its heartbeat.",
+    ),
+    Field(
+        "heartbeat_ms",
+        Kind.NUMBER,
+        Unit.MILLISECONDS,
+        0.02,
+        2.0,
+        default=0.1,
+        meaning="Interval of the heartbeats. A drive or module stops if it misses three of them.",
+    ),
+    Field(
+        "mode",
+        Kind.CHOICE,
+        choices=MODES,
+        meaning=(
+            'How the drives receive motion. "pvt": queued in the drive; "csp" and "ip": one '
+            'setpoint at each SYNC; "pp": single moves only, no programs.'
+        ),
+    ),
+    Field(
+        "drive",
+        Kind.CHOICE,
+        choices=tuple(PROFILES),
+        default="",
+        meaning="Family of all drives. Default: the family that the EDS file names, or plain CiA 402.",
+    ),
+    Field(
+        "record_ms",
+        Kind.NUMBER,
+        Unit.MILLISECONDS,
+        0.002,
+        0.05,
+        default=0.02,
+        meaning='Longest PVT record; only for mode "pvt". `commit_ms` must cover three records and 40 ms.',
+    ),
 )
 
 
@@ -54,7 +113,16 @@ def _bus_table(file: FileReading) -> CanopenTable:
 
 DRIVER = Driver(
     tables=(
-        DriverTable("canopen", _BUS, _bus_table, ("nodes", "sdo"), read_nodes, bus_rules),
+        DriverTable(
+            "canopen",
+            _BUS,
+            _bus_table,
+            ("nodes", "sdo"),
+            read_nodes,
+            bus_rules,
+            purpose='The CANopen bus and its drives (`backend = "canopen"`).',
+            parts=(NODE_REFERENCE, SDO_REFERENCE),
+        ),
         encoder_table.TABLE,
     ),
     backend="canopen",

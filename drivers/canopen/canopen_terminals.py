@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import canopen
 
+from core.message import Message
 from core.ports import DriverError, Fault, StationState
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
@@ -23,7 +24,7 @@ _WORDS = 4  # analog ones
 _DELTA = 328  # 1 % of an analog word
 _AGAIN = 0.1  # s after which outputs are sent although nothing has changed
 _SYNCS, _BEATS = 3, 3.0  # answers to SYNC, heartbeats that may be missing
-_KINDS = ((od.DIGITAL_IN, "bytes of inputs"), (od.DIGITAL_OUT, "bytes of outputs"), (od.ANALOG_IN, "pots"))
+_KINDS = ((od.DIGITAL_IN, "input bytes"), (od.DIGITAL_OUT, "output bytes"), (od.ANALOG_IN, "pots"))
 
 
 class Module401:
@@ -55,8 +56,14 @@ class Module401:
             if where.sub > self.sizes[where.index]:
                 has = ", ".join(f"{self.sizes[index]} {what}" for index, what in _KINDS)
                 raise DriverError(
-                    f"{self.config.name}: the module has {has}, so there is no {where.index:04X}.{where.sub};"
-                    " check its terminals in the machine file"
+                    Message(
+                        "{name}: the module has {has}, so {index}.{sub} does not exist; check the module's "
+                        "terminals in the machine file",
+                        name=self.config.name,
+                        has=has,
+                        index=f"{where.index:04X}",
+                        sub=where.sub,
+                    )
                 )
 
     def connect(self, safe: bytes, keep: bytes) -> None:
@@ -109,9 +116,17 @@ class Module401:
         """Supervise; ``trouble`` stays until the module is connected anew."""
         name, silent = self.config.name, self._without_beat
         if silent > _BEATS * self._bus.config.heartbeat:
-            self._wrong(f"{name}: no heartbeat of the I/O module for {silent:.2f} s; check cable and power")
+            self._wrong(
+                Message(
+                    "{name}: no heartbeat from the I/O module for {silent} s; check cable and power",
+                    name=name,
+                    silent=f"{silent:.2f}",
+                )
+            )
         elif self.missing > _SYNCS:
-            self._wrong(f"{name}: the I/O module does not answer SYNC; check cable and power")
+            self._wrong(
+                Message("{name}: the I/O module does not respond to SYNC; check cable and power", name=name)
+            )
 
     def _digital(self, map_: canopen.pdo.PdoMap) -> None:
         self.inputs[: len(map_.data)] = map_.data
@@ -128,7 +143,12 @@ class Module401:
         if not (self.sizes[od.DIGITAL_IN] or self.sizes[od.ANALOG_IN]):
             self.answered = self.heard
         if state == 0:
-            self._wrong(f"{self.config.name}: the I/O module has restarted; its outputs have fallen")
+            self._wrong(
+                Message(
+                    "{name}: the I/O module has restarted; its outputs have dropped out",
+                    name=self.config.name,
+                )
+            )
 
     def _wrong(self, what: str) -> None:
         self.trouble = self.trouble or Fault(what, "io-silent")
@@ -168,8 +188,11 @@ class CanopenIO:
             drive = self._drives.get(where.node)
             if drive is not None and not drive.tells_inputs:
                 raise DriverError(
-                    f"{where.node}: the drive tells no digital inputs; its terminals of the machine file have"
-                    " to go to an I/O module"
+                    Message(
+                        "{node}: the drive does not report digital inputs; assign its terminals in the "
+                        "machine file to an I/O module",
+                        node=where.node,
+                    )
                 )
         for name, module in self.modules.items():
             module.measure(where for where in self._needed() if where.node == name)
@@ -229,10 +252,20 @@ class CanopenIO:
         """Switch one output; it goes out with the next tick. Raises DriverError."""
         output = self._config.outputs.get(name)
         if output is None:
-            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]", "output")
+            raise DriverError(
+                Message("output {name} is not in the machine file; add it under [io.out]", name=f"{name!r}"),
+                "output",
+            )
         module = self._module(output.terminal)
         if on and (self._bus.trouble or module.trouble):
-            raise DriverError(f"output {name} stays off: {self._bus.trouble or module.trouble}", "output")
+            raise DriverError(
+                Message(
+                    "output {name} stays off: {problem}",
+                    name=name,
+                    problem=self._bus.trouble or module.trouble,
+                ),
+                "output",
+            )
         self._switch(name, output.terminal, on)
 
     def _switch(self, name: str, where: CanTerminal, on: bool) -> None:

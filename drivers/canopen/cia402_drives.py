@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import canopen
 from canopen.emcy import EmcyError
 
+from core.message import Message
 from core.ports import DriverError, Fault, FaultCode
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
@@ -183,13 +184,20 @@ class Drive402:
         now = self.bus.clock.now()
         if self._beats and now - self.heard > patience:
             self._wrong(
-                f"{self.name}: no heartbeat for {now - self.heard:.2f} s; check cable and power",
+                Message(
+                    "{name}: no heartbeat from the drive for {now} s; check cable and power",
+                    name=self.name,
+                    now=f"{now - self.heard:.2f}",
+                ),
                 "drive-silent",
             )
         elif self.silent:
-            self._wrong(f"{self.name}: the drive does not answer SYNC; check cable and power", "drive-silent")
+            self._wrong(
+                Message("{name}: the drive does not respond to SYNC; check cable and power", name=self.name),
+                "drive-silent",
+            )
         elif self.state in {DriveState.FAULT, DriveState.REACTING} and not self._resetting:
-            self._wrong(f"{self.name}: drive fault", "axis")
+            self._wrong(Message("{name}: drive fault", name=self.name), "axis")
 
     def forget(self) -> None:
         """The operator has seen it."""
@@ -230,13 +238,20 @@ class Drive402:
         self.heard = self.bus.clock.now()
         if state == 0:
             self.rebooted = True
-            self._wrong(f"{self.name}: the drive has restarted; its reference is lost", "drive-restarted")
+            self._wrong(
+                Message("{name}: the drive has restarted; its position is lost", name=self.name),
+                "drive-restarted",
+            )
         elif state == 4:
-            self._wrong(f"{self.name}: the drive was stopped by NMT", "axis")
+            self._wrong(Message("{name}: the drive was stopped by an NMT command", name=self.name), "axis")
 
     def _emergency(self, error: EmcyError) -> None:
         if error.code & 0xFF00:
-            what = f"{error.get_desc().lower() or 'drive error'} (EMCY {error.code:04X})"
+            what = Message(
+                "{description} (EMCY {code})",
+                description=error.get_desc().lower() or "drive error",
+                code=f"{error.code:04X}",
+            )
             self._wrong(f"{self.name}: {what}", "following" if error.code == _FOLLOWING else "axis")
 
 
@@ -388,9 +403,17 @@ class DriveSet:
         for axis in self.axes:
             axis.drive.mode, axis.drive.goal = self._how.mode, DriveState.ENABLED
         if not self._bus.wait(lambda: all(axis.ready for axis in self.answered()), _POWER):
-            slow = [f"{axis.config.name} is {axis.drive.state}" for axis in self.axes if not axis.ready]
+            slow = [
+                Message("{name} is {state}", name=axis.config.name, state=axis.drive.state)
+                for axis in self.axes
+                if not axis.ready
+            ]
             self.aim(DriveState.OFF)
-            why = f"drives do not come on: {', '.join(slow)}; is E-stop pressed, is power there?"
+            why = Message(
+                "the drives do not switch on: {slow}; check that the E-stop is released and the "
+                "drives have power",
+                slow=", ".join(slow),
+            )
             raise DriverError(why, "no-power")
 
     def power_off(self) -> None:
@@ -408,7 +431,10 @@ class DriveSet:
             axis.drive.clear()
         if not self._bus.wait(lambda: not any(a.drive.state in _FAULTS for a in self.answered()), _POWER):
             names = [axis.config.name for axis in self.axes if axis.drive.state in _FAULTS]
-            why = f"{', '.join(names)}: the drive keeps its fault; look at its display"
+            why = Message(
+                "{names}: the drive fault cannot be cleared; check the drive's display",
+                names=", ".join(names),
+            )
             raise DriverError(why, "drive-keeps-fault")
 
     def lose_home(self) -> None:
@@ -480,8 +506,13 @@ def _driven(config: AxisConfig, drive: Drive402) -> DrivenAxis:
     if profile.rpm and not config.counts_per_rev:
         where = f"canopen.nodes.{config.name}.counts_per_rev"
         raise DriverError(
-            f"{config.name}: {profile.title} counts speeds in rpm; {where} is missing: 4 × the pulses a turn"
-            " of its encoder",
+            Message(
+                "{name}: {title} reports speeds in rpm, but {place} is missing; enter 4 × the "
+                "encoder pulses per revolution",
+                name=config.name,
+                title=profile.title,
+                place=where,
+            ),
             "drive-setup",
         )
     return DrivenAxis(replace(config, profile=profile), drive)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from core.message import Message
 from core.ports import Fault, at_rest
 from drivers.canopen.canopen_nodes import EVENED_OUT
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
@@ -89,7 +90,10 @@ class CyclicFollower(Follower):
         self.lag += away
         if self.lag > LONGEST:
             self.trouble = self.trouble or Fault(
-                f"setpoints came {1000 * self.lag:.0f} ms late: this computer was away for too long",
+                Message(
+                    "setpoints were {lag} ms late because this computer stalled for too long",
+                    lag=f"{1000 * self.lag:.0f}",
+                ),
                 "queue-dry",
             )
 
@@ -113,5 +117,5 @@ class CyclicFollower(Follower):
         stand = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
         if stand and now - self._asked > _BEGIN:
             self.trouble = self.trouble or Fault(
-                f"{', '.join(stand)}: the drive does not interpolate", "queue-dry"
+                Message("{stand}: the drive does not interpolate", stand=", ".join(stand)), "queue-dry"
             )

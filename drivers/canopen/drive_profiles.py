@@ -56,7 +56,7 @@ class DriveProfile:
 
 
 _MAXON, _COPLEY = 0x000000FB, 0x000000AB
-CIA402 = DriveProfile("cia402", "a drive of CiA 402")
+CIA402 = DriveProfile("cia402", "a CiA 402 drive")
 PROFILES = {
     profile.name: profile
     for profile in (
@@ -105,27 +105,35 @@ def profile_of(name: str, vendor: int | None, product: str | None) -> DriveProfi
 
 
 WITHOUT = {
-    0x1006: "SYNC period: it does not notice a SYNC that is missing",
-    0x1016: "watched heartbeat: it does not notice that this computer is silent",
-    0x1017: "heartbeat: only its missing answers to SYNC tell that it is gone",
-    0x1029: "what it does on an error of the bus: the drive's own setting",
-    0x1400: "time-out of setpoints: it stays at the last one until it misses our third heartbeat",
-    0x605A: "quick stop option: it stops as it is set itself",
-    0x605E: "fault reaction: it reacts as it is set itself",
-    0x6007: "what it does without this computer: nothing is said, so its enable needs a watchdog relay",
-    0x6065: "following error window: the window of this control alone watches",
-    0x6066: "time-out of the following error: it faults as soon as the window is left",
-    0x607C: "home offset: home is where the drive counts 0",
-    0x607D: "software limits: those of this control alone hold",
-    0x6083: "profile acceleration: the drive's own setting",
-    0x6084: "profile deceleration: it brakes as it accelerates",
-    0x6085: "quick stop deceleration: it brakes as it is set itself",
-    0x6099: "homing speeds: the drive's own setting",
-    0x609A: "homing acceleration: the drive's own setting",
-    0x60A8: "unit of positions: the drive's own setting",
-    0x60A9: "unit of speeds: the drive's own setting",
-    0x60AA: "unit of accelerations: the drive's own setting",
-    0x60C0: "sub-mode of interpolation: the drive's own setting",
-    0x60C2: "interpolation time: it must be set to sync_ms by the vendor's tool",
+    0x1006: "SYNC period: the drive does not detect a missing SYNC",
+    0x1016: ("heartbeat monitoring: the drive does not detect that this computer has stopped responding"),
+    0x1017: "heartbeat: TurnDesk detects a lost drive only when the drive stops responding to SYNC",
+    0x1029: "reaction to a bus error: the drive uses its own setting",
+    0x1400: (
+        "setpoint timeout: the drive remains at the last setpoint until it has missed three "
+        "of TurnDesk's heartbeats"
+    ),
+    0x605A: "quick stop option: the drive uses its own setting",
+    0x605E: "fault reaction: the drive uses its own setting",
+    0x6007: (
+        "reaction to a lost connection to this computer: not specified, so the drive's "
+        "enable signal needs a watchdog relay"
+    ),
+    0x6065: "following error window: only TurnDesk monitors the following error",
+    0x6066: (
+        "following error timeout: the drive faults as soon as the following error is outside the window"
+    ),
+    0x607C: "home offset: home is where the drive's position count is 0",
+    0x607D: "software limits: only TurnDesk's limits apply",
+    0x6083: "profile acceleration: the drive uses its own setting",
+    0x6084: "profile deceleration: the drive decelerates at its acceleration rate",
+    0x6085: "quick stop deceleration: the drive uses its own setting",
+    0x6099: "homing speeds: the drive uses its own settings",
+    0x609A: "homing acceleration: the drive uses its own setting",
+    0x60A8: "position unit: the drive uses its own setting",
+    0x60A9: "velocity unit: the drive uses its own setting",
+    0x60AA: "acceleration unit: the drive uses its own setting",
+    0x60C0: "interpolation sub-mode: the drive uses its own setting",
+    0x60C2: "interpolation time: set this time to sync_ms with the drive vendor's software",
 }
 """What it means that a drive has no such object, where it can be done without."""

@@ -5,15 +5,37 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from core.message import Message
 from core.table_schema import DriverTable, Field, FileReading, Finding, Kind, Values, written
 from drivers.canopen.canopen_nodes import DRIVE, ENCODER_PROFILE, MODULE, NODES, profile_of, sdo_address
 
 ENCODER, POSITION = "spindle.encoder", "6004:0"  # the table, and where a node of CiA 406 has its counts
 _LEAST = 16  # counts a turn of an encoder
 _FIELDS = (
-    Field("node", Kind.TEXT),
-    Field("object", Kind.TEXT, default=""),
-    Field("counts_per_rev", Kind.WHOLE, low=-100_000_000, high=100_000_000),
+    Field(
+        "node",
+        Kind.TEXT,
+        meaning=(
+            "Name of the node in [canopen.nodes] that counts: an encoder, or a drive with a second "
+            "encoder input."
+        ),
+    ),
+    Field(
+        "object",
+        Kind.TEXT,
+        default="",
+        meaning=(
+            'Object of the position as index:sub-index, such as "60E4:1". Default: "6004:0" of an '
+            "encoder; required for a drive."
+        ),
+    ),
+    Field(
+        "counts_per_rev",
+        Kind.WHOLE,
+        low=-100_000_000,
+        high=100_000_000,
+        meaning="Counts per spindle revolution, at least 16; negative if the encoder counts down with M03.",
+    ),
 )
 
 
@@ -44,24 +66,41 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         path = f"{NODES}.{name}.profile"
         number = values.whole(path) if values.has(path) else MODULE
         if number not in {MODULE, DRIVE, ENCODER_PROFILE}:
-            yield Finding(path, str(number), "expected 401 (terminals), 402 (a drive) or 406 (an encoder)")
+            yield Finding(
+                path, str(number), ("the profile must be 401 (terminals), 402 (drive) or 406 (encoder)")
+            )
         elif number == ENCODER_PROFILE and name != used:
-            why = f"nobody reads this encoder; {ENCODER} names the one that is read"
+            why = Message(
+                "this encoder is not used; {encoder} names the encoder that is used", encoder=ENCODER
+            )
             yield Finding(path, str(number), why)
 
 
 def _beside(values: Values) -> Iterator[Finding]:
     if values.has("machine.backend") and values.text("machine.backend") != "canopen":
         backend = written(values.text("machine.backend"))
-        yield Finding(ENCODER, "", f"backend {backend} reads no encoder on a bus; take it out")
+        yield Finding(
+            ENCODER,
+            "",
+            Message(
+                "backend {backend} does not support an encoder on a bus; remove this entry", backend=backend
+            ),
+        )
     if values.has("spindle.driver") and values.text("spindle.driver") != "vfd":
         expected = (
-            'expected spindle.driver = "vfd": a drive on the bus has its own, counts_per_rev of its node'
+            'spindle.driver must be "vfd"; a drive on the bus has its own encoder, set by '
+            "counts_per_rev of its node"
         )
         yield Finding(ENCODER, "", expected)
     path = f"{ENCODER}.counts_per_rev"
     if values.has(path) and abs(values.number(path)) < _LEAST:
-        expected = f"expected {_LEAST} or more; negative where it counts down with M03"
+        expected = Message(
+            (
+                "the count must be at least {minimum}; enter a negative value if the encoder "
+                "counts down with M03"
+            ),
+            minimum=_LEAST,
+        )
         yield Finding(path, f"{values.number(path):g}", expected)
 
 
@@ -72,17 +111,36 @@ def _counts(file: FileReading) -> Iterator[Finding]:
     node, counted = values.text(f"{ENCODER}.node"), values.text(f"{ENCODER}.object")
     if node not in file.names(NODES):
         yield Finding(
-            f"{ENCODER}.node", written(node), "expected a node of [canopen.nodes] with profile = 406"
+            f"{ENCODER}.node",
+            written(node),
+            ("the encoder node must be a node of [canopen.nodes] with profile = 406"),
         )
     elif profile_of(file, node) == MODULE:
         yield Finding(
-            f"{ENCODER}.node", written(node), "terminals do not count turns: expected 406 or a drive"
+            f"{ENCODER}.node",
+            written(node),
+            "an I/O module does not count revolutions; use a node with profile 406 or a drive",
         )
     elif profile_of(file, node) == DRIVE and not counted:
-        expected = 'missing; a drive has its second encoder where its manual says: "60E4:1"'
+        expected = (
+            "this entry is missing; enter the object of the second encoder from the "
+            'drive\'s manual, such as "60E4:1"'
+        )
         yield Finding(f"{ENCODER}.object", "", expected)
     if counted and sdo_address(counted) is None:
-        yield Finding(f"{ENCODER}.object", written(counted), f'expected index and sub-index: "{POSITION}"')
+        yield Finding(
+            f"{ENCODER}.object",
+            written(counted),
+            Message(
+                ('the encoder object must be an index and sub-index, such as "{position}"'), position=POSITION
+            ),
+        )
 
 
-TABLE = DriverTable(ENCODER, _FIELDS, _table, rules=_rules)
+TABLE = DriverTable(
+    ENCODER,
+    _FIELDS,
+    _table,
+    rules=_rules,
+    purpose="An encoder on the CANopen bus for a spindle that an inverter drives.",
+)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from core.message import Message
 from core.ports import DriverError, Fault, Segments
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_objects import AT_ONCE, BIT_12, NEW, PP
@@ -93,8 +94,8 @@ class ProfiledFollower(Follower):
         limit = max(axis.config.count for axis in self._axes)
         if float(np.abs(off).max()) > limit:
             raise DriverError(
-                'the drives plan single straight moves only ([canopen] mode = "pp"); programs need "csp" or'
-                ' "ip", or "pvt" and a queue',
+                'the drives plan only single straight moves ([canopen] mode = "pp"); to run '
+                'programs, set mode to "csp" or "ip", or to "pvt" for drives with a queue',
                 "drive-limits",
                 reason="one-move-only",
             )
@@ -148,5 +149,5 @@ class ProfiledFollower(Follower):
                 axis.drive.extra &= ~(NEW | AT_ONCE)
         elif now - self._told > _ANSWER:
             self.trouble = self.trouble or Fault(
-                f"{', '.join(late)}: the drive did not take its target", "axis"
+                Message("{late}: the drive did not accept its target position", late=", ".join(late)), "axis"
             )

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from enum import Enum
 from typing import NamedTuple
 
+from core.message import Message
 from core.ports import DriverError, Fault, at_rest
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
 from drivers.canopen.cia402_drives import DrivenAxis
@@ -69,7 +70,7 @@ def hermite(p0: float, v0: float, p1: float, v1: float, dt: float, s: float) -> 
 _log = logging.getLogger(__name__)
 
 _BY_NAME = " or ".join(f'"{name}"' for name in QUEUED)
-_DRY = "the drives' queues ran dry: this computer was away for too long"
+_DRY = "the drives' queues ran empty because this computer stalled for too long"
 LOW_WATER = 2  # records; with fewer a drive faults
 RESTART = 0.04  # s between the last point of one PVT motion and the first of the next
 _LINGER = 0.5  # s at rest after which the drives' queues are ended; until then points of rest are fed
@@ -80,7 +81,7 @@ _PREFILL = 2  # records of rest before the queues are let go
 class _Phase(Enum):
     REST = "the drives' queues are empty"
     PLAYING = "they play"
-    ENDING = "the last point is in them"
+    ENDING = "the last point is in the drives' queues"
 
 
 class PvtFollower(Follower):
@@ -137,9 +138,7 @@ class PvtFollower(Follower):
     def _begin(self, now: float) -> None:
         """Points of rest, then all drives at one SYNC: the first point is where the slides stand."""
         if any(self._queue.demand_at(now)[1]):
-            self.trouble = Fault(
-                "the drives were late to begin; the path has begun without them", "queue-dry"
-            )
+            self.trouble = Fault("the drives started late, after the path had begun", "queue-dry")
             return
         self.front = self._begun = now
         for _ in range(_PREFILL):
@@ -158,7 +157,7 @@ class PvtFollower(Follower):
             self.trouble = self.trouble or Fault(_DRY, "queue-dry")
         if now - self._begun > _BEGIN and not self._active(all):
             names = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
-            why = f"{', '.join(names)}: the drive's queue has stopped playing"
+            why = Message("{names}: the drive has stopped executing its queue", names=", ".join(names))
             self.trouble = self.trouble or Fault(why, "queue-dry")
 
     def _top_up(self, now: float) -> None:
@@ -208,8 +207,13 @@ def _records(axis: DrivenAxis) -> RecordQueue:
     """The queue in its drive. Raises DriverError where its family has none."""
     if axis.records is None:
         raise DriverError(
-            f'{axis.config.name}: {axis.config.profile.title} has no queue for [canopen] mode = "pvt": choose'
-            f' "csp" or "ip", or say drive = {_BY_NAME}',
+            Message(
+                '{name}: {title} has no queue for [canopen] mode = "pvt"; choose "csp" or "ip", or '
+                "set drive = {by_name}",
+                name=axis.config.name,
+                title=axis.config.profile.title,
+                by_name=_BY_NAME,
+            ),
             "drive-setup",
         )
     return axis.records

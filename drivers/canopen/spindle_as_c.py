@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
 
+from core.message import Message
 from core.ports import DriverError, Fault, Stop, at_rest
 from drivers.canopen.canopen_axes import CanopenAxes
 from drivers.canopen.canopen_homing import SEARCH_RPM, Phase, Referencing
@@ -27,15 +28,15 @@ _TURN = 360.0
 class Step(Enum):
     """How far the change-over is."""
 
-    FREE = "turns as the spindle"
-    REST = "waits until the slides' queues have ended"
-    INDEX = "looks for its index"
-    HERE = "is told where it stands"
-    POWER = "changes to positions"
-    TURN = "turns to its place"
+    FREE = "the drive is running as the spindle drive"
+    REST = "waiting until the axis queues are empty"
+    INDEX = "searching for the encoder index"
+    HERE = "setting the current position in the spindle drive"
+    POWER = "changing the spindle drive to position mode"
+    TURN = "turning the spindle to its position as the C axis"
     HELD = "is C"
-    LEAVE = "ends being C"
-    BACK = "changes to speeds"
+    LEAVE = "ending C axis mode"
+    BACK = "changing the spindle drive to speed mode"
 
 
 class SpindleC:
@@ -68,13 +69,13 @@ class SpindleC:
         if on and not self._wanted:
             if not self._axes.sample().enabled:
                 raise DriverError(
-                    "C is the spindle's drive, and the drives are off; switch them on first",
+                    "C uses the spindle drive, and the drives are off; switch them on first",
                     "c-coupling",
                     reason="drives-off",
                 )
             if self.step is Step.FREE and (self._spindle.commanded or abs(self._drive.speed) >= _STANDS):
                 raise DriverError(
-                    "C is the spindle's drive, and the spindle turns; stop it first",
+                    "C uses the spindle drive, and the spindle is turning; stop the spindle first",
                     "c-coupling",
                     reason="spindle-turns",
                 )
@@ -151,7 +152,10 @@ class SpindleC:
             self._spindle.leapt()
             self._drive.mode = IP
             if self._axis.records is None:
-                raise DriverError(f"C: {self._drive.profile.title} has no queue for positions", "c-coupling")
+                raise DriverError(
+                    Message("C: {title} does not have a position queue", title=self._drive.profile.title),
+                    "c-coupling",
+                )
             self._axis.records.clear()
             self._enter(Step.POWER, now)
 
@@ -171,7 +175,9 @@ class SpindleC:
             self._begin_turn()
             self._enter(Step.TURN, now)
         elif now - self._since > _CHANGE:
-            self._fail(f"the spindle's drive stays in mode {self._drive.shown_mode}")
+            self._fail(
+                Message("the spindle drive remains in mode {shown_mode}", shown_mode=self._drive.shown_mode)
+            )
 
     def _turn(self, now: float) -> None:
         if not self._wanted:
@@ -200,7 +206,7 @@ class SpindleC:
             self.step = Step.FREE
             self._spindle.resume()
         elif now - self._since > _CHANGE and not self.trouble:
-            self._fail(f"the spindle's drive stays in mode {drive.shown_mode}")
+            self._fail(Message("the spindle drive remains in mode {shown_mode}", shown_mode=drive.shown_mode))
 
     # --- inside ------------------------------------------------------------------------------------------
 

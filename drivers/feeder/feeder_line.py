@@ -75,7 +75,7 @@ class Line:
         if self.fault:
             raise DriverError(self.fault)
         if self._opening is not None:
-            raise DriverError("the feeder is being started again", "feeder-gone")
+            raise DriverError("the driver host is restarting", "feeder-gone")
         self._asleep = False
         try:
             answer = self._link.ask(message)
@@ -147,7 +147,7 @@ class Line:
         none to start.
         """
         if self._again is None:
-            raise DriverError(f"{self.fault}; start the control again", code_of(self.fault, "feeder-gone"))
+            raise DriverError(f"{self.fault}; restart TurnDesk", code_of(self.fault, "feeder-gone"))
         self.fault, self._opening = "", self._again()
 
     def greet(self) -> Mapping[str, object]:
@@ -155,8 +155,8 @@ class Line:
         hello = self.ask(Message({"do": "hello"}, NOTHING)).head
         if hello.get("version") != VERSION:
             raise DriverError(
-                f"the feeder speaks version {hello.get('version')}, this control {VERSION}: end the control,"
-                " and start it again once its installation is whole"
+                f"the driver host uses version {hello.get('version')}, but TurnDesk uses version "
+                f"{VERSION}: exit TurnDesk, complete the installation, then start TurnDesk again"
             )
         return hello
 

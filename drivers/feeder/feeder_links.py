@@ -64,10 +64,11 @@ class SocketLink:
             return self._answer(limit)
         except TimeoutError as error:
             raise DriverError(
-                f"the feeder has not answered for {limit:g} s; the slides stop on their path", "feeder-silent"
+                f"no response from the driver host for {limit:g} s; the axes stop on their path",
+                "feeder-silent",
             ) from error
         except OSError as error:
-            raise DriverError(f"the feeder process has ended ({error.strerror})", "feeder-gone") from error
+            raise DriverError(f"the driver host has ended ({error.strerror})", "feeder-gone") from error
 
     def hang_up(self) -> None:
         """Both directions end, whoever waits on it."""
@@ -88,7 +89,7 @@ class SocketLink:
                 continue
             data = self._socket.recv(_CHUNK)
             if not data:
-                raise DriverError("the feeder process has ended", "feeder-gone")
+                raise DriverError("the driver host has ended", "feeder-gone")
             for message in self._inbox.feed(data):
                 return message
         raise TimeoutError

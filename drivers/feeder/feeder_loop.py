@@ -28,7 +28,10 @@ def real_time(priority: int = PRIORITY) -> list[str]:
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
     except (OSError, AttributeError) as error:
-        return [f"the feeder runs without real-time priority ({_why(error)}); see docs/hardware.md"]
+        return [
+            f"the driver host runs without real-time priority ({_why(error)}); "
+            "see docs/integrator/computer.md"
+        ]
     return []
 
 
@@ -55,10 +58,13 @@ def keep_memory() -> list[str]:
     try:
         libc = ctypes.CDLL(None, use_errno=True)
         if libc.mlockall(_CURRENT if limit else _CURRENT | _FUTURE) != 0:
-            return [f"the feeder's memory is not locked ({os.strerror(ctypes.get_errno())})"]
+            return [f"the driver host's memory is not locked ({os.strerror(ctypes.get_errno())})"]
     except (OSError, AttributeError) as error:
-        return [f"the feeder's memory is not locked ({_why(error)})"]
-    told = f"the feeder's memory is locked as it is, later memory not (memlock limit {limit >> 20} MB)"
+        return [f"the driver host's memory is not locked ({_why(error)})"]
+    told = (
+        "only the driver host's present memory is locked; memory allocated later is not "
+        f"locked (memlock limit {limit >> 20} MB)"
+    )
     return [told] if limit else []
 
 

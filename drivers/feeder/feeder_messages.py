@@ -48,7 +48,7 @@ class Inbox:
             end = _LENGTHS.size + head + numbers
             if end > LARGEST or numbers % 8:
                 raise DriverError(
-                    "the feeder's socket carries something that is no message",
+                    "the driver host's socket received an invalid message",
                     "feeder-silent",
                     reason="no-message",
                 )
@@ -65,11 +65,11 @@ def _head(text: bytes) -> Mapping[str, object]:
         head = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise DriverError(
-            "the feeder's socket carries something that is no message", "feeder-silent", reason="no-message"
+            "the driver host's socket received an invalid message", "feeder-silent", reason="no-message"
         ) from error
     if not isinstance(head, dict):
         raise DriverError(
-            "the feeder's socket carries something that is no message", "feeder-silent", reason="no-message"
+            "the driver host's socket received an invalid message", "feeder-silent", reason="no-message"
         )
     return head
 
@@ -85,7 +85,9 @@ def segments(numbers: FloatArray, axes: int) -> Segments:
     count, left = divmod(len(numbers), width)
     if left or not count or not np.isfinite(numbers).all():
         raise DriverError(
-            "setpoints were damaged on their way to the feeder", "feeder-silent", reason="damaged"
+            "setpoints were corrupted during the transfer to the driver host",
+            "feeder-silent",
+            reason="damaged",
         )
     cuts = np.cumsum([count, count, count * axes, count * axes])
     t, dt, p, v, a = np.split(numbers, cuts)
@@ -103,7 +105,9 @@ def number(head: Mapping[str, object], key: str) -> float:
     """A finite number of the head. Raises DriverError where there is none."""
     value = head.get(key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _HUGE:
-        raise DriverError(f"the feeder was sent no number as {key}", "feeder-silent", reason="no-number")
+        raise DriverError(
+            f"the driver host received an invalid number for {key}", "feeder-silent", reason="no-number"
+        )
     return float(value)
 
 
@@ -128,7 +132,9 @@ def cam_of(message: Message, axes: int) -> Cam:
 def floats(values: object) -> tuple[float, ...]:
     """A list of numbers as it comes out of JSON. Raises DriverError."""
     if not isinstance(values, Sequence) or not all(isinstance(v, int | float) for v in values):
-        raise DriverError("the feeder answered no numbers", "feeder-silent", reason="no-numbers")
+        raise DriverError(
+            "the driver host returned values that are not numbers", "feeder-silent", reason="no-numbers"
+        )
     return tuple(float(v) for v in values)
 
 

@@ -43,7 +43,8 @@ def act(ports: MachinePorts, head: Mapping[str, object]) -> None:
     order = acts.get(text(head, "what"))
     if order is None:
         raise DriverError(
-            "the feeder does not know this order; are both of the same version?", reason="unknown-order"
+            "the driver host does not recognize this command; check that it has the same version as TurnDesk",
+            reason="unknown-order",
         )
     order()
 
@@ -53,22 +54,22 @@ def use_hand(hands: object | None, head: Mapping[str, object]) -> object:
     name, values = text(head, "name"), head.get("values")
     use = None if name.startswith("_") or hands is None else getattr(hands, name, None)
     if not callable(use) or not isinstance(values, list):
-        raise DriverError("this machine has no simulated station", reason="no-station")
+        raise DriverError("this machine has no simulated operator station", reason="no-station")
     try:
         return use(*values)
     except TypeError as error:
         raise DriverError(
-            f"the simulated station cannot {name} with {values}", reason="wrong-values"
+            f"the simulated operator station does not support {name} with {values}", reason="wrong-values"
         ) from error
 
 
 def _hold(ports: MachinePorts, *, on: bool, orient: bool) -> None:
     if ports.lock is None:
-        raise DriverError("the spindle's drive of this machine is not C", reason="no-c")
+        raise DriverError("the spindle drive of this machine is not used as the C axis", reason="no-c")
     ports.lock.hold(on, orient)
 
 
-_UNORIENTED = "the driver of this machine's spindle cannot stop it at an angle"
+_UNORIENTED = "this machine's spindle driver cannot stop the spindle at an angle"
 
 
 def _orient(ports: MachinePorts, angle: float, sense: int) -> None:
@@ -85,7 +86,7 @@ def _release(ports: MachinePorts) -> None:
 
 def _arm(ports: MachinePorts) -> None:
     if ports.touch is None:
-        raise DriverError("this driver keeps no touch", reason="no-touch")
+        raise DriverError("this driver cannot latch a touch signal", reason="no-touch")
     ports.touch.arm()
 
 
@@ -93,7 +94,9 @@ def _how(word: str) -> Stop:
     try:
         return Stop(word)
     except ValueError as error:
-        raise DriverError(f"the feeder does not know the stop {word!r}", reason="unknown-stop") from error
+        raise DriverError(
+            f"the driver host does not recognize the stop command {word!r}", reason="unknown-stop"
+        ) from error
 
 
 # --- What the feeder has switched off by itself, and that nothing goes on before the control knows it.
@@ -118,7 +121,9 @@ class TripGuard:
         if self.tripped is not None and (
             text(message.head, "do") in _MOVES or what == "home" or turns or switches
         ):
-            raise TrippedError(f"the feeder has heard nothing for {self.tripped.away:.2f} s and stopped")
+            raise TrippedError(
+                f"the driver host received no messages for {self.tripped.away:.2f} s and stopped the machine"
+            )
         if what in {"run", "coast", "orient", "release"}:
             self._turns = turns
 
@@ -241,7 +246,9 @@ class Feeder:
         answer = self._answers.get(what)
         if answer is None:
             return _refused(
-                "the feeder does not know this request; are both of the same version?", "unknown-request"
+                "the driver host does not recognize this request; check that it has the same version "
+                "as TurnDesk",
+                "unknown-request",
             )
         try:
             self._guard.demand_allowed(message)
@@ -297,7 +304,9 @@ class Feeder:
         slept, self._answering = seconds - self._answering, 0.0
         if slept > max(self._latest, LATE):
             self._latest = slept
-            self._note(f"the feeder woke up {1000 * slept:.0f} ms late; has it real-time priority?")
+            self._note(
+                f"the driver host woke up {1000 * slept:.0f} ms late; check that it has real-time priority"
+            )
         if seconds > AWAY:
             self._trip(seconds, spindle=self._resting())
 
@@ -329,7 +338,7 @@ class Feeder:
     def _hear(self) -> None:
         now = self._ports.clock.now()
         if now - self._heard > self._longest:
-            self._note(f"the control was silent for {now - self._heard:.2f} s")
+            self._note(f"no messages from TurnDesk for {now - self._heard:.2f} s")
             self._guard.back_after(now - self._heard)
         self._heard = now
         self._parted = False
@@ -338,7 +347,7 @@ class Feeder:
         """Outputs that nobody renews do not wait for the slides to rest."""
         for name, longest in self._refresh.items():
             if silent > longest and self._ports.io.outputs().get(name):
-                self._note(f"{name} off: the control has been silent for {silent:.2f} s")
+                self._note(f"{name} was switched off: no messages from TurnDesk for {silent:.2f} s")
                 self._carefully(partial(self._ports.io.write, name, False))
                 self._guard.fell(silent, name)
 
@@ -351,7 +360,10 @@ class Feeder:
             return
         if not self._parted:
             self._parted = True
-            self._note("the control is silent: spindle stopped, outputs safe")
+            self._note(
+                "no messages were received from TurnDesk; the spindle is stopped and the "
+                "outputs are in their safe state"
+            )
             self._trip(axes.now() - self._heard)
             self._parted_at = axes.now()
         if self.orphaned and not self.done:
@@ -365,7 +377,7 @@ class Feeder:
             try:
                 step()
             except DriverError as error:
-                self._note(f"while stopping: {error}")
+                self._note(f"error while stopping: {error}")
 
     def _note(self, what: str) -> None:
         self._notes = [*self._notes[-_NOTES:], what]
@@ -429,7 +441,7 @@ class Feeder:
 
     def _mesh(self, message: Message) -> Message:
         if self._ports.gear is None:
-            raise DriverError("this driver cannot follow the spindle", reason="no-gear")
+            raise DriverError("this driver cannot synchronize the axes with the spindle", reason="no-gear")
         self._ports.gear.mesh(cam_of(message, len(self._ports.axes.axes)))
         return _value(0.0)
 

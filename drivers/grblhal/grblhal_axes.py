@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from core.message import Message
 from core.ports import AxisSample, DriverError, Segments, Stop
 from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_blocks import GrblBlocks
@@ -48,7 +49,7 @@ class GrblAxes:
     def splice(self, segments: Segments) -> None:  # noqa: ARG002  the port's
         """Raises DriverError always."""
         raise DriverError(
-            "this controller plans by itself and takes blocks, no setpoints", reason="blocks-only"
+            "this controller plans its own motion; it accepts blocks, not setpoints", reason="blocks-only"
         )
 
     def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:  # noqa: ARG002  at rest only
@@ -81,7 +82,10 @@ class GrblAxes:
     def enable(self, on: bool) -> None:
         """The control's own leave to move; raises DriverError while a fault stands."""
         if on and self._c.fault:
-            raise DriverError(f"the controller stays locked: {self._c.fault}; Reset first", "no-power")
+            raise DriverError(
+                Message("the controller stays locked: {fault}; press Reset first", fault=self._c.fault),
+                "no-power",
+            )
         self._blocks.powered = on
 
     def stop(self, how: Stop) -> None:
@@ -94,10 +98,16 @@ class GrblAxes:
         """Begin to look for a switch. Raises DriverError."""
         axes = {each.name: each for each in self._c.config.axes}
         if axis not in axes or not axes[axis].wired:
-            raise DriverError(f"the controller has no axis {axis!r} to home", reason="no-axis")
+            raise DriverError(
+                Message("the controller does not have an axis {axis} to home", axis=f"{axis!r}"),
+                reason="no-axis",
+            )
         self._blocks.demand_power()
         if self._blocks.hindrance() and self._c.alarm == 0:
-            raise DriverError(f"{axis} cannot home: {self._blocks.hindrance()}", "homing")
+            raise DriverError(
+                Message("{axis} cannot home: {hindrance}", axis=axis, hindrance=self._blocks.hindrance()),
+                "homing",
+            )
         self._known[axis], self._homing = False, axis
         self._c.trusted = True
         self._blocks.home(axis)

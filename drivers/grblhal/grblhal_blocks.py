@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from core.message import Message
 from core.ports import BlockOp, BlockState, DriverError, ThreadOp, code_of
 from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_config import GrblAxis
@@ -190,7 +191,10 @@ class GrblBlocks:
         if self._c.fault:
             raise DriverError(why, code_of(why, "controller-refuses"))  # the cause, and no more than that
         if why:
-            raise DriverError(f"the controller takes no block: {why}", code_of(why, "controller-refuses"))
+            raise DriverError(
+                Message("the controller does not accept blocks: {why}", why=why),
+                code_of(why, "controller-refuses"),
+            )
         self.demand_power()
 
     def _dead(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from core.message import Message
 from core.ports import FaultCode
 
 # The range from 0x80 on: its older twins ? ~ ! are plain text inside comments and $ lines.
@@ -27,53 +28,55 @@ TORN = frozenset((10, 17))  # and those that end the steps of a moving slide at 
 CRITICAL = frozenset((1, 2, 10, 17))  # only a reset ends them; settings cannot be written before
 ENDED = CRITICAL | {HOMING_REQUIRED}  # alarms behind which nothing turns or runs any more
 _ALARMS = {
-    1: "hard limit: a slide has hit its switch",
-    2: "soft limit: a block leaves the controller's travel",
-    3: "reset while moving: the position is lost",
+    1: "hard limit: an axis has reached its limit switch",
+    2: "soft limit: a block goes beyond the controller's travel limits",
+    3: "reset during motion: the position is lost",
     4: "probe failed",
     5: "probe failed",
-    6: "homing failed: reset",
-    7: "homing failed: door opened",
-    8: "homing failed: the switch did not open",
-    9: "homing failed: no switch found",
+    6: "homing failed: the controller was reset",
+    7: "homing failed: the door was opened",
+    8: "homing failed: the homing switch did not release",
+    9: "homing failed: no homing switch was found",
     10: "E-stop",
     11: "homing required",
-    12: "a limit switch is pressed: move the slide off it",
+    12: "a limit switch is pressed: move the axis off the switch",
     13: "probe protection",
-    14: "spindle: it does not turn, or its index is missing",
-    15: "homing failed: the second switch of an axis",
-    16: "its self-test has failed: firmware and board do not fit",
+    14: "the spindle does not turn, or its index signal is missing",
+    15: "homing failed at the second homing switch of an axis",
+    16: "the controller's self-test failed: the firmware does not match the board",
     17: "motor fault",
     18: "homing failed",
-    19: "Modbus: the spindle's inverter does not answer",
+    19: "Modbus: no response from the spindle inverter",
     20: "I/O expander",
-    LOCKED: "it is locked and says not why",
+    LOCKED: "the controller is locked and does not report the reason",
 }
 _ERRORS = {
     2: "bad number",
-    3: "it does not know this line",
-    5: "this kind of homing is off in the controller: set $22 to 3, or give the axis home method 37",
-    8: "only possible in Idle",
-    9: "locked by an alarm or a jog",
-    10: "soft limits need homing",
-    11: "line too long",
-    13: "its door is open",
-    15: "jog target beyond the travel",
-    16: "bad jog command",
-    18: "its reset input is active",
+    3: "the controller does not recognize this line",
+    5: (
+        "this type of homing is disabled in the controller: set $22 to 3, or set home method 37 for the axis"
+    ),
+    8: "this command is allowed only in the Idle state",
+    9: "the controller is locked by an alarm or a jog",
+    10: "soft limits require homing",
+    11: "the line is too long",
+    13: "the safety door is open",
+    15: "the jog target is outside the travel limits",
+    16: "invalid jog command",
+    18: "the controller's reset input is active",
     20: "unsupported command",
     22: "no feed",
-    33: "the arc's target is not on its circle",
-    39: "a value is out of range: no such output or input, or a thread without a lead",
+    33: "the end point is not on the arc's circle",
+    39: "a value is out of range: the output or input does not exist, or a thread has no lead",
     41: "the spindle does not turn",
-    43: "lead times spindle speed is more than 0.9 of the Z axis' $112",
+    43: "lead × spindle speed exceeds 0.9 × $112 of the Z axis",
     45: "a limit switch is pressed",
-    46: "it has to be homed first",
+    46: "the controller must be homed first",
     50: "E-stop is active",
     51: "motor fault",
-    52: "the value is out of this setting's range",
-    53: "it has no such setting",
-    79: "a critical alarm stands: Reset first",
+    52: "the value is outside the range of this setting",
+    53: "the controller does not have this setting",
+    79: "a critical alarm is active: press Reset first",
 }
 
 
@@ -96,9 +99,18 @@ def alarm_code(number: int) -> FaultCode:
 
 def alarm_text(number: int) -> str:
     """One sentence of an alarm."""
-    return f"controller ALARM:{number}, {_ALARMS.get(number, 'see the controller manual')}"
+    return Message(
+        "the controller reports ALARM:{number} ({number2})",
+        number=number,
+        number2=_ALARMS.get(number, "see the controller manual"),
+    )
 
 
 def error_text(number: int, line: str) -> str:
     """One sentence of an error and the line that it answers."""
-    return f"the controller refuses {line!r} with error:{number}, {_ERRORS.get(number, 'see its manual')}"
+    return Message(
+        "the controller rejects {line} with error:{number} ({number2})",
+        line=f"{line!r}",
+        number=number,
+        number2=_ERRORS.get(number, "see the controller manual"),
+    )

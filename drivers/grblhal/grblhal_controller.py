@@ -9,6 +9,7 @@ import re
 from collections import deque
 from collections.abc import Callable
 
+from core.message import Message
 from core.ports import Clock, DriverError, Fault, FaultCode, code_of
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig
@@ -191,11 +192,11 @@ class Controller:
         if self.fault:
             return self.fault
         if self.alarm == grblhal_codes.HOMING_REQUIRED and not self.busy:
-            return "the controller has to be homed first"
+            return "the controller must be homed first"
         if self._opening is not None:
-            return "the connection to the controller is being made again"
+            return "the connection to the controller is being restored"
         if self.busy or not self.ready:
-            return "the controller's modes are being verified"
+            return "the controller's modal state is being verified"
         return ""
 
     def realtime(self, *codes_: int) -> None:
@@ -262,7 +263,13 @@ class Controller:
         if self.stream.stale or (self.busy and self.identity is None):
             return
         if moving or not self.stream.quiet or len(self._garbage) >= _GARBAGE:
-            self.fail(f"the line to the controller is disturbed: {line!r} is no answer", "controller-silent")
+            self.fail(
+                Message(
+                    "interference on the line to the controller: {line} is not a valid response",
+                    line=f"{line!r}",
+                ),
+                "controller-silent",
+            )
             self.doubtful = True
 
     # --- what its reports have told ------------------------------------------------------------------
@@ -384,7 +391,7 @@ class Controller:
         self.void()
         self.diameter = self.overrides = None
         if not self.expected and self.identity is not None:
-            self.fail("the controller has been reset; what it was given is void", "controller-reset")
+            self.fail("the controller was reset and has lost its pending commands", "controller-reset")
 
     def _reported(self, report: Report | None, line: str) -> None:
         if report is None:
@@ -403,7 +410,10 @@ class Controller:
         self._leapt = None
         self.keep(report)
         if report.diameter and self.ready:
-            self.fail("X counts in diameter (D:1): the controller has lost its modes", "controller-modes")
+            self.fail(
+                ("X is in diameter mode (D:1), so the controller has lost its modal state"),
+                "controller-modes",
+            )
         self.owed_since, self.mute = None, False
         self._mind(report)
         self.on_report(report)
@@ -431,10 +441,19 @@ class Controller:
                 self.alarmed(number)
             self.alarm, self.ready = number, False
         elif report.state == "Door":
-            self.fail(f"{grblhal_codes.DOOR}, spindle and coolant are off: close it, then Reset", "door")
+            self.fail(
+                Message(
+                    "{door}; spindle and coolant are off. Close the door, then press Reset",
+                    door=grblhal_codes.DOOR,
+                ),
+                "door",
+            )
         elif report.state in _IDLERS:
             self.fail(
-                f"the controller is in state {report.state}, in which it runs no program of ours",
+                Message(
+                    "the controller is in state {state} and cannot run a program from TurnDesk",
+                    state=report.state,
+                ),
                 "controller-modes",
             )
 
@@ -454,7 +473,9 @@ class Controller:
             wire = opening.take()
         except DriverError as error:
             self._opening = None
-            self.fail(f"the connection to the controller is lost: {error}", "controller-lost")
+            self.fail(
+                Message("the connection to the controller is lost: {error}", error=error), "controller-lost"
+            )
             return
         if wire is None:
             return
@@ -471,7 +492,11 @@ class Controller:
         self.lost = self.mute = True
         self.runner.drop()
         self.fail(
-            f"the connection to the controller is lost: {error}; it moves what it has, then rests",
+            Message(
+                "the connection to the controller is lost: {error}; the controller finishes its "
+                "buffered moves, then stops",
+                error=error,
+            ),
             "controller-lost",
         )
         self.void()
@@ -485,7 +510,7 @@ class Controller:
         *lines, self._inbox = (self._inbox + self._wire.read()).split(b"\n")
         if len(self._inbox) > _LINE:
             self._inbox = b""
-            self.damaged("a line without an end")
+            self.damaged("an unterminated line")
         for line in lines:
             self.hear(line.decode("ascii", "replace").strip("\r"))
 
@@ -529,7 +554,7 @@ class Controller:
         if self.owed_since is not None and self.listened - self.owed_since > patience:
             self.owed_since, self.mute = self.listened, True
             self.fail(
-                "the controller does not answer; look at the cable and at the controller", "controller-silent"
+                "no response from the controller; check the cable and the controller", "controller-silent"
             )
         idle = self.report is not None and self.report.state == "Idle"
         if not (self.stream.unanswered and idle) or self.fault:
@@ -537,4 +562,9 @@ class Controller:
         first = self.stream.unanswered[0]
         patience = _INDEX if self.index_wait else _UNANSWERED + self.wait_of(first.line)
         if self.listened - max(first.sent_at, self.answered_at) > patience:
-            self.fail(f"no answer to {first.line!r}; the line may be disturbed", "controller-silent")
+            self.fail(
+                Message(
+                    "no response to {line}; there may be interference on the line", line=f"{first.line!r}"
+                ),
+                "controller-silent",
+            )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_dialogue import Ask
@@ -73,7 +74,9 @@ class Jogs:
     def _begin(self, axis: str, velocity: float, now: float) -> None:
         place = self._c.position.get(axis)
         if place is None:
-            raise DriverError(f"the controller has no axis {axis} to jog", "controller-refuses")
+            raise DriverError(
+                Message("the controller does not have an axis {axis} to jog", axis=axis), "controller-refuses"
+            )
         if self.active:
             # Another speed or direction: from where the way that it has ends.
             place = self._sent

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from core.message import Message
 from core.ports import ALL_UNKNOWN, PROBE, Clock, DriverError, MachinePorts, Stop, Trip, Unknown
 from drivers.grblhal import grblhal_scripts
 from drivers.grblhal.grblhal_axes import GrblAxes
@@ -135,18 +136,35 @@ class GrblMachine:
     def _unlike(self) -> list[str]:
         """Where the controller's own settings are not what the machine file promises."""
         c = self.controller
-        told = []
+        told: list[str] = []
         for axis in c.wired:
             speed, accel = c.speed_of(axis.name), c.figure(120, axis.name)
             if speed and not 0.99 * axis.vmax <= speed <= 1.01 * axis.vmax:
                 told.append(
-                    f"{axis.name}: the controller allows {60 * speed:.0f} mm/min of {60 * axis.vmax:.0f}"
+                    Message(
+                        "{axis}: the controller allows {speed} mm/min, but the machine file specifies {vmax} "
+                        "mm/min",
+                        axis=axis.name,
+                        speed=f"{60 * speed:.0f}",
+                        vmax=f"{60 * axis.vmax:.0f}",
+                    )
                 )
             if 0.0 < accel < 0.99 * axis.amax:
-                told.append(f"{axis.name}: the controller brakes with {accel:.0f} mm/s², not {axis.amax:.0f}")
+                told.append(
+                    Message(
+                        "{axis}: the controller decelerates at {accel} mm/s² instead of {amax} mm/s²",
+                        axis=axis.name,
+                        accel=f"{accel:.0f}",
+                        amax=f"{axis.amax:.0f}",
+                    )
+                )
         if c.config.own_spindle and 0.0 < self.spindle.highest < c.config.rpm_max:
             told.append(
-                f"spindle: $30 allows {self.spindle.highest:g} rpm, the machine file {c.config.rpm_max:g}"
+                Message(
+                    "spindle: $30 allows {highest} rpm, but the machine file specifies {rpm_max} rpm",
+                    highest=f"{self.spindle.highest:g}",
+                    rpm_max=f"{c.config.rpm_max:g}",
+                )
             )
         return told
 
@@ -158,9 +176,12 @@ class GrblMachine:
         if not names:
             return []
         return [
-            f"{' and '.join(names)}: homing is off in the controller ($22=0); set $22 to 3 where there are"
-            " switches, else add method = 37 to home = { … } of the axis: Home then takes the place where it"
-            " stands"
+            Message(
+                "{names}: homing is disabled in the controller ($22=0). If the axis has switches, "
+                "set $22 to 3; otherwise add method = 37 to home = {{ … }} of the axis, and Home "
+                "uses the current position",
+                names=" and ".join(names),
+            )
         ]
 
     def _warnings(self) -> list[str]:
@@ -170,9 +191,12 @@ class GrblMachine:
         told += self._unlike() + self._homes()
         estop = self.controller.config.inputs.get(ESTOP)
         if estop is not None and estop.terminal == HARDWARE:
-            told.append("E-stop by hardware alone: the controller is not told, its state is not shown here")
+            told.append(
+                "the E-stop acts only on the hardware: the controller does not detect it, and the "
+                "screen does not show its state"
+            )
         if "thread" not in self.blocks.caps:
-            told.append("the controller reports no spindle encoder: threads are refused")
+            told.append("the controller does not report a spindle encoder, so threading is rejected")
         return told
 
 
@@ -183,6 +207,8 @@ def _grouped(what: str, lacking: Mapping[str, str]) -> list[str]:
         terminal, _, reason = why.partition(" ")
         reasons.setdefault(reason, []).append(f"{name} ({terminal})")
     return [
-        f"{what} {names[0]} {reason}" if len(names) == 1 else f"{what}s {', '.join(names)}: each {reason}"
+        f"{what} {names[0]} {reason}"
+        if len(names) == 1
+        else Message("{what}s {names}: each {reason}", what=what, names=", ".join(names), reason=reason)
         for reason, names in reasons.items()
     ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from core.message import Message
 from core.ports import FaultCode
 from drivers.grblhal import grblhal_codes
 
@@ -92,7 +93,12 @@ class Overrides:
         self._since = now if self._since is None else self._since
         if now - self._since > _PATIENCE:
             self._fail(
-                f"the controller does not take an override: {self.commanded} asked, {list(reported)} told",
+                Message(
+                    "the controller does not accept an override: {commanded} was commanded, but "
+                    "{reported} is reported",
+                    commanded=self.commanded,
+                    reported=list(reported),
+                ),
                 "controller-refuses",
             )
             return

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
+from core.message import Message
 from core.ports import DriverError
 
 _NUMBER = re.compile(r"-?\d+(\.\d+)?")
@@ -161,13 +162,18 @@ def read_identity(lines: Iterable[str]) -> Identity:
     letters, *sizes = told.get("OPT", "").split(",")
     if "VER" not in told or len(sizes) < 2 or not all(size.isdecimal() for size in sizes[:2]):
         raise DriverError(
-            "what answers is no grblHAL: $I says neither [VER:…] nor [OPT:…,blocks,bytes,…]",
+            "the connected device is not grblHAL: its response to $I contains neither [VER:…] "
+            "nor [OPT:…,blocks,bytes,…]",
             reason="no-grblhal",
         )
     blocks, buffer = int(sizes[0]), int(sizes[1])
     if buffer < _LEAST_BUFFER:
         raise DriverError(
-            f"the controller's buffer of {buffer} bytes is too small; {_LEAST_BUFFER} are needed",
+            Message(
+                "the controller's buffer of {buffer} bytes is too small; {least_buffer} are needed",
+                buffer=buffer,
+                least_buffer=_LEAST_BUFFER,
+            ),
             reason="small-buffer",
         )
     axes = told.get("AXS", "3:XYZ").partition(":")[2]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Generator, Mapping
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
@@ -19,7 +20,7 @@ from drivers.grblhal.grblhal_report import Identity, read_identity
 
 
 ANSWER = 2.0  # s for a line
-MISSED = "the controller sends no status report"
+MISSED = "the controller does not send status reports"
 _TRIES = 3
 
 
@@ -40,7 +41,7 @@ def fresh(c: Controller) -> Script:
         yield _by(c, ask, by), ANSWER + slow, ""
         if ask.done:
             return
-    raise ScriptError("the controller does not answer '$G'")
+    raise ScriptError("no response from the controller to '$G'")
 
 
 def _by(c: Controller, ask: Ask, by: float) -> Callable[[], bool]:
@@ -55,7 +56,11 @@ def _by_time(c: Controller, ready: Callable[[], bool], by: float) -> Callable[[]
 def asked(c: Controller, line: str, within: float = ANSWER) -> Generator[Step, None, list[str]]:
     """Send a line and wait for its ``ok``; what was told before it."""
     ask = c.send(line)
-    yield lambda: ask.done, within + c.wait_of(line), f"the controller does not answer {line!r}"
+    yield (
+        lambda: ask.done,
+        within + c.wait_of(line),
+        Message("no response from the controller to {line}", line=f"{line!r}"),
+    )
     if ask.error:
         raise ScriptError(grblhal_codes.error_text(ask.error, line))
     return ask.lines
@@ -74,9 +79,20 @@ def modes(c: Controller) -> Script:
     missing = [mode for mode in grblhal_codes.MODES if mode not in told and mode not in grblhal_codes.SILENT]
     kept = [word for word in told if _stem(word) in grblhal_codes.CURES]
     if missing or kept:
-        lathe = "; is it in lathe mode ($32=2)?" if "G8" in missing else ""
-        wrong = f"does not keep {' '.join(missing)}" if missing else f"stays in {' '.join(kept)}"
-        raise ScriptError(f"the controller {wrong}: [GC:{' '.join(told)}]{lathe}")
+        lathe = "; check that the controller is in lathe mode ($32=2)" if "G8" in missing else ""
+        wrong = (
+            Message("the controller does not stay in mode {missing}", missing=" ".join(missing))
+            if missing
+            else Message("the controller stays in mode {saved}", saved=" ".join(kept))
+        )
+        raise ScriptError(
+            Message(
+                "{wrong}; the controller reports [GC:{details}]{lathe}",
+                wrong=wrong,
+                details=" ".join(told),
+                lathe=lathe,
+            )
+        )
 
 
 def _stem(word: str) -> str:
@@ -94,7 +110,13 @@ def demand(c: Controller, identity: Identity) -> None:
     """Raises ScriptError when an axis of the machine file is missing, or its E-stop."""
     missing = [axis.name for axis in c.wired if axis.name not in identity.axes]
     if missing:
-        raise ScriptError(f"the controller has axes {identity.axes}, not {', '.join(missing)}")
+        raise ScriptError(
+            Message(
+                "the controller has axes {axes}, but not {missing}",
+                axes=identity.axes,
+                missing=", ".join(missing),
+            )
+        )
     estop = c.config.inputs.get(ESTOP)
     if estop is not None and not identity.has_pin(estop.terminal.removeprefix("pn.")):
         raise ScriptError(
@@ -113,7 +135,7 @@ def demand(c: Controller, identity: Identity) -> None:
 
 _LATE = 0.4  # s, beyond its ramp, for a stop to be seen
 _BANNER = 3.0  # s that a reset takes
-_NO_RESET = "the controller does not come back from its reset; is E-stop pressed?"
+_NO_RESET = "the controller does not respond after its reset; check that the E-stop is released"
 _STALE = 0.5  # s in which reports from before a reset may still come
 _MUTE = 0.4  # s without a report behind a thread: it waits for its index and hears nothing but a stop
 _INDEX = 7.0  # s until that wait is over, whatever comes
@@ -198,7 +220,12 @@ def settings(c: Controller) -> Script:
     for n, value in wrong.items():
         if not same(there.get(n), value):
             raise ScriptError(
-                f"setting ${n}={written(value)} was written and reads {there.get(n, 'nothing')}"
+                Message(
+                    "${number}={written} was written, but the setting reads back as {number2}",
+                    number=n,
+                    written=written(value),
+                    number2=there.get(n, "nothing"),
+                )
             )
 
 
@@ -335,13 +362,21 @@ def verify(c: Controller) -> Script:
         yield from full_report(c)
     if any(abs(offset) > 1e-9 for offset in c.offset):
         raise ScriptError(
-            f"the controller keeps offsets {c.offset}; blocks go out in machine coordinates",
+            Message(
+                "the controller applies offsets {offset}, but TurnDesk sends blocks in machine coordinates",
+                offset=c.offset,
+            ),
             "controller-modes",
         )
     if c.diameter:
-        raise ScriptError("X counts in diameter (D:1) although G8 is in force", "controller-modes")
+        raise ScriptError("X is in diameter mode (D:1) although G8 is active", "controller-modes")
     if c.report is None or c.report.state not in {"Idle", "Jog"}:
-        raise ScriptError(f"the controller is in state {c.report.state if c.report else 'unknown'}, not Idle")
+        raise ScriptError(
+            Message(
+                "the controller is in state {state}, not Idle",
+                state=c.report.state if c.report else "unknown",
+            )
+        )
     c.ready = c.fault == ""
 
 
@@ -368,13 +403,15 @@ def recover(c: Controller) -> Script:
     if unheard:
         yield from same_session(c)
     if c.report is not None and "E" in c.report.pins:
-        raise ScriptError("E-stop is pressed at the controller: release it, then Reset", "controller-estop")
+        raise ScriptError(
+            "E-stop is pressed at the controller: release it, then press Reset", "controller-estop"
+        )
     if c.report is not None and c.report.moves:
         yield from stop(c)
     yield from reset(c)
     yield from full_report(c)
     if _door(c):
-        raise ScriptError(f"{grblhal_codes.DOOR}: close it, then Reset", "door")
+        raise ScriptError(Message("{door}: close it, then press Reset", door=grblhal_codes.DOOR), "door")
     number = _alarm_of(c)
     if number == grblhal_codes.HOMING_REQUIRED:
         return
@@ -414,7 +451,7 @@ def jog_end(c: Controller) -> Script:
     yield (
         lambda: c.reports > began + 1 and c.report is not None and not c.report.moves,
         ANSWER,
-        "a cancelled jog does not end",
+        "the jog was canceled, but the axes do not stop",
     )
     yield from verify(c)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
@@ -84,12 +85,19 @@ class GrblSpindle:
         beyond which it would turn slower than the program has it, and while it takes no lines.
         """
         if rpm and self._blocks.hindrance():
-            raise DriverError(f"the spindle stays off: {self._blocks.hindrance()}", "spindle-off")
+            raise DriverError(
+                Message("the spindle stays off: {problem}", problem=self._blocks.hindrance()), "spindle-off"
+            )
         rpm = math.copysign(min(abs(rpm), self._c.config.rpm_max), rpm)
         highest = self.highest
         if highest and abs(rpm) > 1.001 * highest:
             raise DriverError(
-                f"the spindle: the controller allows {highest:g} rpm ($30), not {abs(rpm):.0f}", "spindle-off"
+                Message(
+                    "spindle: the controller allows {highest} rpm ($30), not {rpm} rpm",
+                    highest=f"{highest:g}",
+                    rpm=f"{abs(rpm):.0f}",
+                ),
+                "spindle-off",
             )
         self._wanted = rpm
         self.pump()
@@ -192,8 +200,15 @@ class GrblSpindle:
             self._unlike_since = now
         elif now - self._unlike_since > _CLIPS:
             c.fail(
-                f"the controller turns its spindle at {told[1]:g} rpm where {expected:.0f} are asked: it"
-                " limits them ($30, $31; one that was changed may count from the controller's next start)",
+                Message(
+                    (
+                        "the controller runs the spindle at {details} rpm instead of {expected} rpm "
+                        "because the controller limits the speed ($30, $31; a changed setting may take "
+                        "effect only after the controller restarts)"
+                    ),
+                    details=f"{told[1]:g}",
+                    expected=f"{expected:.0f}",
+                ),
                 "controller-refuses",
             )
 
@@ -235,7 +250,9 @@ class GrblSpindle:
             self._paused_at = None
             self._c.realtime(grblhal_codes.SPINDLE_PAUSE)
         elif self._paused_at is not None and self._c.clock.now() - self._paused_at > _OBEYS and self._turns():
-            self._c.fail("the controller does not stop its spindle in a hold: PRESS E-STOP", "ignores-stop")
+            self._c.fail(
+                "the controller does not stop its spindle in feed hold: PRESS E-STOP", "ignores-stop"
+            )
 
     def _after_hold(self) -> None:
         """$63 leaves it off; said again, in case that this controller has restored it."""

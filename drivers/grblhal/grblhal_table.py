@@ -5,16 +5,38 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, expected_table, written
+from core.message import Message
+from core.table_schema import (
+    Driver,
+    DriverTable,
+    Field,
+    FileReading,
+    Finding,
+    Kind,
+    TableReference,
+    expected_table,
+    written,
+)
 
 _SETTINGS, _WHEEL, _GUARD = "grblhal.settings", "io.analog.handwheel", "io.in.guard.at"
 _FIELDS = (
-    Field("port", Kind.TEXT),
-    Field("baud", Kind.WHOLE, low=110, high=4_000_000, default=115_200),
-    Field("x_mode", Kind.CHOICE, choices=("G7", "G8"), default="G8"),
+    Field("port", Kind.TEXT, meaning="Serial port of the controller, or its address as `tcp://host:port`."),
+    Field(
+        "baud", Kind.WHOLE, low=110, high=4_000_000, default=115_200, meaning="Bit rate of the serial port."
+    ),
+    Field(
+        "x_mode",
+        Kind.CHOICE,
+        choices=("G7", "G8"),
+        default="G8",
+        meaning='How the controller reads X. "G8": a radius, which is the only accepted value.',
+    ),
 )
 # What a controller on a lathe has to be told, and nothing else.
-_NEEDED = ((13, 0, "reports in mm; in inches they have too few decimals"), (32, 2, "lathe mode"))
+_NEEDED = (
+    (13, 0, "reports must be in mm, because reports in inches have too few decimals"),
+    (32, 2, "lathe mode"),
+)
 _AXES = {"X": 0, "Y": 1, "Z": 2}
 # Settings by their first number: what is compared, the factor from the model's unit to the controller's.
 _LIMITS = ((110, "vmax", 60.0, "mm/min"), (120, "amax", 1.0, "mm/s²"))
@@ -38,10 +60,10 @@ def _read(file: FileReading) -> Iterator[Finding]:
         return
     for key, value in (table or {}).items():
         if not key.isdecimal():
-            expected = "expected the number of a setting: 13 for $13"
+            expected = "the key must be the number of a setting, such as 13 for $13"
             yield Finding(f"{_SETTINGS}.{key}", written(value), expected)
         elif not _is_setting(value):
-            yield Finding(f"{_SETTINGS}.{key}", written(value), "expected a number or a text")
+            yield Finding(f"{_SETTINGS}.{key}", written(value), "the setting must be a number or text")
 
 
 def _is_setting(value: object) -> bool:
@@ -62,7 +84,7 @@ def _table(file: FileReading) -> GrblhalTable:
 def _rules(file: FileReading) -> Iterator[Finding]:
     values, settings = file.values, _settings(file)
     if "handwheel" in file.names("io.analog") and values.says("machine.backend", "grblhal"):
-        yield Finding(_WHEEL, "", "this backend has no input that counts; take it out")
+        yield Finding(_WHEEL, "", "this backend does not have a counter input; remove this entry")
     if values.says("machine.backend", "grblhal"):
         yield from _guard(file)
     for axis in file.axes:
@@ -70,9 +92,17 @@ def _rules(file: FileReading) -> Iterator[Finding]:
             yield from _outside(file, settings, axis)
     for number, value, why in _NEEDED:
         if settings.get(number, value) != value:
-            yield Finding(f"{_SETTINGS}.{number}", written(settings[number]), f"expected {value}: {why}")
+            yield Finding(
+                f"{_SETTINGS}.{number}",
+                written(settings[number]),
+                Message("this value must be {details}; {why}", details=value, why=why),
+            )
     if values.says("grblhal.x_mode", "G7"):
-        yield Finding("grblhal.x_mode", '"G7"', 'expected "G8": a reset would change what X means')
+        yield Finding(
+            "grblhal.x_mode",
+            '"G7"',
+            ('the X mode must be "G8", because a reset would change the meaning of X'),
+        )
 
 
 def _guard(file: FileReading) -> Iterator[Finding]:
@@ -80,7 +110,9 @@ def _guard(file: FileReading) -> Iterator[Finding]:
     values, path = file.values, "interlocks.guard_stops"
     stops = values.has(path, _GUARD) and values.flag(path)
     if stops and values.text(_GUARD).startswith("in."):
-        expected = 'expected the door input, "pn.D": auxiliary inputs are read at a standstill only'
+        expected = (
+            'this input must be the door input, "pn.D", because auxiliary inputs are read only at standstill'
+        )
         yield Finding(_GUARD, written(values.text(_GUARD)), expected, "broken-rule")
 
 
@@ -103,12 +135,37 @@ def _too_small(
     setting = settings.get(number)
     if isinstance(setting, str) or setting is None or setting >= needed * (1 - 1e-6):
         return
-    expected = f"expected {needed:.6g} {unit} or more, for {path}"
+    expected = Message(
+        ("the setting must be at least {needed} {unit} for {path}"),
+        needed=f"{needed:.6g}",
+        unit=unit,
+        path=path,
+    )
     yield Finding(f"{_SETTINGS}.{number}", f"{setting:g}", expected)
 
 
 DRIVER = Driver(
-    tables=(DriverTable("grblhal", _FIELDS, _table, ("settings",), _read, _rules, port="grblhal.port"),),
+    tables=(
+        DriverTable(
+            "grblhal",
+            _FIELDS,
+            _table,
+            ("settings",),
+            _read,
+            _rules,
+            port="grblhal.port",
+            purpose='The connection to a grblHAL controller (`backend = "grblhal"`).',
+            parts=(
+                TableReference(
+                    "grblhal.settings",
+                    "Settings of the controller that TurnDesk writes at each connection and reads back: the "
+                    "key is the number of the setting (`13` is `$13`), the value is in the controller's "
+                    "unit. "
+                    "Settings 110 to 132 must cover `vmax`, `amax` and `travel` of their axes.",
+                ),
+            ),
+        ),
+    ),
     backend="grblhal",
     spindle="grblhal",
     count_rate=3e5,

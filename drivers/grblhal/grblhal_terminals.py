@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
@@ -54,11 +55,20 @@ class GrblInputs:
             if name == ESTOP and wired.terminal == HARDWARE:
                 continue
             if port is None and not wired.terminal.startswith(_PIN):
-                missing[name] = f"{wired.terminal} is neither a pin nor an auxiliary input"
+                missing[name] = Message(
+                    "{terminal} is neither a pin nor an auxiliary input", terminal=wired.terminal
+                )
             elif port is None and not self._c.has_pin(wired.terminal.removeprefix(_PIN)):
-                missing[name] = f"{wired.terminal} is not among the inputs that the controller's board has"
+                missing[name] = Message(
+                    "{terminal} is not an input of the controller's board",
+                    terminal=wired.terminal,
+                )
             elif port is not None and port >= have:
-                missing[name] = f"{wired.terminal} is not among the controller's {have} auxiliary inputs"
+                missing[name] = Message(
+                    "{terminal} is not among the controller's {have} auxiliary inputs",
+                    terminal=wired.terminal,
+                    have=have,
+                )
         return missing
 
     def pump(self) -> None:
@@ -134,10 +144,15 @@ class GrblIO:
     def write(self, name: str, on: bool) -> None:
         """Raises DriverError for an output that the machine or the controller has not."""
         if name not in self._wanted:
-            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]", "output")
+            raise DriverError(
+                Message("output {name} is not in the machine file; add it under [io.out]", name=f"{name!r}"),
+                "output",
+            )
         why = self.lacking(name)
         if on and why:
-            raise DriverError(f"output {name} cannot be switched: {why}", "output")
+            raise DriverError(
+                Message("output {name} cannot be switched: {why}", name=name, why=why), "output"
+            )
         if self.outputs().get(name, on) is not on:
             self._sent[name] = not on  # whatever it was told before: to be said, as soon as it listens
         self._wanted[name] = on
@@ -155,19 +170,23 @@ class GrblIO:
         terminal = self._c.config.outputs[name].terminal
         if terminal in _COOLANT:
             mist = self._c.identity is not None and _MIST in self._c.identity.letters
-            return "" if terminal != "mist" or mist else "mist is not in the controller's firmware"
+            return (
+                "" if terminal != "mist" or mist else ("mist is not supported by the controller's firmware")
+            )
         have = self._c.identity.outputs if self._c.identity is not None else 0
         port = terminal.removeprefix("out.")
         if port.isdecimal() and int(port) < have:
             return ""
-        return f"{terminal} is not among the controller's {have} auxiliary outputs"
+        return Message(
+            "{terminal} is not among the controller's {have} auxiliary outputs", terminal=terminal, have=have
+        )
 
     def able(self) -> frozenset[str]:
         """What a program may ask of the terminals, as ``core.interpreter.machine_requirements`` names it."""
-        outputs = {f"output {name}" for name in self._wanted if not self.lacking(name)}
+        outputs = {Message("output {name}", name=name) for name in self._wanted if not self.lacking(name)}
         there = {name for name in self._c.config.inputs if name not in self._inputs.lacking()}
         names = there | {self._c.config.inputs[name].terminal for name in there}
-        return frozenset(outputs | {f"input {name}" for name in names})
+        return frozenset(outputs | {Message("input {name}", name=name) for name in names})
 
     def voided(self) -> None:
         """A stop or a reset switches coolant off; what auxiliary outputs do then nobody tells."""

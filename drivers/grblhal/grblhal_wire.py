@@ -7,6 +7,7 @@ import socket
 from contextlib import suppress
 from typing import TYPE_CHECKING, Protocol
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.serial_line import why
 
@@ -37,7 +38,7 @@ def tcp_address(port: str) -> tuple[str, int] | None:
         return None
     found = _TCP.fullmatch(port)
     if found is None or not found["host"]:
-        raise DriverError(f"{port}: expected tcp://host:port")
+        raise DriverError(Message("{port} must have the form tcp://host:port", port=port))
     return found["host"].strip("[]"), int(found["number"])
 
 
@@ -54,7 +55,7 @@ class SerialWire:
         try:
             import serial  # noqa: PLC0415  not everybody has a controller
         except ImportError as error:
-            raise DriverError("backend grblhal needs pyserial: pip install pyserial") from error
+            raise DriverError("backend grblhal needs pyserial; run: pip install pyserial") from error
         self._port: serial.Serial = serial.Serial(timeout=0, write_timeout=0, exclusive=True)
         self._port.port, self._port.baudrate = port, baud
         self._port.dtr = self._port.rts = False
@@ -62,7 +63,10 @@ class SerialWire:
             self._port.open()
         except (OSError, ValueError) as error:
             raise DriverError(
-                f"{port} cannot be opened: {why(error)} ([grblhal] port)", reason="not-opened"
+                Message(
+                    "{port} cannot be opened: {error}; check [grblhal] port", port=port, error=why(error)
+                ),
+                reason="not-opened",
             ) from error
 
     def read(self) -> bytes:
@@ -76,7 +80,7 @@ class SerialWire:
         """All of it; less than a controller's buffer fits into the computer's own."""
         try:
             if self._port.write(data) != len(data):
-                raise WireLostError("the line takes no more bytes")
+                raise WireLostError("the serial port does not accept any more bytes")
         except OSError as error:
             raise WireLostError(str(error)) from error
 
@@ -92,7 +96,9 @@ class TcpWire:
         try:
             self._socket = socket.create_connection((host, port), _OPENING)
         except OSError as error:
-            raise DriverError(f"tcp://{host}:{port} does not answer: {error}") from error
+            raise DriverError(
+                Message("no response from tcp://{host}:{port}: {error}", host=host, port=port, error=error)
+            ) from error
         self._socket.setblocking(False)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
@@ -105,14 +111,14 @@ class TcpWire:
         except OSError as error:
             raise WireLostError(str(error)) from error
         if not data:
-            raise WireLostError("the other end has closed the connection")
+            raise WireLostError("the remote host has closed the connection")
         return data
 
     def write(self, data: bytes) -> None:
         """All of it."""
         try:
             if self._socket.send(data) != len(data):
-                raise WireLostError("the connection takes no more bytes")
+                raise WireLostError("the connection does not accept any more bytes")
         except OSError as error:
             raise WireLostError(str(error)) from error
 

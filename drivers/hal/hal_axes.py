@@ -6,6 +6,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Sequence
 
+from core.message import Message
 from core.ports import AxisSample, Cam, DriverError, Fault, Geared, Segments, Stop, at_rest, code_of
 from drivers.hal.bridge.packets import number
 from drivers.hal.bridge.packets import pieces_of as pieces_told
@@ -216,7 +217,10 @@ class HalAxes:
         """Queue setpoints. Raises DriverError as the port says, and for what the axes cannot do."""
         self._need_power()
         if self.homing is not None:
-            raise DriverError(f"{self.homing.name} is homing; wait until it is done", reason="homing")
+            raise DriverError(
+                Message(("{name} is homing; wait until homing is complete"), name=self.homing.name),
+                reason="homing",
+            )
         self._check(segments)
         self.queue.splice(segments, self._now())
         self._send("splice", pieces_of(segments, len(self.axes)))
@@ -226,7 +230,8 @@ class HalAxes:
         self._need_power()
         if self.spindle_at is None:
             raise DriverError(
-                "HAL tells no turns of the spindle; no slide can follow it", "thread-no-encoder"
+                "HAL does not report the spindle position, so no axis can follow the spindle",
+                "thread-no-encoder",
             )
         t, turns = self.spindle_at[0], self.spindle_at[1] - self.index_at
         self._check(cam.way._replace(v=cam.way.v * abs(self.rps) / 1.1))
@@ -265,14 +270,21 @@ class HalAxes:
                 self._link.say("off")
             return
         if self.fault:
-            raise DriverError(f"drives stay off: {self.fault}; clear the fault first", "no-power")
+            raise DriverError(
+                Message(
+                    "the drives stay off because of a fault ({fault}); clear the fault first",
+                    fault=self.fault,
+                ),
+                "no-power",
+            )
         if self._powered:
             return
         self._order = self._link.say("enable")
         if not self._link.wait(lambda: self._link.told.get("powered") is True, _POWER):
             self._link.say("off")
             raise DriverError(
-                "drives stay off: HAL's E-stop chain does not close; is E-stop pressed, is there a fault?",
+                "the drives stay off because HAL's E-stop chain does not close; check the E-stop "
+                "button and look for faults",
                 "no-power",
             )
         self.take()
@@ -295,7 +307,7 @@ class HalAxes:
     def home(self, axis: str) -> None:
         """Look for home; ``sample().homed`` says when it is found. Raises DriverError."""
         if axis not in self.axes:
-            raise DriverError(f"there is no axis {axis!r}", reason="no-axis")
+            raise DriverError(Message("axis {axis} does not exist", axis=f"{axis!r}"), reason="no-axis")
         index = self.axes.index(axis)
         figures = self.config.axes[index]
         if figures.absolute or figures.pins is None:
@@ -303,7 +315,11 @@ class HalAxes:
         self._need_power()
         if self.sample().moving:
             raise DriverError(
-                f"{axis} cannot home while an axis moves; wait for standstill", "homing", reason="axis-moves"
+                Message(
+                    "{axis} cannot home while an axis is moving; wait until all axes are at rest", axis=axis
+                ),
+                "homing",
+                reason="axis-moves",
             )
         self._homed[index] = False
         self.homing = Homing(figures, index, self)
@@ -403,7 +419,9 @@ class HalAxes:
 
     def _need_power(self) -> None:
         if self.fault:
-            raise DriverError(f"{self.fault}; clear the fault first", code_of(self.fault, "axis"))
+            raise DriverError(
+                Message("{fault}; clear the fault first", fault=self.fault), code_of(self.fault, "axis")
+            )
         if not self._powered:
             raise DriverError("the drives are off; switch them on first", "power-lost")
 
@@ -412,13 +430,24 @@ class HalAxes:
         for n in self._driven:
             axis = self.config.axes[n]
             if abs(segments.v[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
-                why, reason = f"setpoints faster than {axis.vmax:.1f}/s", "too-fast"
+                why, reason = (
+                    Message("setpoints exceed the speed limit of {vmax}/s", vmax=f"{axis.vmax:.1f}"),
+                    "too-fast",
+                )
             elif axis.travel is not None and self._homed[n] and not self._inside(segments, n, axis.travel):
-                why = f"setpoints leave the travel {axis.travel[0]:.2f}…{axis.travel[1]:.2f}"
+                why = Message(
+                    "setpoints are outside the travel range {travel}…{travel2}",
+                    travel=f"{axis.travel[0]:.2f}",
+                    travel2=f"{axis.travel[1]:.2f}",
+                )
                 reason = "leaves-travel"
             else:
                 continue
-            raise DriverError(f"{axis.name}: {why}; nothing was queued", "drive-limits", reason=reason)
+            raise DriverError(
+                Message("{axis}: {why}; nothing was queued", axis=axis.name, why=why),
+                "drive-limits",
+                reason=reason,
+            )
 
     def _inside(self, segments: Segments, n: int, travel: tuple[float, float]) -> bool:
         low, high = min(travel[0], self._actual[n]), max(travel[1], self._actual[n])

@@ -1,7 +1,7 @@
 """Our own part of the HAL file: setpoints out of a stream, the gear, the E-stop chain, samples back.
 
 It is made of LinuxCNC's stock components and stands in the place of the line ``#turndesk`` of the machine's
-HAL file: behind what reads the machine, before what drives it. Decision 0055 draws it.
+HAL file: behind what reads the machine, before what drives it. See decision 0028.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.hal.hal_config import HalAxis, HalConfig
 
@@ -377,8 +378,8 @@ def session_text(machine: str, border: Border, thread: str, source: str) -> str:
     place = next((n for n, line in enumerate(lines) if line.strip().lower().startswith(MARK)), None)
     if place is None:
         raise DriverError(
-            f"{source}: there is no line {MARK}; put it behind the addf of what reads the machine and before"
-            " the addf of what drives it"
+            f"{source}: line {MARK} is missing; put it after the addf commands that read from the "
+            "machine and before the addf commands that drive the machine"
         )
     modules = {component: list(names) for component, names in border.modules.items()}
     before = [_together(line, modules) for line in lines[:place]]
@@ -421,7 +422,7 @@ def _ours(border: Border, thread: str, modules: Mapping[str, list[str]]) -> Iter
     yield from (f"addf {call} {thread}" for call in border.calls)
     yield from (f"setp {pin} {value:.17g}" for pin, value in border.values)
     for signal, pins in border.nets.items():
-        inner = [pin for pin in pins if not pin.startswith(f"{BRIDGE}.")]
+        inner = [pin for pin in pins if not pin.startswith(Message("{what}.", what=BRIDGE))]
         if inner:
             yield f"net {signal} {' '.join(inner)}"
 
@@ -429,6 +430,6 @@ def _ours(border: Border, thread: str, modules: Mapping[str, list[str]]) -> Iter
 def bridge_nets(border: Border) -> Iterator[tuple[str, list[str]]]:
     """The bridge's own pins by signal."""
     for signal, pins in border.nets.items():
-        own = [pin for pin in pins if pin.startswith(f"{BRIDGE}.")]
+        own = [pin for pin in pins if pin.startswith(Message("{what}.", what=BRIDGE))]
         if own:
             yield signal, own

@@ -6,6 +6,7 @@ import math
 from enum import Enum
 from typing import Protocol
 
+from core.message import Message
 from core.ports import DriverError, Segments, at_rest
 from drivers.hal.hal_config import HalAxis
 from drivers.hal.hal_table import HERE, NEEDS
@@ -39,12 +40,12 @@ class Slides(Protocol):
 
 class _Step(Enum):
     BEGIN = "begins"
-    SEARCH = "looks for its switch"
-    STOP = "brakes on its switch"
-    LEAVE = "leaves its switch slowly"
-    INDEX = "looks for the index"
-    END = "brakes behind its mark"
-    PARK = "goes to its home"
+    SEARCH = "the axis searches for its homing switch"
+    STOP = "the axis stops on its homing switch"
+    LEAVE = "the axis moves off its homing switch slowly"
+    INDEX = "the axis searches for the index pulse"
+    END = "the axis stops after the home mark"
+    PARK = "the axis moves to its home position"
     DONE = "found"
 
 
@@ -99,7 +100,7 @@ class Homing:
             self._seek_index(now)
         elif self._on is None:
             if now - (self._since or now) > 1.0:
-                raise self._failed("its switch is not sampled", "not-sampled")
+                raise self._failed("the homing switch is not being sampled", "not-sampled")
             self._since = self._since or now
         elif self._on:
             self._go(-self._way, self._slow, _Step.LEAVE, now)
@@ -111,13 +112,14 @@ class Homing:
             self._slides.halt()
             self._enter(_Step.STOP, now)
         elif rests and now > self._since + _AFTER:
-            raise self._failed("no switch was found within the travel", "no-switch")
+            raise self._failed("no home switch was found within the axis travel", "no-switch")
 
     def _stop(self, now: float, rests: bool) -> None:
         if rests and now > self._since + _AFTER:
             if not self._on:
                 raise self._failed(
-                    "the slide has run over its switch; make it longer, or the search slower", "ran-over"
+                    "the axis has overrun its homing switch; use a longer switch cam or a lower search speed",
+                    "ran-over",
                 )
             self._go(-self._way, self._slow, _Step.LEAVE, now)
 
@@ -129,7 +131,7 @@ class Homing:
             self._slides.halt()
             self._enter(_Step.END, now)
         elif rests and now > self._since + _AFTER:
-            raise self._failed("its switch does not go off", "stays-on")
+            raise self._failed("the homing switch does not turn off", "stays-on")
 
     def _seek_index(self, now: float) -> None:
         self._go(self._way, self._slow, _Step.INDEX, now, _INDEX_WAY)
@@ -143,7 +145,7 @@ class Homing:
             self._enter(_Step.END, now)
         elif rests and now > self._since + _AFTER:
             self._slides.ask_index(f"{self.name}.index", False)
-            raise self._failed("no index came by", "no-index")
+            raise self._failed("no index pulse was detected", "no-index")
 
     def _end(self, now: float, rests: bool) -> None:
         if rests and now > self._since + _AFTER:
@@ -177,4 +179,6 @@ class Homing:
 
     def _failed(self, why: str, reason: str) -> DriverError:
         self._slides.let_limit(self.name, False)
-        return DriverError(f"{self.name}: homing has failed: {why}", "homing", reason=reason)
+        return DriverError(
+            Message("{name}: homing failed: {why}", name=self.name, why=why), "homing", reason=reason
+        )

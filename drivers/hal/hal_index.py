@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from core.message import Message
 from core.ports import Fault
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_link import HalLink
@@ -53,7 +54,10 @@ class SpindleIndex:
             self._fell = t
         elif abs(turns - self._from) > _TURNS:
             self.trouble = Fault(
-                f"the spindle's index has not come by in {_TURNS:g} turns: phase Z of its encoder, or"
-                " hal.spindle.index_enable is another encoder's",
+                Message(
+                    "no spindle index pulse was detected in {revolutions} revolutions; check phase Z of the "
+                    "spindle encoder, and check that hal.spindle.index_enable belongs to the same encoder",
+                    revolutions=f"{_TURNS:g}",
+                ),
                 "spindle-encoder",
             )

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import get_args
 
+from core.message import Message
 from core.ports import Clock, DriverError, Fault, FaultCode
 from drivers.hal.bridge.hal_bridge import BridgeConfig
 from drivers.hal.bridge.packets import Head, number, pack, packets_of, text
@@ -49,9 +50,7 @@ class HalLink:
     def connect(self) -> None:
         """Start it, and wait for its first report. Raises DriverError."""
         if self._link is not None and not self._goes_down(self._link):
-            raise DriverError(
-                "HAL is still being taken down: in some seconds press Reset again", "hal-bridge"
-            )
+            raise DriverError("HAL is still shutting down; press Reset again in a few seconds", "hal-bridge")
         self.close()
         self.lost, self.rows, self._reports = "", [], 0
         try:
@@ -61,9 +60,7 @@ class HalLink:
             raise
         self._looked, self._silent = self._clock.now(), 0.0
         if not self.wait(lambda: self._reports > 0, 3.0):
-            raise DriverError(
-                "the bridge to HAL does not tell anything; start the control again", "hal-silent"
-            )
+            raise DriverError("the HAL bridge does not send reports; restart TurnDesk", "hal-silent")
         self.wait(lambda: False, _SETTLES)
         self.wait(lambda: not self.is_stale, _STARTS)
 
@@ -80,7 +77,7 @@ class HalLink:
         """A bridge to a HAL that stands is of no use any more: it ends, and HAL with it."""
         if self._link is not None and not self.lost:
             self._link.hang_up()
-            self.lost = Fault("HAL is taken down", "hal-thread")
+            self.lost = Fault("HAL was shut down", "hal-thread")
 
     def pump(self) -> None:
         """Take in what has come. Raises nothing: a bridge that is gone is ``lost``."""
@@ -98,7 +95,7 @@ class HalLink:
         except DriverError as error:
             self.lost = error.fault
         except (ValueError, struct.error):
-            self.lost = Fault("the bridge to HAL tells something that is no packet", "hal-silent")
+            self.lost = Fault("the HAL bridge sent an invalid packet", "hal-silent")
             self._link.hang_up()
 
     @property
@@ -107,7 +104,10 @@ class HalLink:
         silent = self.age
         if self.lost or silent <= _SILENT:
             return self.lost
-        return Fault(f"the bridge to HAL has told nothing for {silent:.2f} s", "hal-silent")
+        return Fault(
+            Message("the HAL bridge has not sent a report for {silent} s", silent=f"{silent:.2f}"),
+            "hal-silent",
+        )
 
     @property
     def blind(self) -> bool:
@@ -192,7 +192,7 @@ class HalLink:
     def _send(self, data: bytes) -> None:
         if self.lost or self._link is None:
             raise DriverError(
-                self.lost or "there is no bridge to HAL", reason="" if self.lost else "no-bridge"
+                self.lost or "the HAL bridge is not connected", reason="" if self.lost else "no-bridge"
             )
         try:
             self._link.send(data)

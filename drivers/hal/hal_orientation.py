@@ -5,6 +5,7 @@ How it turns there, and what makes ``is_oriented`` come on, is said by the HAL f
 
 from __future__ import annotations
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_link import HalLink
@@ -26,12 +27,14 @@ class HalOrientation:
     def orient(self, angle: float, sense: int = 0) -> None:
         """Bring it to an angle. Raises DriverError while it turns, with a fault or an open chain."""
         if why := self._spindle.fault() or self._axes.fault:
-            raise DriverError(f"the spindle stays off: {why}", "spindle-off")
+            raise DriverError(Message("the spindle stays off: {problem}", problem=why), "spindle-off")
         if self._link.told.get("ok") is not True:
-            raise DriverError("the spindle stays off: the E-stop chain is open; press Reset", "spindle-off")
+            raise DriverError(
+                "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
+            )
         if self._order is None and (self._spindle.ordered or abs(self._spindle.measured()) >= _STANDS):
             raise DriverError(
-                "the spindle turns, and is not brought to an angle; stop it first", "spindle-off"
+                "the spindle cannot be oriented while it is turning; stop it first", "spindle-off"
             )
         self._since = None
         self._order = self._link.say("orient", on=True, angle=angle, mode=_MODES[sense])

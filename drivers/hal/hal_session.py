@@ -37,12 +37,14 @@ CLEAR_STREAMS = "for key in 0x48535430 0x48535431; do ipcrm -M $key 2>/dev/null;
 
 # What halrun says, and what it means for whoever stands before the control.
 _PLAIN = {
-    "Refusing to run as root": "LinuxCNC refuses to run as root; start the control as an ordinary user",
-    "Realtime already running": "another LinuxCNC or HAL session runs; end it, or after a crash: halrun -U",
+    "Refusing to run as root": "LinuxCNC does not run as root; start TurnDesk as a regular user",
+    "Realtime already running": (
+        "another LinuxCNC or HAL session is running; close that session, or run halrun -U after a crash"
+    ),
 }
 
 
-_ENDED, _MUTE = "HAL bridge process has ended", "it says nothing"
+_ENDED, _MUTE = "HAL bridge process has ended", "no error message"
 
 
 class Verdict(NamedTuple):
@@ -210,9 +212,9 @@ class HalSession:
             if not data:
                 with suppress(subprocess.TimeoutExpired):
                     self._halrun.wait(3.0)
-                raise DriverError(f"halrun has ended at its start: {self._said() or _MUTE}", "hal-setup")
+                raise DriverError(f"halrun ended during startup: {self._said() or _MUTE}", "hal-setup")
             return unpack(data)[0]
-        raise DriverError(f"HAL does not come up within {_START:g} s: {self._said() or _MUTE}", "hal-setup")
+        raise DriverError(f"HAL did not start within {_START:g} s: {self._said() or _MUTE}", "hal-setup")
 
     def _said(self) -> str:
         """What halrun has said last that is worth telling."""
@@ -234,9 +236,9 @@ class HalSession:
         try:
             self._socket.send(data)
         except BlockingIOError as error:
-            raise DriverError("the bridge to HAL takes nothing any more", "hal-silent") from error
+            raise DriverError("the HAL bridge no longer accepts data", "hal-silent") from error
         except OSError as error:
-            raise DriverError(f"the bridge to HAL has ended ({error.strerror})", "hal-bridge") from error
+            raise DriverError(f"the HAL bridge has ended ({error.strerror})", "hal-bridge") from error
 
     def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
         """Every packet that has come. Raises DriverError when the bridge has ended."""
@@ -303,7 +305,7 @@ def _demand_halrun() -> None:
     """Raises DriverError where there is no LinuxCNC."""
     if shutil.which("halrun") is None:
         raise DriverError(
-            "there is no halrun: backend hal needs LinuxCNC (apt install linuxcnc-uspace)", "hal-setup"
+            "halrun was not found; backend hal requires LinuxCNC (apt install linuxcnc-uspace)", "hal-setup"
         )
 
 

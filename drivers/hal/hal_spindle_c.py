@@ -28,11 +28,11 @@ _AFTER = 0.05  # s behind a motion until it is taken for over
 class Step(Enum):
     """How far the change-over is."""
 
-    FREE = "turns as the spindle"
-    INDEX = "looks for its index"
-    STOP = "brakes behind its index"
-    CHANGE = "changes to positions"
-    TURN = "turns to its place"
+    FREE = "the drive is running as the spindle drive"
+    INDEX = "searching for the encoder index"
+    STOP = "the spindle stops after the index pulse"
+    CHANGE = "changing the spindle drive to position mode"
+    TURN = "turning the spindle to its position as the C axis"
     HELD = "is C"
 
 
@@ -59,13 +59,13 @@ class HalSpindleC:
             return
         if not self._axes.sample().enabled:
             raise DriverError(
-                "C is the spindle's drive, and the drives are off; switch them on first",
+                "C uses the spindle drive, and the drives are off; switch them on first",
                 "c-coupling",
                 reason="drives-off",
             )
         if self._spindle.ordered or abs(self._spindle.measured()) >= _STANDS:
             raise DriverError(
-                "C is the spindle's drive, and the spindle turns; stop it first",
+                "C uses the spindle drive, and the spindle is turning; stop the spindle first",
                 "c-coupling",
                 reason="spindle-turns",
             )
@@ -103,7 +103,7 @@ class HalSpindleC:
             self._spindle.run(0.0)
             self._enter(Step.STOP)
         elif self._late(_INDEX):
-            self._fail("the spindle's index does not come by")
+            self._fail("no spindle index pulse was detected")
 
     def _brake(self) -> None:
         if abs(self._spindle.measured()) < _STANDS:
@@ -121,7 +121,7 @@ class HalSpindleC:
         if isinstance(told, float | int) and (not self._told or self._link.bit(self._told)):
             self._hold_at(float(told))
         elif self._late(_CHANGE):
-            self._fail("hal.spindle.in_position_mode does not come on")
+            self._fail("the signal hal.spindle.in_position_mode does not turn on")
 
     def _hold_at(self, raw: float) -> None:
         count = self._axes.sample().demand[self._axis]

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 
+from core.message import Message
 from core.table_schema import (
     Driver,
     DriverTable,
@@ -17,6 +18,7 @@ from core.table_schema import (
     FileReading,
     Finding,
     Kind,
+    TableReference,
     Unit,
     read_axes_and_spindle,
     written,
@@ -43,30 +45,103 @@ NEEDS: Mapping[int, tuple[str, ...]] = {
 _OFF_LIMIT = {17: 1.0, 18: -1.0}  # homing methods whose mark is a limit switch alone, and the way off it
 
 _FIELDS = (
-    Field("file", Kind.TEXT),  # beside the machine file
-    Field("thread", Kind.TEXT, default="servo-thread"),
-    Field("period_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.0002, 0.004, default=0.001),
-    Field("ahead_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.01, 0.5, default=0.1),
-    Field("watchdog_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.05, 1.0, default=0.25),
-    Field("machine_on", Kind.TEXT, default=""),  # bit in: the drives have power
-    Field("charge_pump", Kind.TEXT, default=""),  # bit in: changes every period while all is well
-    Field("link_fault", Kind.TEXT, default=""),  # bit out: on while the board's inputs are not current
+    Field("file", Kind.TEXT, meaning="HAL file, in the folder of the machine file."),
+    Field("thread", Kind.TEXT, default="servo-thread", meaning="Name of the servo thread in the HAL file."),
+    Field(
+        "period_ms",
+        Kind.NUMBER,
+        Unit.MILLISECONDS,
+        0.0002,
+        0.004,
+        default=0.001,
+        meaning="Period of the servo thread.",
+    ),
+    Field(
+        "ahead_ms",
+        Kind.NUMBER,
+        Unit.MILLISECONDS,
+        0.01,
+        0.5,
+        default=0.1,
+        meaning="Time for which HAL buffers setpoints. If the computer is late for longer, the axes stop.",
+    ),
+    Field(
+        "watchdog_ms",
+        Kind.NUMBER,
+        Unit.MILLISECONDS,
+        0.05,
+        1.0,
+        default=0.25,
+        meaning="Time without a sign of life from TurnDesk after which HAL removes drive power.",
+    ),
+    Field("machine_on", Kind.TEXT, default="", meaning="Bit in: on while the drives may have power."),
+    Field(
+        "charge_pump",
+        Kind.TEXT,
+        default="",
+        meaning=(
+            "Bit in: changes in every period while TurnDesk, the bridge and HAL run; for a charge "
+            "pump or watchdog relay."
+        ),
+    ),
+    Field(
+        "link_fault",
+        Kind.TEXT,
+        default="",
+        meaning=(
+            "Bit out: on while the inputs of the board are not current. It opens the E-stop chain. "
+            "Required for a board on a cable."
+        ),
+    ),
 )
 
 
-def _optional(*keys: str) -> tuple[Field, ...]:
-    return tuple(Field(key, Kind.TEXT, default="") for key in keys)
+def _optional(meanings: Mapping[str, str]) -> tuple[Field, ...]:
+    """Return a field for each pin that a HAL file may leave out."""
+    return tuple(Field(key, Kind.TEXT, default="", meaning=meaning) for key, meaning in meanings.items())
 
 
 _AXIS = (
-    Field("command", Kind.TEXT),
-    Field("feedback", Kind.TEXT),
-    *_optional("enable", "fault", "home", "limit_low", "limit_high", "index_enable"),
+    Field("command", Kind.TEXT, meaning="Float in: commanded position."),
+    Field("feedback", Kind.TEXT, meaning="Float out: measured position."),
+    *_optional(
+        {
+            "enable": "Bit in: on while the drive of the axis may have power.",
+            "fault": "Bit out: on while the drive reports a fault.",
+            "home": "Bit out: on while the axis is on its home switch.",
+            "limit_low": (
+                "Bit out: on at the lower limit switch. The axis stops with an alarm, except in homing."
+            ),
+            "limit_high": (
+                "Bit out: on at the upper limit switch. The axis stops with an alarm, except in homing."
+            ),
+            "index_enable": "Bit I/O: index enable of the encoder that `feedback` counts.",
+        }
+    ),
 )
 _TURNS = _optional(
-    *("speed", "speed_abs", "on", "forward", "reverse", "position", "velocity", "at_speed", "fault"),
-    *("index_enable", "position_mode", "in_position_mode"),
-    *("orient", "orient_angle", "orient_mode", "is_oriented"),
+    {
+        "speed": "Float in: commanded speed in rpm, negative with M04.",
+        "speed_abs": "Float in: commanded speed in rpm without a sign; it needs `on` or `forward`.",
+        "on": "Bit in: on while the spindle turns by command.",
+        "forward": "Bit in: on with M03.",
+        "reverse": "Bit in: on with M04.",
+        "position": "Float out: position in revolutions, rising with M03. Required with `encoder_ppr`.",
+        "velocity": "Float out: measured speed in rev/s.",
+        "at_speed": "Bit out: on while the drive reports that the spindle is at speed.",
+        "fault": "Bit out: on while the drive reports a fault.",
+        "index_enable": (
+            "Bit I/O: index enable of the encoder that `position` counts. Threads and M19 wait for it."
+        ),
+        "position_mode": "Bit in: switches the spindle drive to position mode for C.",
+        "in_position_mode": (
+            "Bit out: on while the drive is in position mode. Default: the drive does not report it."
+        ),
+        "orient": "Bit in: on while the spindle is to be held at an angle.",
+        "orient_angle": "Float in: commanded angle in degrees.",
+        "orient_mode": "s32 in: direction of the orientation: 0 the shorter, 1 as M03, 2 as M04.",
+        "is_oriented": "Bit out: on while the spindle is at the commanded angle.",
+    }
 )
 
 
@@ -152,6 +227,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     yield from _names(file)
     if not file.values.says("machine.backend", "hal"):
         return
+    yield from _shared_inputs(file)
     yield from _link(file)
     yield from _all_axes(file)
     yield from _turns(file)
@@ -160,7 +236,12 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     columns = 1 + 2 * len(file.names(_AXES))
     if columns > _COLUMNS:
         yield Finding(
-            _AXES, "", f"expected {(_COLUMNS - 1) // 2} axes or fewer: a stream of HAL takes no more"
+            _AXES,
+            "",
+            Message(
+                "expected at most {columns} axes, which is the maximum for a HAL stream",
+                columns=(_COLUMNS - 1) // 2,
+            ),
         )
 
 
@@ -189,13 +270,33 @@ def _names(file: FileReading) -> Iterator[Finding]:
     for path, pin in _pins(file):
         ours = path.startswith("hal.") or file.values.says("machine.backend", "hal")
         if ours and not _PIN.fullmatch(pin):
-            yield Finding(path, written(pin), 'expected the name of a HAL pin: "pid.x.command"')
+            yield Finding(path, written(pin), 'expected the name of a HAL pin, for example "pid.x.command"')
         elif ours and _DRIVEN.fullmatch(path.removesuffix(".at")):
             first = driven.setdefault(pin, path)
             if first != path:
-                yield Finding(path, written(pin), f"expected a pin of its own; {first} drives it")
+                yield Finding(
+                    path,
+                    written(pin),
+                    Message("expected an unused pin; {first} already drives this pin", first=first),
+                )
 
 
+def _shared_inputs(file: FileReading) -> Iterator[Finding]:
+    """Reject an input of [io.in] that is also a pin of an axis or the spindle: homing could start a cycle."""
+    axes = (
+        (path, pin)
+        for path, pin in _pins(file)
+        if path.startswith((_AXES, _SPINDLE)) and not _DRIVEN.fullmatch(path)
+    )
+    used = {pin.removesuffix(_INVERTED): path for path, pin in axes}
+    for path, terminal in file.terminals.items():
+        other = used.get(terminal.removesuffix(_INVERTED))
+        if path.startswith("io.in.") and other:
+            expected = Message("expected an unused input; {other} already uses this input", other=other)
+            yield Finding(f"{path}.at", written(terminal), expected)
+
+
+_INVERTED = "-not"  # ends the name of the pin that shows the same input inverted
 _OVER_A_CABLE = re.compile(r"(hm2_|lcec\.).*")
 
 
@@ -207,8 +308,15 @@ def _link(file: FileReading) -> Iterator[Finding]:
     frozen = next((pin for pin in read if _OVER_A_CABLE.fullmatch(pin)), "")
     board = any(file.values.says("board.kind", kind) for kind in _ON_A_CABLE)
     if frozen or board:
-        why = f"{frozen or 'this board'} keeps its last value while the board's cable is out"
-        yield Finding("hal.link_fault", "", f'missing; {why}: expected "link-fault", or your pin for it')
+        why = Message(
+            "the last value from {frozen} is retained while the board's cable is disconnected",
+            frozen=frozen or "this board",
+        )
+        yield Finding(
+            "hal.link_fault",
+            "",
+            Message('missing; {why}; expected "link-fault" or the pin that reports a link fault', why=why),
+        )
 
 
 _ON_A_CABLE = ("mesa-7i76e", "mesa-7i97", "ethercat")
@@ -232,12 +340,12 @@ def _spindle_as_c(file: FileReading) -> Iterator[Finding]:
     if own or not values.says("spindle.driver", "hal") or not values.has(f"{_SPINDLE}.position_mode"):
         return
     why = {
-        "position_mode": "C is the spindle's drive, which has to be changed over to positions",
-        "position": "C is the spindle, whose turns have to be told",
+        "position_mode": "C uses the spindle drive, which must be switched to position mode",
+        "position": "C uses the spindle, so the spindle position must be reported",
     }
     for key, words in why.items():
         if not values.text(f"{_SPINDLE}.{key}"):
-            own_drive = "; or own_drive = true in [axis.C]"
+            own_drive = "; otherwise set own_drive = true in [axis.C]"
             yield Finding(f"{_SPINDLE}.{key}", "", f"missing; {words}{own_drive}")
 
 
@@ -249,17 +357,19 @@ def _turns(file: FileReading) -> Iterator[Finding]:
         return
     said = {key: values.text(path) for key, path in paths.items()}
     if values.says("spindle.driver", "hal") and not (said["speed"] or said["speed_abs"] or said["on"]):
-        yield Finding(f"{_SPINDLE}.speed", "", "missing; expected speed, speed_abs or on: what turns it")
+        yield Finding(f"{_SPINDLE}.speed", "", "missing; expected speed, speed_abs or on to turn the spindle")
     if said["speed_abs"] and not (said["forward"] or said["on"]):
-        yield Finding(f"{_SPINDLE}.forward", "", "missing; a speed without a sign needs its direction")
+        yield Finding(f"{_SPINDLE}.forward", "", "missing; an unsigned speed also requires a direction")
     told = said["position"] or said["velocity"] or said["at_speed"]
     if values.says("spindle.driver", "hal") and not told:
         yield Finding(
-            f"{_SPINDLE}.velocity", "", "missing; expected position, velocity or at_speed: who tells"
+            f"{_SPINDLE}.velocity", "", "missing; expected position, velocity or at_speed as spindle feedback"
         )
     if values.has("spindle.encoder_ppr") and values.number("spindle.encoder_ppr") and not said["position"]:
         yield Finding(
-            f"{_SPINDLE}.position", "", "missing; spindle.encoder_ppr says that there is an encoder"
+            f"{_SPINDLE}.position",
+            "",
+            "missing; spindle.encoder_ppr specifies an encoder, so the spindle position is required",
         )
 
 
@@ -273,7 +383,14 @@ def _orients(file: FileReading) -> Iterator[Finding]:
     for key in ("orient", "orient_angle", "orient_mode", "is_oriented"):
         path = f"{_SPINDLE}.{key}"
         if values.has(path) and not values.text(path):
-            yield Finding(path, "", "missing; spindle.oriented says that HAL brings it to an angle")
+            yield Finding(
+                path,
+                "",
+                (
+                    "missing; this pin is required because spindle.oriented specifies that HAL "
+                    "orients the spindle"
+                ),
+            )
 
 
 def _homes(file: FileReading) -> Iterator[Finding]:
@@ -286,16 +403,30 @@ def _homes(file: FileReading) -> Iterator[Finding]:
         method = values.whole(path)
         if method not in NEEDS:
             known = ", ".join(str(each) for each in sorted(NEEDS))
-            yield Finding(path, str(method), f"expected a method that this backend has: {known}")
+            yield Finding(
+                path,
+                str(method),
+                Message("expected a homing method that this backend supports: {known}", known=known),
+            )
             continue
         offset = f"axis.{axis}.home.offset"
         if method in _OFF_LIMIT and values.has(offset) and values.number(offset) * _OFF_LIMIT[method] <= 0.0:
             side = "above" if _OFF_LIMIT[method] > 0 else "below"
-            expected = f"expected a way off the limit switch, {side} 0: at home the axis must not stand on it"
+            expected = Message(
+                (
+                    "expected a home offset {side} 0, because at home the axis must be clear of "
+                    "the limit switch"
+                ),
+                side=side,
+            )
             yield Finding(offset, "", expected)
         for key in NEEDS[method]:
             if values.has(f"{pins}.{key}") and not values.text(f"{pins}.{key}"):
-                yield Finding(f"{pins}.{key}", "", f"missing; {path} = {method} looks for it")
+                yield Finding(
+                    f"{pins}.{key}",
+                    "",
+                    Message("missing; required by {path} = {method}", path=path, method=method),
+                )
 
 
 def _pin(file: FileReading, text: str) -> object:
@@ -304,7 +435,27 @@ def _pin(file: FileReading, text: str) -> object:
 
 
 DRIVER = Driver(
-    tables=(DriverTable("hal", _FIELDS, _table, ("axes", "spindle"), _read, _rules),),
+    tables=(
+        DriverTable(
+            "hal",
+            _FIELDS,
+            _table,
+            ("axes", "spindle"),
+            _read,
+            _rules,
+            purpose='The connection to LinuxCNC\'s HAL (`backend = "hal"`). "In" and "out" are seen from the '
+            "HAL pin. With [board], a name without a dot is a signal of the generated HAL file.",
+            parts=(
+                TableReference(
+                    "hal.axes.…",
+                    "HAL pins of an axis, which is the last word of the heading. Positions are in mm (X: a "
+                    "radius) or degrees. The homing method decides which switches are required.",
+                    _AXIS,
+                ),
+                TableReference("hal.spindle", "HAL pins of the spindle.", _TURNS),
+            ),
+        ),
+    ),
     backend="hal",
     spindle="hal",
     orients=True,

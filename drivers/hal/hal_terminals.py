@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from core.message import Message
 from core.ports import DriverError, Fault, StationState
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
@@ -33,9 +34,11 @@ class HalSpindle:
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed. Raises DriverError with a fault or an open chain, unless asked to stop."""
         if rpm and (why := self.fault() or self._axes.fault):
-            raise DriverError(f"the spindle stays off: {why}", "spindle-off")
+            raise DriverError(Message("the spindle stays off: {problem}", problem=why), "spindle-off")
         if rpm and self._link.told.get("ok") is not True:
-            raise DriverError("the spindle stays off: the E-stop chain is open; press Reset", "spindle-off")
+            raise DriverError(
+                "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
+            )
         limit = self._config.rpm_max
         self.ordered = min(max(rpm, -limit), limit)
         if not self._link.lost:
@@ -77,7 +80,7 @@ class HalSpindle:
         if self.index.trouble:
             return self.index.trouble
         wrong = self._link.bit("spindle.fault")
-        return Fault("the spindle's drive reports a fault", "spindle") if wrong else ""
+        return Fault("the spindle drive reports a fault", "spindle") if wrong else ""
 
 
 class HalTerminals:
@@ -112,13 +115,21 @@ class HalTerminals:
         """Switch one output. Raises DriverError."""
         output = self._config.outputs.get(name)
         if output is None:
-            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]", "output")
+            raise DriverError(
+                Message("output {name} is not in the machine file; add it under [io.out]", name=f"{name!r}"),
+                "output",
+            )
         if on and self._link.trouble:
-            raise DriverError(f"output {name} stays off: {self._link.trouble}", "output")
+            raise DriverError(
+                Message("output {name} stays off: {problem}", name=name, problem=self._link.trouble), "output"
+            )
         chained = output.safe is not None and not output.lamp
         if chained and on is not output.safe and self._link.told.get("ok") is not True:
             raise DriverError(
-                f"output {name} stays as it is: the E-stop chain is open; press Reset", "output"
+                Message(
+                    "output {name} does not change because the E-stop chain is open; press Reset", name=name
+                ),
+                "output",
             )
         self._say(name, on)
 

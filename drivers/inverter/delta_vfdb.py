@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from core.message import Message
 from drivers.inverter.inverter_family import Look, OnModbus, Setting, Top, number
 from drivers.inverter.modbus_rtu import Modbus
 
@@ -15,15 +16,15 @@ _STOP, _RUN, _FORWARD, _REVERSE, _RESET = 0x0001, 0x0002, 0x0010, 0x0020, 0x2000
 _ERROR, _STATUS, _SETPOINT, _OUTPUT, _CURRENT = 0x2100, 0x2101, 0x2102, 0x2103, 0x2104
 _TOP = Top(0x0100, 100, "Pr.01-00")
 _SOURCES = (
-    Setting(0x0200, 5, "Pr.02-00", "the frequency comes by RS-485"),
-    Setting(0x0201, 3, "Pr.02-01", "run and stop come by RS-485, the keypad's STOP stays"),
+    Setting(0x0200, 5, "Pr.02-00", "frequency command from RS-485"),
+    Setting(0x0201, 3, "Pr.02-01", "run and stop commands from RS-485, with the keypad STOP key enabled"),
 )
 _TRIPS = {
     1: "over-current",
     2: "over-voltage",
     3: "overheating",
-    4: "overload of the inverter",
-    5: "overload of the motor",
+    4: "inverter overload",
+    5: "motor overload",
     6: "external fault",
     33: "emergency stop",
 }
@@ -43,8 +44,13 @@ class DeltaVfdB(OnModbus):
         """09-02 = 1: it ramps down when nothing has come for 09-03."""
         self._said = 0
         watch = (
-            Setting(0x0902, 1, "Pr.09-02", "it ramps down when the line is dead"),
-            Setting(0x0903, round(comm_loss * 10.0), "Pr.09-03", f"after {comm_loss:g} s"),
+            Setting(0x0902, 1, "Pr.09-02", "ramp to stop when communication is lost"),
+            Setting(
+                0x0903,
+                round(comm_loss * 10.0),
+                "Pr.09-03",
+                Message("communication timeout of {comm_loss} s", comm_loss=f"{comm_loss:g}"),
+            ),
         )
         return self._prepared(watch, _SOURCES, _TOP, highest)
 
@@ -75,7 +81,9 @@ class DeltaVfdB(OnModbus):
             run=status & 3 >= 2,
             reverse=status >> 3 & 3 in {1, 3},
             asked_reverse=status >> 3 & 3 in {2, 3},
-            trip=_TRIPS.get(code, f"fault {code} of the manual's list") if code else "",
+            trip=_TRIPS.get(code, Message("fault code {code} in the inverter manual", code=code))
+            if code
+            else "",
             current=current / 10.0,
         )
 

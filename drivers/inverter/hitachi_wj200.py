@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from core.message import Message
 from core.ports import Clock
 from drivers.inverter.inverter_family import Look, OnModbus, Setting, Top, number
 from drivers.inverter.modbus_rtu import Modbus
@@ -20,8 +21,8 @@ _TRIP = 0x0011  # register 0012: the factor of the trip, d081
 _TOP = Top(0x1203, 10, "A004")
 _AFTER_RESET = 1.0
 _SOURCES = (
-    Setting(0x1200, 3, "A001", "the frequency comes by Modbus"),
-    Setting(0x1201, 3, "A002", "run and stop come by Modbus"),
+    Setting(0x1200, 3, "A001", "frequency command from Modbus"),
+    Setting(0x1201, 3, "A002", "run and stop commands from Modbus"),
 )
 
 
@@ -37,8 +38,13 @@ class HitachiWj200(OnModbus):
     def prepare(self, comm_loss: float, highest: float) -> list[str]:
         """C076 = 4: it ramps down when nothing has come for C077."""
         watch = (
-            Setting(0x113C, 4, "C076", "it ramps down when the line is dead"),
-            Setting(0x113D, round(comm_loss * 100.0), "C077", f"after {comm_loss:g} s"),
+            Setting(0x113C, 4, "C076", "ramp to stop when communication is lost"),
+            Setting(
+                0x113D,
+                round(comm_loss * 100.0),
+                "C077",
+                Message("communication timeout of {comm_loss} s", comm_loss=f"{comm_loss:g}"),
+            ),
         )
         return self._prepared(watch, _SOURCES, _TOP, highest)
 
@@ -77,7 +83,7 @@ class HitachiWj200(OnModbus):
 
     def _trip(self) -> str:
         (factor,) = self._line.registers(_TRIP)
-        return f"E{factor:02d} at its keypad"
+        return Message("error code E{factor} on the inverter keypad", factor=f"{factor:02d}")
 
     def reset(self) -> None:
         """It is deaf for a second."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Iterator
 
+from core.message import Message
 from core.ports import Clock
 from drivers.inverter.inverter_family import Look, number
 from drivers.inverter.modbus_rtu import PACE, NoAnswerError, never, sealed, whole
@@ -20,7 +21,7 @@ _RUN, _RUN_BACK, _HALT = 0x01, 0x11, 0x08
 _SETPOINT, _OUTPUT, _CURRENT = 0, 1, 2
 _TIMEOUT = 0.5  # s
 _TRIES = 2
-_SOURCES = ((1, "run and stop come by RS-485"), (2, "the frequency comes by RS-485"))
+_SOURCES = ((1, "run and stop commands from RS-485"), (2, "frequency command from RS-485"))
 
 
 class HuanyangHy:
@@ -43,14 +44,26 @@ class HuanyangHy:
 
     def prepare(self, comm_loss: float, highest: float) -> list[str]:
         """It has no time-out of its own. Parameters are read, never written."""
-        known = [
-            f"{self.name}: it has no time-out of its own, comm_loss_s = {comm_loss:g} has no effect: with "
-            "the cable out it turns on. Wire the E-stop and a watchdog relay to its run terminal"
+        known: list[str] = [
+            Message(
+                "{name}: this inverter does not have a communication timeout, so comm_loss_s = "
+                "{comm_loss} has no effect. If the cable is disconnected, the spindle continues to "
+                "turn. Wire the E-stop and a watchdog relay to the run terminal of the inverter",
+                name=self.name,
+                comm_loss=f"{comm_loss:g}",
+            )
         ]
         for parameter, why in _SOURCES:
             there = self._parameter(parameter)
             if there != 2:
-                known.append(f"PD{parameter:03d} is {there}; set it to 2: {why}")
+                known.append(
+                    Message(
+                        "PD{parameter} is {present} but must be 2 ({why})",
+                        parameter=f"{parameter:03d}",
+                        present=there,
+                        why=why,
+                    )
+                )
         top = self._parameter(5)
         if top < number(highest):
             known.append(
@@ -119,7 +132,8 @@ class HuanyangHy:
             if left and self.hurry() and function != _CONTROL:
                 break
         raise NoAnswerError(
-            "the inverter does not answer; look at cable, PD163 (id), PD164 and PD165 (line)", reason="silent"
+            "the inverter does not respond; check the cable, PD163 (id), PD164 and PD165 (line settings)",
+            reason="silent",
         )
 
     def _once(self, function: int, data: bytes, begins: bytes) -> bytes | None:

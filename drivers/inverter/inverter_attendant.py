@@ -10,6 +10,7 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from core.message import Message
 from core.ports import Clock, DriverError, Fault, FaultCode
 from drivers.inverter.inverter_family import Family, Look
 from drivers.inverter.inverter_obedience import PRESS, STANDS, Obedience
@@ -99,7 +100,11 @@ class Attendant:
             if self.warm:
                 return
         raise DriverError(
-            f"the inverter answers, but not {self._familiar.warm_up} times in a row: {self.missed}"
+            Message(
+                "the inverter did not send {warm_up} valid responses in a row: {missed}",
+                warm_up=self._familiar.warm_up,
+                missed=self.missed,
+            )
         )
 
     def exchange(self) -> None:
@@ -143,7 +148,7 @@ class Attendant:
     @property
     def _familiar(self) -> Family:
         if self._family is None:
-            raise NoAnswerError("the line of the inverter is not open")
+            raise NoAnswerError("the serial line to the inverter is not open")
         return self._family
 
     def _prepare(self) -> None:
@@ -212,9 +217,9 @@ class Attendant:
         if self._reset:
             return  # a look from before the operator's word
         if look.trip:
-            self._latch(f"the inverter has tripped: {look.trip}", "spindle")
+            self._latch(Message("the inverter has tripped: {trip}", trip=look.trip), "spindle")
         elif why := self._obedience.judge(now, look, now - self._began):
-            self._latch(f"the inverter does not obey: {why}", "ignores-stop")
+            self._latch(Message("the inverter does not follow its command: {why}", why=why), "ignores-stop")
 
     def _let_go(self, why: str) -> None:
         self.missed = why

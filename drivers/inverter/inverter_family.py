@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
+from core.message import Message
 from drivers.inverter.modbus_rtu import Modbus, NoAnswerError, RefusedError
 
 
@@ -91,10 +92,22 @@ class Setting(NamedTuple):
         try:
             (there,) = line.registers(self.register)
         except RefusedError as error:
-            return f"{self.name} cannot be read ({error}); it must be {self.value}: {self.why}"
+            return Message(
+                "{name} cannot be read ({error}); its value must be {value} ({why})",
+                name=self.name,
+                error=error,
+                value=self.value,
+                why=self.why,
+            )
         if there == self.value:
             return ""
-        return f"{self.name} is {there}; set it to {self.value}: {self.why}"
+        return Message(
+            "{name} is {present} but must be {value} ({why})",
+            name=self.name,
+            present=there,
+            value=self.value,
+            why=self.why,
+        )
 
 
 class Top(NamedTuple):
@@ -109,11 +122,17 @@ class Top(NamedTuple):
         try:
             (there,) = line.registers(self.register)
         except RefusedError as error:
-            return f"{self.name} cannot be read: {error}"
+            return Message("{path} cannot be read: {cause}", path=self.name, cause=error)
         if there * 100 >= number(highest) * self.parts:
             return ""
         ends = there / self.parts
-        return f"{self.name} ends at {ends:g} Hz, the highest speed needs {highest:g} Hz; change one of them"
+        return Message(
+            "{name} limits the frequency to {ends} Hz, but the maximum spindle speed needs "
+            "{highest} Hz; change one of these values",
+            name=self.name,
+            ends=f"{ends:g}",
+            highest=f"{highest:g}",
+        )
 
 
 def settled(line: Modbus, *wanted: Setting) -> list[str]:

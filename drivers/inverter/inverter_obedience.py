@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from core.message import Message
 from core.ports import Fault
 from drivers.inverter.inverter_family import Look
 
@@ -59,25 +60,42 @@ class Obedience:
 
     def _standing(self, look: Look) -> str:
         if look.output > STANDS and (look.run or not self._falls(look)):
-            return f"told to stop, it still gives {look.output:.1f} Hz"
-        return "told to stop, it still means to run" if look.run else ""
+            return Message(
+                "a stop was commanded, but the inverter still outputs {output} Hz",
+                output=f"{look.output:.1f}",
+            )
+        return "a stop was commanded, but the inverter still reports that it is running" if look.run else ""
 
     def _understood(self, look: Look) -> str:
         """Its own words for what it is to do."""
         asked = abs(self._asked)
         if abs(look.setpoint - asked) > _STEP:
-            return f"told {asked:.2f} Hz, it has understood {look.setpoint:.2f} Hz"
+            return Message(
+                "{requested} Hz was commanded, but the inverter reports a setpoint of {setpoint} Hz",
+                requested=f"{asked:.2f}",
+                setpoint=f"{look.setpoint:.2f}",
+            )
         if not look.run:
-            return f"told to turn at {asked:.1f} Hz, it does not run"
-        return "" if look.asked_reverse == (self._asked < 0.0) else "it has understood the other direction"
+            return Message(
+                "{requested} Hz was commanded, but the inverter is not running", requested=f"{asked:.1f}"
+            )
+        return (
+            ""
+            if look.asked_reverse == (self._asked < 0.0)
+            else ("the inverter reports a command for the opposite direction")
+        )
 
     def _turning(self, look: Look) -> str:
         """What it does: on the way down, or round to the other direction, it must get slower."""
         back = look.reverse != (self._asked < 0.0) and look.output > STANDS
         if back and not self._falls(look):
-            return "it turns in the other direction"
+            return "the inverter runs in the direction opposite to its command"
         if not back and look.output > abs(self._asked) + STANDS and not self._falls(look):
-            return f"told {abs(self._asked):.1f} Hz, it gives {look.output:.1f} Hz"
+            return Message(
+                "{requested} Hz was commanded, but the inverter outputs {output} Hz",
+                requested=f"{abs(self._asked):.1f}",
+                output=f"{look.output:.1f}",
+            )
         return ""
 
     def _falls(self, look: Look) -> bool:
@@ -116,7 +134,12 @@ class Agreement:
         if now - self._off_since < _LONG:
             return ""
         return Fault(
-            f"the encoder measures {measured:.0f} rpm and the inverter gives {given:.0f}: "
-            f"coupling, belt or counts_per_rev; {PRESS}",
+            Message(
+                "the encoder measures {measured} rpm, but the inverter output corresponds to {given} "
+                "rpm; check the coupling, the belt and counts_per_rev; {press}",
+                measured=f"{measured:.0f}",
+                given=f"{given:.0f}",
+                press=PRESS,
+            ),
             "spindle-disagrees",
         )

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Protocol
 
+from core.message import Message
 from core.ports import Clock, DriverError, Fault
 from drivers.inverter.delta_vfdb import DeltaVfdB
 from drivers.inverter.hitachi_wj200 import HitachiWj200
@@ -61,14 +62,18 @@ class InverterSpindle:
         if rpm:
             if self._estop():
                 raise DriverError(
-                    "the spindle stays off while E-stop is pressed; release it first", "spindle-off"
+                    "the spindle stays off while the E-stop is pressed; release the E-stop first",
+                    "spindle-off",
                 )
             if why := self.fault() or self._lost():
-                raise DriverError(f"the spindle stays off: {why}", "spindle-off")
+                raise DriverError(Message("the spindle stays off: {problem}", problem=why), "spindle-off")
             # One that turns goes on: a surface speed that is refused for a lost answer costs the part.
             if not (self._attendant.want or self._attendant.warm):
                 raise DriverError(
-                    "the spindle stays off: the inverter has not yet answered often enough",
+                    (
+                        "the spindle stays off until the inverter has sent the required number of "
+                        "valid responses"
+                    ),
                     "spindle-off",
                     reason="not-ready",
                 )
@@ -135,9 +140,18 @@ class InverterSpindle:
             attendant.want = 0.0
             return self._unmeasured
         if not self._alive():
-            return Fault(f"nobody attends the inverter any more: {PRESS}", "inverter-silent")
+            return Fault(
+                Message("TurnDesk no longer monitors the inverter; {press}", press=PRESS), "inverter-silent"
+            )
         if attendant.silent_for > DEAD:
-            return Fault(f"nothing has been heard of the inverter for {DEAD:g} s: {PRESS}", "inverter-silent")
+            return Fault(
+                Message(
+                    "no response from the inverter for {dead} s; {press}",
+                    dead=f"{DEAD:g}",
+                    press=PRESS,
+                ),
+                "inverter-silent",
+            )
         return ""
 
     def _wrong(self, encoder: Encoder) -> bool:
@@ -159,10 +173,16 @@ class InverterSpindle:
         """One line about it, for a check."""
         seen = self._attendant.seen
         if seen is None:
-            return "nothing heard yet"
+            return "no response yet"
         look = seen.look
         what = f"turns {'back' if look.reverse else 'forward'}" if look.output else "stands"
-        return f"{what}, gives {look.output:.2f} Hz, set to {look.setpoint:.2f} Hz, {look.current:.1f} A"
+        return Message(
+            "{what}, output {output} Hz, setpoint {setpoint} Hz, current {current} A",
+            what=what,
+            output=f"{look.output:.2f}",
+            setpoint=f"{look.setpoint:.2f}",
+            current=f"{look.current:.1f}",
+        )
 
 
 # --- From a configuration to an inverter that is attended.

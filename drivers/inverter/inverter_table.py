@@ -13,16 +13,61 @@ if TYPE_CHECKING:
 FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang")
 _PATH = "spindle.vfd"
 _FIELDS = (
-    Field("family", Kind.CHOICE, choices=FAMILIES),
-    Field("port", Kind.TEXT),
-    Field("baud", Kind.WHOLE, low=110, high=1_000_000, default=9600),
-    Field("parity", Kind.CHOICE, choices=("N", "E", "O"), default="N"),
-    Field("stop", Kind.WHOLE, low=1, high=2, default=1),
-    Field("id", Kind.WHOLE, low=1, high=247, default=1),
-    Field("comm_loss_s", Kind.NUMBER, Unit.SECONDS, 0.2, 10.0, default=1.5),
-    Field("hz_per_rpm", Kind.NUMBER, Unit.PLAIN, 0.001, 1.0),
-    Field("rated_a", Kind.NUMBER, Unit.PLAIN, 0.1, 1000.0, default=0.0),
-    Field("disagree_pct", Kind.NUMBER, Unit.PERCENT, 0.05, 0.5, default=0.15),
+    Field(
+        "family", Kind.CHOICE, choices=FAMILIES, meaning="Family of the inverter, which decides its protocol."
+    ),
+    Field("port", Kind.TEXT, meaning="Serial port of the inverter, such as `/dev/serial/by-id/…`."),
+    Field("baud", Kind.WHOLE, low=110, high=1_000_000, default=9600, meaning="Bit rate of the line."),
+    Field(
+        "parity",
+        Kind.CHOICE,
+        choices=("N", "E", "O"),
+        default="N",
+        meaning="Parity: none (N), even (E) or odd (O).",
+    ),
+    Field("stop", Kind.WHOLE, low=1, high=2, default=1, meaning="Stop bits of a character."),
+    Field("id", Kind.WHOLE, low=1, high=247, default=1, meaning="Station number set at the inverter."),
+    Field(
+        "comm_loss_s",
+        Kind.NUMBER,
+        Unit.SECONDS,
+        0.2,
+        10.0,
+        default=1.5,
+        meaning=(
+            "Time without a message after which the inverter stops the spindle. A Huanyang does not "
+            "have this function."
+        ),
+    ),
+    Field(
+        "hz_per_rpm",
+        Kind.NUMBER,
+        Unit.PLAIN,
+        0.001,
+        1.0,
+        meaning="Output frequency in Hz per rpm of the spindle: pole pairs ÷ 60 × belt ratio.",
+    ),
+    Field(
+        "rated_a",
+        Kind.NUMBER,
+        Unit.PLAIN,
+        0.1,
+        1000.0,
+        default=0.0,
+        meaning=(
+            "Rated current of the motor in A, for the spindle load in percent. Default: not specified, "
+            "and no load is shown."
+        ),
+    ),
+    Field(
+        "disagree_pct",
+        Kind.NUMBER,
+        Unit.PERCENT,
+        0.05,
+        0.5,
+        default=0.15,
+        meaning="Largest difference between the speeds of the encoder and the inverter before alarm 209.",
+    ),
 )
 
 
@@ -63,4 +108,15 @@ def _table(file: FileReading) -> InverterTable:
     return InverterTable(config, line)
 
 
-DRIVER = Driver(tables=(DriverTable(_PATH, _FIELDS, _table, port=f"{_PATH}.port"),), spindle="vfd")
+DRIVER = Driver(
+    tables=(
+        DriverTable(
+            _PATH,
+            _FIELDS,
+            _table,
+            port=f"{_PATH}.port",
+            purpose='The inverter of the spindle on a serial line (`driver = "vfd"` of [spindle]).',
+        ),
+    ),
+    spindle="vfd",
+)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Sequence
 
+from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.serial_line import Wire
 
@@ -98,11 +99,11 @@ PACE = 0.03  # s between the beginnings of two requests: inverters lose their li
 TIMEOUT = 0.2  # s for an answer
 TRIES = 3
 _EXCEPTIONS = {
-    1: "function not known",
-    2: "no such address",
-    3: "value not allowed",
-    4: "the device has failed",
-    5: "accepted, not yet done",
+    1: "illegal function",
+    2: "illegal data address",
+    3: "illegal data value",
+    4: "device failure",
+    5: "request accepted, not yet completed",
     6: "busy",
 }
 
@@ -160,7 +161,7 @@ class Modbus:
             except NoAnswerError:
                 if not left or self.hurry():
                     raise
-        raise NoAnswerError("the inverter's answers are not those that were asked for")
+        raise NoAnswerError("the inverter's responses do not match the requests")
 
     def _write(self, pdu: bytes, tries: int = TRIES) -> None:
         """The answer repeats address and value, or address and count."""
@@ -172,7 +173,7 @@ class Modbus:
             except NoAnswerError:
                 if not left:
                     raise
-        raise NoAnswerError("the inverter answers another write than was sent")
+        raise NoAnswerError("the inverter's response does not match the write request")
 
     def _settle(self) -> None:
         """Nothing that comes late can be this echo."""
@@ -185,7 +186,7 @@ class Modbus:
             return
         if frame[1:6] != pdu:
             self._failed()
-            raise NoAnswerError("the inverter's answers come too late", reason="late")
+            raise NoAnswerError("the inverter responds too late", reason="late")
         self._doubt = False
 
     def _once(self, pdu: bytes) -> bytes:
@@ -199,7 +200,8 @@ class Modbus:
         if frame[1] & FAILED:
             why = _EXCEPTIONS.get(frame[2], f"exception {frame[2]}")
             raise RefusedError(
-                f"the inverter refuses function {pdu[0]:02X}: {why}", reason=f"exception-{frame[2]}"
+                Message("the inverter rejects Modbus function {pdu}: {why}", pdu=f"{pdu[0]:02X}", why=why),
+                reason=f"exception-{frame[2]}",
             )
         return frame
 
@@ -214,11 +216,15 @@ class Modbus:
         self._failed()
         if come:
             raise NoAnswerError(
-                f"nothing of what comes back is an answer ({len(come)} bytes); look at line and id",
+                Message(
+                    "the inverter sent {come_count} bytes, but no valid response; check the line "
+                    "settings and id",
+                    come_count=len(come),
+                ),
                 reason="garbled",
             )
         raise NoAnswerError(
-            "the inverter does not answer; look at cable, id and line settings", reason="silent"
+            "the inverter does not respond; check the cable, id and line settings", reason="silent"
         )
 
     def _failed(self) -> None:

@@ -8,6 +8,7 @@ import socket
 import tty
 from collections.abc import Callable
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.lookalikes.grblhal_firmware import Firmware
 
@@ -45,7 +46,9 @@ class TcpEnd:
         try:
             self._listener = socket.create_server((host, port))
         except OSError as error:
-            raise DriverError(f"tcp://{host}:{port} cannot be opened: {error}") from error
+            raise DriverError(
+                Message("tcp://{host}:{port} cannot be opened: {error}", host=host, port=port, error=error)
+            ) from error
         self.name = "tcp://{}:{}".format(*self._listener.getsockname()[:2])
         self._host: socket.socket | None = None
 

@@ -171,7 +171,7 @@ class HalFarEnd:
     def send(self, data: bytes) -> None:
         """Raises DriverError when nobody is there."""
         if self.killed:
-            raise DriverError("the bridge to HAL has ended (broken pipe)", "hal-bridge")
+            raise DriverError("the HAL bridge process has ended (broken pipe)", "hal-bridge")
         self.bridge.handle(*unpack(data))
 
     def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:

@@ -9,6 +9,7 @@ import math
 import threading
 from collections.abc import Callable, Sequence
 
+from core.message import Message
 from core.ports import Cam, Clock, DriverError, Fault, Segments, Stop, code_of
 from drivers.lookalikes.plant_config import SimConfig
 from drivers.lookalikes.plant_terminals import Terminals
@@ -36,18 +37,30 @@ def check_limits(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
         fastest = abs(segments.v[:, i]).max(initial=0.0)
         if fastest > axis.vmax * 1.001 + 0.01:
             raise DriverError(
-                f"{axis.name}: setpoints faster than {axis.vmax:.1f}/s; nothing was queued",
+                Message(
+                    "{axis}: the setpoint speed exceeds {vmax}/s; nothing was queued",
+                    axis=axis.name,
+                    vmax=f"{axis.vmax:.1f}",
+                ),
                 "drive-limits",
                 reason="too-fast",
             )
         if axis.name == "C" and not axis.own_drive and fastest > 0.0 and abs(rpm) > _STANDS:
-            raise DriverError(f"C: the spindle turns at {rpm:.0f} rpm; nothing was queued", "drive-limits")
+            raise DriverError(
+                Message("C: the spindle is turning at {rpm} rpm; no setpoints were queued", rpm=f"{rpm:.0f}"),
+                "drive-limits",
+            )
         if axis.travel is None or not servo.homed:
             continue
         low, high = _reach(axis.travel, servo)
         if segments.p[:, i].min(initial=low) < low - 0.01 or segments.p[:, i].max(initial=high) > high + 0.01:
             raise DriverError(
-                f"{axis.name}: setpoints leave the travel {low:.2f}…{high:.2f}; nothing queued",
+                Message(
+                    ("{axis}: setpoints are outside the travel range {low}…{high}; no setpoints were queued"),
+                    axis=axis.name,
+                    low=f"{low:.2f}",
+                    high=f"{high:.2f}",
+                ),
                 "drive-limits",
                 reason="leaves-travel",
             )
@@ -167,9 +180,17 @@ class Plant:
                 self._power_off()
                 return
             if self.panel.estop:
-                raise DriverError("drives stay off while E-stop is pressed; release it first", "no-power")
+                raise DriverError(
+                    "the drives stay off while the E-stop is pressed; release the E-stop first", "no-power"
+                )
             if self.fault:
-                raise DriverError(f"drives stay off: {self.fault}; clear the fault first", "no-power")
+                raise DriverError(
+                    Message(
+                        "the drives stay off because of a fault ({fault}); clear the fault first",
+                        fault=self.fault,
+                    ),
+                    "no-power",
+                )
             if not self.enabled:
                 self.queue.rest_at(self._readings())
             self.enabled, self._off_at = True, _NEVER
@@ -198,7 +219,11 @@ class Plant:
             rest, velocity = self.queue.demand_at(now)
             if any(velocity) or self._homing is not None:
                 raise DriverError(
-                    f"{name} cannot home while an axis moves; wait for standstill", reason="axis-moves"
+                    Message(
+                        "{axis} cannot home while an axis is moving; wait until all axes are at rest",
+                        axis=name,
+                    ),
+                    reason="axis-moves",
                 )
             pieces = straight(
                 now + self.config.commit,
@@ -222,7 +247,7 @@ class Plant:
     def halt(self) -> None:
         """From any thread: all off, unless somebody is stuck inside the machine itself."""
         if not self.lock.acquire(timeout=_HALT):
-            raise DriverError("the simulated machine does not come back")
+            raise DriverError("no response from the simulated machine")
         try:
             self.stop(Stop.RAMP_OFF)
             self.spindle.order(self.advance(), 0.0, coast=True)
@@ -247,12 +272,15 @@ class Plant:
 
     def _need_power(self) -> None:
         if self.fault:
-            raise DriverError(f"{self.fault}; clear the fault first", code_of(self.fault, "axis"))
+            raise DriverError(
+                Message("{fault}; clear the fault first", fault=self.fault), code_of(self.fault, "axis")
+            )
         if not self.enabled or self._off_at < _NEVER:
             raise DriverError("the drives are off; switch them on first", "power-lost")
         if self._homing is not None:
             raise DriverError(
-                f"{self._homing[0].axis.name} is homing; wait until it is done", reason="homing"
+                Message("{name} is homing; wait until homing is complete", name=self._homing[0].axis.name),
+                reason="homing",
             )
 
     def _power_off(self) -> None:
@@ -356,7 +384,7 @@ class Plant:
         """One step towards setpoint ``p`` ``v``; whether a drive has given up, now or before."""
         for servo, position, speed in zip(self.servos, p, v, strict=True):
             if servo.follow(position, speed, dt) and not self.fault:
-                self.fault = Fault(f"{servo.axis.name}: following error", "following")
+                self.fault = Fault(Message("{axis}: following error", axis=servo.axis.name), "following")
         if self.fault and self._off_at == _NEVER:
             self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
         return bool(self.fault)

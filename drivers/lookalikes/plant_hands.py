@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.lookalikes.plant import Plant
 from drivers.lookalikes.plant_config import PlannedFault
@@ -222,6 +223,6 @@ def _acts(machine: PlantHands, fault: PlannedFault) -> tuple[Callable[[], None],
         "pot_noise": ((value,), (0.0,)),
     }
     if fault.what not in known:
-        raise DriverError(f"the simulation cannot break {fault.what!r}")
+        raise DriverError(Message("the simulator cannot simulate the fault {what}", what=f"{fault.what!r}"))
     act, (breaks, mends) = getattr(machine, fault.what), known[fault.what]
     return partial(act, *breaks), None if mends is None else partial(act, *mends)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping
 
+from core.message import Message
 from core.ports import PROBE, DriverError
 from drivers.lookalikes.plant_config import SimCollet, SimOutput
 from drivers.lookalikes.tool_setter import ToolSetter
@@ -30,7 +31,10 @@ class Terminals:
     def write(self, name: str, on: bool, now: float) -> None:
         """Switch an output; raises DriverError for a name that the machine has not."""
         if name not in self.outputs:
-            raise DriverError(f"output {name!r} is not in the machine file; add it under [io.out]", "output")
+            raise DriverError(
+                Message("output {name} is not in the machine file; add it under [io.out]", name=f"{name!r}"),
+                "output",
+            )
         if name == self._collet.output and on != self.outputs[name]:
             self._closed_at = now + self._late(self._collet.close_time) if on else float("inf")
             self._opened_at = now + self._late(self._collet.open_time)
@@ -45,7 +49,9 @@ class Terminals:
     def set_input(self, name: str, on: bool) -> None:
         """Close or open a terminal by hand; raises DriverError for an unknown name."""
         if name not in self.inputs:
-            raise DriverError(f"input {name!r} is not in the machine file; add it under [io.in]")
+            raise DriverError(
+                Message("input {name} is not in the machine file; add it under [io.in]", name=f"{name!r}")
+            )
         self.inputs[name] = on
 
     def read(self, now: float) -> dict[str, bool]:

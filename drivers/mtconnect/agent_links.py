@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 import sys
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.mtconnect.shdr_lines import PING, pong
 
@@ -46,7 +47,12 @@ class AgentLink:
     def put(self, data: bytes) -> None:
         """Queue it. Raises LostError for an agent that has not taken what was sent before."""
         if len(self._out) + len(data) > BEHIND:
-            raise LostError(f"it does not read: {len(self._out)} bytes wait for it")
+            raise LostError(
+                Message(
+                    "the agent does not read its data: {out_count} bytes are waiting",
+                    out_count=len(self._out),
+                )
+            )
         self._out += data
 
     def flush(self) -> None:
@@ -56,7 +62,9 @@ class AgentLink:
         except BlockingIOError:
             return
         except OSError as error:
-            raise GoneError(f"it cannot be reached: {error.strerror or error}") from error
+            raise GoneError(
+                Message("the agent cannot be reached: {cause}", cause=error.strerror or error)
+            ) from error
         del self._out[:sent]
 
     def read(self, now: float) -> None:
@@ -66,14 +74,16 @@ class AgentLink:
         except BlockingIOError:
             return
         except OSError as error:
-            raise GoneError(f"the connection broke: {error.strerror or error}") from error
+            raise GoneError(
+                Message("the connection failed: {cause}", cause=error.strerror or error)
+            ) from error
         if not come:
-            raise GoneError("it has hung up")
+            raise GoneError("the agent closed the connection")
         *lines, self._in = (self._in + come).split(b"\n")
         for line in lines:
             self._obey(line.strip(), now)
         if len(self._in) > LONGEST_LINE:
-            raise LostError("it sends what is no line")
+            raise LostError("the agent sent data that is not a valid line")
 
     def _obey(self, line: bytes, now: float) -> None:
         if line == PING:
@@ -88,9 +98,9 @@ class AgentLink:
         And for one that waits for a place and is none.
         """
         if self.waits_since is not None and now - self.waits_since > DOOR:
-            raise GoneError("all places are taken, and it does not ping")
+            raise GoneError("all connections are in use, and this agent does not send PING")
         if self._heard is not None and now - self._heard > 2.0 * self._heartbeat + _GRACE:
-            raise LostError(f"no PING for {now - self._heard:.0f} s")
+            raise LostError(Message("no PING for {now} s", now=f"{now - self._heard:.0f}"))
 
 
 # --- The socket at which agents come in.
@@ -109,7 +119,13 @@ def listening(bind: str, port: int) -> socket.socket:
         )[0]
         wire = socket.socket(family, kind, proto)
     except OSError as error:
-        raise DriverError(f"[mtconnect] bind = {bind!r} is no address here: {error.strerror}") from error
+        raise DriverError(
+            Message(
+                "[mtconnect] bind = {bind} is not an address of this computer: {cause}",
+                bind=f"{bind!r}",
+                cause=error.strerror,
+            )
+        ) from error
     try:
         if sys.platform != "win32":  # elsewhere this would share a port that somebody else has
             wire.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -118,8 +134,13 @@ def listening(bind: str, port: int) -> socket.socket:
     except OSError as error:
         wire.close()
         raise DriverError(
-            f"[mtconnect] {bind} port {port} cannot be opened ({error.strerror}): "
-            "choose another port, or end the program that has it"
+            Message(
+                "[mtconnect] port {port} of {bind} cannot be opened ({cause}): choose another "
+                "port, or end the program that uses this port",
+                bind=bind,
+                port=port,
+                cause=error.strerror,
+            )
         ) from error
     wire.setblocking(False)
     return wire

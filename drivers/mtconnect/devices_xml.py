@@ -11,6 +11,7 @@ from datetime import datetime
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.mtconnect.mtconnect_items import Component, DataItem
 from drivers.mtconnect.shdr_lines import stamp
@@ -29,8 +30,11 @@ def devices_xml(device: Component, described: str, at: datetime) -> str:
     """
     if not _NAME.fullmatch(device.name):
         raise DriverError(
-            f"[mtconnect] device = {device.name!r}: an agent wants letters, digits, . - and _, "
-            "and a letter at the beginning"
+            Message(
+                "[mtconnect] device = {device}: use only letters, digits, ., - and _, and begin with "
+                "a letter",
+                device=f"{device.name!r}",
+            )
         )
     root = Element("MTConnectDevices", {"xmlns": NAMESPACE, "xmlns:xsi": _XSI, "xsi:schemaLocation": _SCHEMA})
     root.append(_header(at))

@@ -150,7 +150,9 @@ class Adapter:
             self._forget(link)
             return
         if len(served) >= MOST and silent is not None:
-            self._lose(silent, GoneError("it never pinged, and an agent needs the place"))
+            self._lose(
+                silent, GoneError("the agent never sent a PING, and another agent needs the connection")
+            )
         self._admit(link)
 
     def _serve(self, link: AgentLink) -> None:

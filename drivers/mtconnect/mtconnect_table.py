@@ -7,11 +7,32 @@ from dataclasses import dataclass
 from core.table_schema import Driver, DriverTable, Field, FileReading, Kind, Unit
 
 _FIELDS = (
-    Field("enabled", Kind.FLAG, default=False),
-    Field("bind", Kind.TEXT, default="127.0.0.1"),
-    Field("port", Kind.WHOLE, low=1, high=65535, default=7878),
-    Field("heartbeat_ms", Kind.NUMBER, Unit.MILLISECONDS, 0.001, 1800.0, default=10.0),
-    Field("device", Kind.TEXT, default="TurnDesk"),
+    Field("enabled", Kind.FLAG, default=False, meaning="true: TurnDesk serves an MTConnect adapter."),
+    Field(
+        "bind",
+        Kind.TEXT,
+        default="127.0.0.1",
+        meaning='Address at which agents connect. "0.0.0.0": from all computers, without a password.',
+    ),
+    Field("port", Kind.WHOLE, low=1, high=65535, default=7878, meaning="TCP port of the adapter."),
+    Field(
+        "heartbeat_ms",
+        Kind.NUMBER,
+        Unit.MILLISECONDS,
+        0.001,
+        1800.0,
+        default=10.0,
+        meaning=(
+            "Interval at which the agent must send its ping; an agent that misses two of them is "
+            "disconnected."
+        ),
+    ),
+    Field(
+        "device",
+        Kind.TEXT,
+        default="TurnDesk",
+        meaning="Name of the device in MTConnect; a different one for each machine.",
+    ),
 )
 
 
@@ -30,4 +51,13 @@ def _table(file: FileReading) -> MtconnectTable:
     return file.values.model(MtconnectTable, "mtconnect", {"heartbeat": "heartbeat_ms"})
 
 
-DRIVER = Driver(tables=(DriverTable("mtconnect", _FIELDS, _table),))
+DRIVER = Driver(
+    tables=(
+        DriverTable(
+            "mtconnect",
+            _FIELDS,
+            _table,
+            purpose="The MTConnect adapter, which reports the state of the machine to MTConnect agents.",
+        ),
+    )
+)

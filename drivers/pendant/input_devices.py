@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.pendant.input_codes import ABS, AXES, KEY, KEYS, REL, Control
 from drivers.pendant.pendant_buttons import AxisRange
@@ -108,14 +109,22 @@ def chosen(
     meant = [each for each in found if device.lower() in {each.name.lower(), each.numbers}]
     meant = [each for each in meant if not serial or each.serial == serial]
     if not meant:
-        of = f" with serial {serial}" if serial else ""
-        raise DriverError(f"the pendant {device}{of} is not plugged in", reason="missing")
+        of = Message(" with serial number {serial}", serial=serial) if serial else ""
+        raise DriverError(
+            Message("the pendant {device}{total} is not plugged in", device=device, total=of),
+            reason="missing",
+        )
     groups: dict[str, list[DeviceEntry]] = {}
     for each in meant:
         groups.setdefault(each.stem, []).append(each)
     if len(groups) > 1:
         raise DriverError(
-            f"{len(groups)} devices are called {device}: unplug the other one, {_apart(meant)}",
+            Message(
+                "{groups_count} devices match {device}; unplug all of these devices but one; {meant}",
+                groups_count=len(groups),
+                device=device,
+                meant=_apart(meant),
+            ),
             reason="several",
         )
     able = frozenset().union(*(each.able for each in meant))
@@ -123,13 +132,21 @@ def chosen(
     if lacking:
         names = ", ".join(lacking)
         raise DriverError(
-            f"the pendant {device} has not the button or wheel of {names} in the machine file",
+            Message(
+                "the pendant {device} does not have the button or wheel that the machine file "
+                "assigns to {names}",
+                device=device,
+                names=names,
+            ),
             reason="lacks-control",
         )
     if any(each.bluetooth for each in meant):
         raise DriverError(
-            f"the pendant {device} is on Bluetooth: a link that is lost cannot be told from a button that is"
-            " held; take one with a cable",
+            Message(
+                "the pendant {device} uses Bluetooth, where a lost link cannot be distinguished from "
+                "a button held down; use a pendant with a cable",
+                device=device,
+            ),
             reason="bluetooth",
         )
     needed = {control[:2] for control in wanted.values()}
@@ -139,8 +156,11 @@ def chosen(
 def _apart(meant: Sequence[DeviceEntry]) -> str:
     serials = sorted({each.serial for each in meant} - {""})
     if not serials:
-        return "for they have no serial that tells them apart"
-    return f"or say serial = one of {', '.join(serials)}"
+        return "the devices cannot be distinguished because they have no serial numbers"
+    return Message(
+        ("alternatively, set the serial key to one of these serial numbers: {serials}"),
+        serials=", ".join(serials),
+    )
 
 
 # --- the kernel's own calls -------------------------------------------------------------------------------
@@ -178,7 +198,12 @@ class KernelDevice:
             raise DriverError(_not_allowed(entry, path)) from error
         except OSError as error:
             raise DriverError(
-                f"the pendant {entry.name} cannot be opened: {error.strerror}", reason="not-opened"
+                Message(
+                    "the pendant {entry} cannot be opened: {cause}",
+                    entry=entry.name,
+                    cause=error.strerror,
+                ),
+                reason="not-opened",
             ) from error
         self._able = entry.able
         try:
@@ -187,7 +212,11 @@ class KernelDevice:
         except OSError as error:
             os.close(self._fd)
             raise DriverError(
-                f"the pendant {entry.name} is read by another program: end that one ({error.strerror})",
+                Message(
+                    "another program is using the pendant {entry}; close that program ({cause})",
+                    entry=entry.name,
+                    cause=error.strerror,
+                ),
                 reason="taken",
             ) from error
 
@@ -227,8 +256,16 @@ class KernelDevice:
 
 def _not_allowed(entry: DeviceEntry, path: Path) -> str:
     vendor, _, product = entry.numbers.partition(":")
-    return (
-        f"{path} (the pendant {entry.name}) may not be read: write into {RULES} the line"
-        f' SUBSYSTEM=="input", ATTRS{{idVendor}}=="{vendor}", ATTRS{{idProduct}}=="{product}", TAG+="uaccess"'
-        " and plug it in again"
+    return Message(
+        (
+            "no permission to read {path} (the pendant {entry}): add this line to {rules}: "
+            'SUBSYSTEM=="input", ATTRS{{idVendor}}=="{vendor}", '
+            'ATTRS{{idProduct}}=="{product}", TAG+="uaccess"; then unplug the pendant and '
+            "plug it in again"
+        ),
+        path=path,
+        entry=entry.name,
+        rules=RULES,
+        vendor=vendor,
+        product=product,
     )

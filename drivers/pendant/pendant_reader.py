@@ -52,7 +52,7 @@ class Pendant:
         self._find, self.now = find, now
         self._lock = threading.Lock()
         self._nodes: dict[EventSource, Packets] = {}
-        self._away = "the pendant has not been looked for yet"
+        self._away = "the search for the pendant has not started yet"
         self._broke = -1e9
         self._looked = 0.0
         self._ending = threading.Event()
@@ -64,7 +64,7 @@ class Pendant:
             buttons = self._buttons
             away = self._away
             if self._nodes and self.now() - self._looked > _SILENT:
-                away = "what reads the pendant has stopped"
+                away = "the software thread that reads the pendant has stopped"
             held = {name: not away and name in buttons.down for name in buttons.bound}
             return PendantState(held, buttons.counts, away, self._broke)
 
@@ -81,7 +81,7 @@ class Pendant:
         self._ending.set()
         if self._thread is not None:
             self._thread.join(ENDS)
-        self._drop("the pendant is no longer read")
+        self._drop("TurnDesk has stopped reading the pendant")
 
     def _run(self) -> None:
         while not self._ending.is_set():
@@ -123,7 +123,7 @@ class Pendant:
     def _take(self, node: EventSource) -> None:
         data = node.read()
         if not data:
-            raise OSError("readable, and nothing there: it is gone")
+            raise OSError("the device was disconnected and returned no data")
         for packet in self._nodes[node].feed(data):
             again = _pressed(list(self._nodes)) if packet.lost else None
             with self._lock:

@@ -9,7 +9,7 @@ from core.ports import DigitalIO, Station, StationState
 from drivers.pendant.pendant_reader import Pendant, PendantState
 
 _TOLD = 0.3  # s for which something that happened once is told: a control that looks every tick has seen it
-LOST = "events of the pendant were lost: its wheel may have turned further"
+LOST = "pendant events were lost; the handwheel may have turned further than counted"
 
 
 class PendantStation:

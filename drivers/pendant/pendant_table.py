@@ -6,21 +6,43 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from core.message import Message
 from core.table_schema import AT_PENDANT, Driver, DriverTable, Field, FileReading, Finding, Kind, written
 from drivers.pendant.input_codes import button_of, wheel_of
 
 _PATH, _WHEEL = "pendant", "io.analog.handwheel"
 _FIELDS = (
-    Field("device", Kind.TEXT),
-    Field("serial", Kind.TEXT, default=""),
-    Field("counts", Kind.CHOICE, choices=("steps", "place"), default="steps"),
+    Field(
+        "device",
+        Kind.TEXT,
+        meaning=(
+            "Name of the USB device or its `vendor:product` in hexadecimal, as "
+            "`/proc/bus/input/devices` shows them."
+        ),
+    ),
+    Field(
+        "serial",
+        Kind.TEXT,
+        default="",
+        meaning="Serial number, to distinguish two equal devices. Default: any.",
+    ),
+    Field(
+        "counts",
+        Kind.CHOICE,
+        choices=("steps", "place"),
+        default="steps",
+        meaning=(
+            '"steps": the wheel reports detents; "place": the wheel reports its position, 0 to 255, '
+            "as a Contour Shuttle does."
+        ),
+    ),
 )
 STOPS = ("hold", "start_inhibit")  # what must not be believed to be there when it is gone
 _MAY = re.compile(r"hold|start_inhibit|wheel_\w+|jog_rapid|jog_[xyzabc]_(plus|minus)")
 _STARTS = re.compile(r"(cycle_?)?start.*|.*palms?.*|spindle_auto", re.IGNORECASE)
 NO_START = (
-    "nothing is started from a pendant: cycle start is a two-hand relay's output, wired to a terminal;"
-    " take this line out"
+    "a pendant cannot start anything: Cycle Start must come from the output of a "
+    "two-hand relay, wired to a terminal; remove this line"
 )
 
 
@@ -44,7 +66,17 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     yield from _analog(file)
     used = [*file.at_pendant, *([_WHEEL] if _wheel(file) else ())]
     if used and _PATH not in file.tables:
-        yield Finding(f"[{_PATH}]", "", f"missing; {used[0]} is at it. Say which: device = its name")
+        yield Finding(
+            f"[{_PATH}]",
+            "",
+            Message(
+                (
+                    "this section is missing, but {used} uses the pendant. Set device to the name "
+                    "of the pendant"
+                ),
+                used=used[0],
+            ),
+        )
     if not used and _PATH in file.tables:
         expected = 'nothing is at it; expected an input such as hold = { at = "pendant.BTN_B" }'
         yield Finding(f"[{_PATH}]", "", expected)
@@ -53,16 +85,21 @@ def _rules(file: FileReading) -> Iterator[Finding]:
 def _wrong_button(path: str, terminal: str) -> str:
     name = path.rpartition(".")[2]
     if path.startswith("io.out."):
-        return "a pendant switches nothing: expected a terminal of the machine"
+        return "a pendant cannot switch an output; expected a terminal of the machine"
     if _STARTS.fullmatch(name) and name != "start_inhibit":
         return NO_START
     if not _MAY.fullmatch(name):
-        return (
-            f"{name} is not taken from a pendant: USB is no wire for it. Expected hold, start_inhibit,"
-            " wheel_…, jog_x_plus and so on, jog_rapid"
+        return Message(
+            "{name} cannot be assigned to a pendant, because USB is not suitable for this "
+            "signal. Expected hold, start_inhibit, wheel_…, jog_rapid, jog_x_plus or a similar "
+            "jog input",
+            name=name,
         )
     if button_of(terminal.removeprefix(AT_PENDANT)) is None:
-        return "expected a button by its name in Linux: pendant.BTN_A, pendant.KEY_F13, pendant.ABS_HAT0X+"
+        return (
+            "expected the Linux name of a button, for example pendant.BTN_A, pendant.KEY_F13 or "
+            "pendant.ABS_HAT0X+"
+        )
     return ""
 
 
@@ -73,7 +110,7 @@ def _taken(file: FileReading) -> Iterator[Finding]:
         code = button_of(terminal.removeprefix(AT_PENDANT))
         first = taken.setdefault(code, path)
         if code is not None and first != path:
-            expected = f"expected a button of its own; {first} is on this one"
+            expected = Message("expected an unused button; {first} already uses this button", first=first)
             yield Finding(f"{path}.at", written(terminal), expected)
 
 
@@ -89,13 +126,24 @@ def _analog(file: FileReading) -> Iterator[Finding]:
     for name in file.names("io.analog"):
         path = f"io.analog.{name}.at"
         if name != "handwheel" and values.has(path) and values.text(path).startswith(AT_PENDANT):
-            expected = "expected a terminal: of these only a handwheel is at a pendant"
+            expected = "expected a terminal; the handwheel is the only analog input that can be on a pendant"
             yield Finding(path, written(values.text(path)), expected)
     if (at := _wheel(file)) and wheel_of(at.removeprefix(AT_PENDANT)) is None:
-        expected = "expected a wheel by its name in Linux: pendant.REL_DIAL, pendant.ABS_WHEEL and so on"
+        expected = "expected the Linux name of a wheel, for example pendant.REL_DIAL or pendant.ABS_WHEEL"
         yield Finding(f"{_WHEEL}.at", written(at), expected)
 
 
 DRIVER = Driver(
-    tables=(DriverTable(_PATH, _FIELDS, lambda file: file.values.model(PendantModel, _PATH), rules=_rules),)
+    tables=(
+        DriverTable(
+            _PATH,
+            _FIELDS,
+            lambda file: file.values.model(PendantModel, _PATH),
+            rules=_rules,
+            purpose=(
+                "A pendant, gamepad or jog dial on USB. Its buttons are inputs of [io.in] at "
+                "`pendant.…`; no button can start a cycle or switch an output."
+            ),
+        ),
+    )
 )

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
+from core.message import Message
 from core.ports import (
     AxisSample,
     Cam,
@@ -90,7 +91,7 @@ class SimAxes(_OnPlant):
     def home(self, axis: str) -> None:
         """Start looking for the home switch; ``sample().homed`` says when it is found."""
         if axis not in self.axes:
-            raise DriverError(f"there is no axis {axis!r}", reason="no-axis")
+            raise DriverError(Message("axis {axis} does not exist", axis=f"{axis!r}"), reason="no-axis")
         self._plant.home(axis)
 
     def clear_fault(self) -> None:
@@ -139,10 +140,14 @@ class SimSpindlePort(_OnPlant):
             now = plant.advance()
             if rpm and plant.panel.estop:
                 raise DriverError(
-                    "the spindle stays off while E-stop is pressed; release it first", "spindle-off"
+                    "the spindle stays off while the E-stop is pressed; release the E-stop first",
+                    "spindle-off",
                 )
             if rpm and plant.spindle.faults.fault:
-                raise DriverError(f"the spindle stays off: {plant.spindle.faults.fault}", "spindle-off")
+                raise DriverError(
+                    Message("the spindle stays off: {problem}", problem=plant.spindle.faults.fault),
+                    "spindle-off",
+                )
             plant.spindle.order(now, rpm)
 
     def coast(self) -> None:
@@ -179,10 +184,14 @@ class SimOrientation(_OnPlant):
             now = plant.advance()
             if plant.panel.estop:
                 raise DriverError(
-                    "the spindle stays off while E-stop is pressed; release it first", "spindle-off"
+                    "the spindle stays off while the E-stop is pressed; release the E-stop first",
+                    "spindle-off",
                 )
             if plant.spindle.faults.fault:
-                raise DriverError(f"the spindle stays off: {plant.spindle.faults.fault}", "spindle-off")
+                raise DriverError(
+                    Message("the spindle stays off: {problem}", problem=plant.spindle.faults.fault),
+                    "spindle-off",
+                )
             plant.spindle.orient(now, angle, sense)
 
     def release(self) -> None:

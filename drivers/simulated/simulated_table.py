@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from core.message import Message
 from core.table_schema import (
     Driver,
     DriverTable,
@@ -13,6 +14,7 @@ from core.table_schema import (
     FileReading,
     Finding,
     Kind,
+    TableReference,
     Unit,
     read_table,
     written,
@@ -44,17 +46,58 @@ _OF_AN_AXIS = frozenset(
     ("jam", "encoder_stuck", "runaway", "drive_fault", "loose_gib", "encoder_ripple", "encoder_missed")
 )
 _FIELDS = (
-    Field("seed", Kind.WHOLE, low=0, high=2**31, default=1),
-    Field("realtime", Kind.FLAG, default=False),
+    Field(
+        "seed",
+        Kind.WHOLE,
+        low=0,
+        high=2**31,
+        default=1,
+        meaning="Seed of the random scatter of times; the same seed gives the same run.",
+    ),
+    Field(
+        "realtime",
+        Kind.FLAG,
+        default=False,
+        meaning="true: a run without a screen also takes real time. false: it runs as fast as possible.",
+    ),
 )
 _FAULT = (
-    Field("at", Kind.NUMBER, Unit.SECONDS, 0.0, 1e6),
-    Field("what", Kind.CHOICE, choices=FAULTS),
-    Field("axis", Kind.TEXT, default=""),
-    Field("value", Kind.NUMBER, Unit.PLAIN, -1e6, 1e6, default=0.0),
-    Field("seconds", Kind.NUMBER, Unit.SECONDS, 0.0, 1e6, default=0.0),
-    Field("text", Kind.TEXT, default=""),
-    Field("turn", Kind.NUMBER, Unit.PLAIN, 0.1, 1000.0, default=5.0),
+    Field(
+        "at", Kind.NUMBER, Unit.SECONDS, 0.0, 1e6, meaning="Time after the start at which the fault occurs."
+    ),
+    Field("what", Kind.CHOICE, choices=FAULTS, meaning="Fault that occurs."),
+    Field("axis", Kind.TEXT, default="", meaning="Axis that has the fault; only for faults of an axis."),
+    Field(
+        "value",
+        Kind.NUMBER,
+        Unit.PLAIN,
+        -1e6,
+        1e6,
+        default=0.0,
+        meaning=(
+            "Size of the fault: mm/s of a runaway, mm of play or encoder error, a fraction for "
+            "faults of the spindle, belt and pots."
+        ),
+    ),
+    Field(
+        "seconds",
+        Kind.NUMBER,
+        Unit.SECONDS,
+        0.0,
+        1e6,
+        default=0.0,
+        meaning="Duration of the fault. 0: it remains.",
+    ),
+    Field("text", Kind.TEXT, default="", meaning="Text that the drive reports with the fault."),
+    Field(
+        "turn",
+        Kind.NUMBER,
+        Unit.PLAIN,
+        0.1,
+        1000.0,
+        default=5.0,
+        meaning="Travel in mm or degrees after which an encoder error repeats.",
+    ),
 )
 
 
@@ -69,8 +112,22 @@ class SimulatedTable:
 
 
 _TIP = (
-    Field("x", Kind.NUMBER, Unit.LENGTH, -5000.0, 5000.0),
-    Field("z", Kind.NUMBER, Unit.LENGTH, -5000.0, 5000.0),
+    Field(
+        "x",
+        Kind.NUMBER,
+        Unit.LENGTH,
+        -5000.0,
+        5000.0,
+        meaning="X position of the axis when this tool tip is at part zero (a radius).",
+    ),
+    Field(
+        "z",
+        Kind.NUMBER,
+        Unit.LENGTH,
+        -5000.0,
+        5000.0,
+        meaning="Z position of the axis when this tool tip is at part zero.",
+    ),
 )
 
 
@@ -97,10 +154,16 @@ def _rules(file: FileReading) -> Iterator[Finding]:
             continue
         what, axis = values.text(f"{path}.what"), values.text(f"{path}.axis")
         if what in _OF_AN_AXIS and axis not in axes:
-            expected = f"{what} happens to an axis: one of {', '.join(axes)}"
+            expected = Message(
+                "{what} is an axis fault; expected one of these axes: {axes}", what=what, axes=", ".join(axes)
+            )
             yield Finding(f"{path}.axis", written(axis), expected)
         if what not in _OF_AN_AXIS and axis:
-            yield Finding(f"{path}.axis", written(axis), f"{what} happens to no axis; take it out")
+            yield Finding(
+                f"{path}.axis",
+                written(axis),
+                Message("{what} is not an axis fault; remove this key", what=what),
+            )
 
 
 def _table(file: FileReading) -> SimulatedTable:
@@ -117,7 +180,33 @@ def _faults(file: FileReading) -> Iterator[PlannedFault]:
 
 
 DRIVER = Driver(
-    tables=(DriverTable("sim", _FIELDS, _table, ("faults", "tips"), _read, _rules, always=True),),
+    tables=(
+        DriverTable(
+            "sim",
+            _FIELDS,
+            _table,
+            ("faults", "tips"),
+            _read,
+            _rules,
+            always=True,
+            purpose='The simulated machine (`backend = "sim"`).',
+            parts=(
+                TableReference(
+                    "[sim.faults]",
+                    "A fault of the simulated machine; the heading, in two pairs of brackets, may occur any "
+                    "number of times.",
+                    _FAULT,
+                ),
+                TableReference(
+                    "[sim.tips]",
+                    "A tool tip of the simulated machine, for trying a tool setter; the heading may "
+                    "occur any "
+                    "number of times.",
+                    _TIP,
+                ),
+            ),
+        ),
+    ),
     backend="sim",
     spindle="sim",
     orients=True,

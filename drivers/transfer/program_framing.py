@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from hashlib import sha256
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.serial_line import PARITIES, parity_of
 from drivers.transfer.transfer_settings import DC2, DC4, TransferSettings
@@ -115,7 +116,12 @@ class Incoming:
         """Raises IncompleteError at the first character that cannot be right."""
         self.count += len(come)
         if self.count > LARGEST:
-            raise IncompleteError(f"more than {LARGEST // 1_000_000} MB have come: that is no program")
+            raise IncompleteError(
+                Message(
+                    ("more than {largest} MB were received; the received data is not a program"),
+                    largest=LARGEST // 1000000,
+                )
+            )
         for character in come:
             if self.phase is Phase.WAITING:
                 self._wait(character)
@@ -140,7 +146,7 @@ class Incoming:
             self._check(line, number)
         whole = b"".join(line + b"\n" for line in lines)
         if not whole.strip():
-            raise IncompleteError("the program that came is empty; send it again", reason="empty")
+            raise IncompleteError("the received program is empty; send the program again", reason="empty")
         detected = seven and not self._settings.own_parity
         digest = sha256(whole).hexdigest()
         return Program(whole, name_of(head, lines), len(lines), digest, detected, self._skipped)
@@ -157,15 +163,27 @@ class Incoming:
     def _check(self, line: bytes, number: int) -> None:
         if self._wrap and line.lstrip().startswith(self._wrap):
             raise IncompleteError(
-                f"line {number} begins with {self._settings.wrap}: more than one program came; "
-                "send one alone",
+                Message(
+                    (
+                        "line {number} begins with {wrap}, so more than one program was received; send "
+                        "only one program"
+                    ),
+                    number=number,
+                    wrap=self._settings.wrap,
+                ),
                 reason="several",
             )
         for character in line:
             if character < 0x20 and character != _TAB:
                 raise IncompleteError(
-                    f"line {number} holds the control character {character:02X}: the line is disturbed. "
-                    "Nothing is kept; send it again",
+                    Message(
+                        (
+                            "line {number} contains the control character {character} because of "
+                            "interference on the serial line. Nothing was saved; send the program again"
+                        ),
+                        number=number,
+                        character=f"{character:02X}",
+                    ),
                     reason="control-character",
                 )
 
@@ -218,8 +236,15 @@ class Incoming:
             self._wait(character)
             return
         raise IncompleteError(
-            f"parity error in line {self.lines}: nothing is kept. Look at {self._settings.line.words}, at "
-            "shield and earth of the cable, and send it again",
+            Message(
+                (
+                    "parity error in line {lines}; nothing was saved. Check the serial port "
+                    "settings ({line}) and the shield and ground of the cable, then send the "
+                    "program again"
+                ),
+                lines=self.lines,
+                line=self._settings.line.words,
+            ),
             reason="parity",
         )
 
@@ -231,14 +256,34 @@ class Incoming:
     def _lacking(self) -> IncompleteError:
         wrap = self._settings.wrap
         if self.phase is Phase.WAITING:
-            came = f"{self.count} characters came, but no {wrap}" if self.count else "nothing came"
+            came = (
+                Message(
+                    ("{count} characters were received, but {wrap} was not received"),
+                    count=self.count,
+                    wrap=wrap,
+                )
+                if self.count
+                else "nothing came"
+            )
             return IncompleteError(
-                f"{came}; look at the line settings and at the other side, and send it again",
+                Message(
+                    (
+                        "{came}; check the serial port settings and the other device, then send the "
+                        "program again"
+                    ),
+                    came=came,
+                ),
                 reason="no-begin" if self.count else "nothing",
             )
         return IncompleteError(
-            f"the last {wrap} is missing, {self.lines} lines came: the program is not whole and is not kept; "
-            "send it again",
+            Message(
+                (
+                    "the last {wrap} is missing after {lines} lines: the program is incomplete and "
+                    "was not saved; send the program again"
+                ),
+                wrap=wrap,
+                lines=self.lines,
+            ),
             reason="no-end",
         )
 
@@ -270,7 +315,7 @@ def outgoing(text: bytes, settings: TransferSettings) -> bytes:
     if wrap:
         lines = _bare(lines, wrap)
     if not any(line.strip() for line in lines):
-        raise DriverError("the program is empty: there is nothing to send", reason="empty")
+        raise DriverError("the program is empty; there is nothing to send", reason="empty")
     for number, line in enumerate(lines, 1):
         _check(line, number, wrap, seven=settings.line.bits == 7)
     framed = [wrap, *lines, wrap] if wrap else lines
@@ -289,17 +334,32 @@ def _bare(lines: list[bytes], wrap: bytes) -> list[bytes]:
 def _check(line: bytes, number: int, wrap: bytes, *, seven: bool) -> None:
     if wrap and line.strip().startswith(wrap):
         raise DriverError(
-            f"line {number} begins with {wrap.decode()}: the other side would take it for the end",
+            Message(
+                (
+                    "line {number} begins with {text}, which the other device would treat as the "
+                    "end of the program"
+                ),
+                number=number,
+                text=wrap.decode(),
+            ),
             reason="wrap",
         )
     for character in line:
         if character < 0x20 and character != 0x09:
             raise DriverError(
-                f"line {number} holds the control character {character:02X}; take it out",
+                Message(
+                    "line {number} contains the control character {character}; remove this character",
+                    number=number,
+                    character=f"{character:02X}",
+                ),
                 reason="control-character",
             )
         if seven and character >= _TOP:
             raise DriverError(
-                f"line {number} holds a letter that 7 bits cannot carry; take it out, or use 8 bits",
+                Message(
+                    "line {number} contains a character that 7 bits cannot represent; remove this "
+                    "character, or use 8 bits",
+                    number=number,
+                ),
                 reason="eighth-bit",
             )

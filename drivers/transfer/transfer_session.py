@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass
 
+from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.serial_line import FlowWire, table_of
 from drivers.transfer.program_framing import Incoming, IncompleteError, Phase, Program
@@ -89,7 +90,10 @@ class Sending(_Transfer):
             self._go_on()
             if self._clock.now() > until:
                 raise DriverError(
-                    "the other side has not asked for a program (DC1) for 2 minutes; start it there",
+                    (
+                        "the other device has not requested a program (DC1) for 2 minutes; start the "
+                        "transfer on that device"
+                    ),
                     reason="not-asked",
                 )
             come = self._wire.receive(TICK)
@@ -118,7 +122,13 @@ class Sending(_Transfer):
         still = now - self._moved
         if still > PATIENCE:
             raise DriverError(
-                f"the other side has held the line for 2 minutes after {out} bytes; look whether it is ready",
+                Message(
+                    (
+                        "the other device paused the transfer after {file} bytes and has not continued "
+                        "for 2 minutes; check whether that device is ready"
+                    ),
+                    file=out,
+                ),
                 reason="held",
             )
         self._tell(out, HELD_BACK if still > HELD else "")
@@ -176,8 +186,14 @@ class Receiving(_Transfer):
         incoming.feed(come)
         if self._wire.damaged and incoming.phase is not Phase.WAITING:
             raise IncompleteError(
-                f"a damaged character in line {incoming.lines}: nothing is kept. Look at the line settings, "
-                "at shield and earth of the cable, and send it again",
+                Message(
+                    (
+                        "a character in line {lines} is damaged; nothing was saved. Check the serial "
+                        "port settings and the shield and ground of the cable, then send the program "
+                        "again"
+                    ),
+                    lines=incoming.lines,
+                ),
                 reason="damaged",
             )
         if incoming.phase is not Phase.WAITING:

@@ -89,7 +89,7 @@ not_installed() {
     case $apt_says in
         *"No space left"* | *"enough free space"*) say "Its disk is full: make room, then start again." ;;
         *"Unable to locate"* | *"no installation candidate"* | *"Failed to fetch"* | *resolving* | *onnect*)
-            say "Is there a network? Without one, bring the bundle in one file (docs/setup.md), or install them from the distribution's medium." ;;
+            say "Is there a network? Without one, bring the bundle in one file (docs/integrator/install.md), or install them from the distribution's medium." ;;
     esac
     exit 2
 }
@@ -210,7 +210,7 @@ not_fetched() {
         say "encrypted traffic needs its certificate named in PIP_CERT (for uv: SSL_CERT_FILE)."
     elif log_has 'name resolution|name or service|connection|network is unreachable|timed out|proxy|dns error|error sending request|could not connect'; then
         say "The Python packages could not be fetched: is there a network, or a proxy to be named in https_proxy?"
-        say "Without one, bring the bundle in one file: docs/setup.md says how it is made on a computer that has a network."
+        say "Without one, bring the bundle in one file: docs/integrator/install.md says how it is made on a computer that has a network."
     elif log_has 'no matching distribution|no wheels with a matching|no usable wheels|has no wheels'; then
         say "There are no Python packages for this computer ($(uname -m), $(getconf GNU_LIBC_VERSION 2>/dev/null || echo 'no glibc')): TurnDesk needs 64-bit x86"
         say "with glibc 2.34 (Debian 12, Ubuntu 22.04) or 64-bit ARM with glibc 2.39 (Debian 13, Ubuntu 24.04), or newer."

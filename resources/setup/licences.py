@@ -114,7 +114,7 @@ def tables(known: dict[str, str]) -> str:
     """The tables of the page. ``known`` are licences of packages that are not installed here."""
     lines = []
     for heading, name, without in TABLES:
-        lines += [f"## {heading}", "", "| package | version | licence |", "|---|---|---|"]
+        lines += [f"## {heading}", "", "| package | version | license |", "|---|---|---|"]
         for package in listed(name, without):
             try:
                 licence = licence_of(distribution(package.name))

@@ -1,7 +1,7 @@
-"""Collects every text that an operator can read: ``python -m resources.translations.collect``.
+"""Collect every text that a person can read: ``python -m resources.translations.collect``.
 
-Whole sentences are taken as they are; what is put together gets holes (``LINE %1``). The catalogues (Qt's
-``.ts``) get what is new, ``pyside6-lrelease`` compiles them, ``templates.txt`` names the texts with holes.
+A text with values is the template of a ``Message``, such as ``LINE {line}``. The catalogs (Qt's ``.ts``) get
+the new texts, and ``pyside6-lrelease`` compiles them. ``messages.csv`` lists every text by its id.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
-from itertools import count
+from collections.abc import Container, Mapping
 from pathlib import Path
 
 from app.shapes.drawing_form import PROFILE
@@ -20,13 +20,14 @@ from core.alarms import CATALOGUE
 from core.interpreter.dialects import code_book
 from core.interpreter.omniturn.code_table import CHAPTERS
 from core.language.klartext import klartext_faults
-from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE
+from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
 from core.language.sinumerik.outside_words import OUTSIDE
 from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, WORDS
 from core.language.source import Dialect
 from core.shapes.shape_fields import Field, choice_text
 from core.shapes.shape_table import HELPERS, SHAPES, SINUMERIK_HELPERS, SINUMERIK_SHAPES
 from core.shapes.thread_series import Series
+from resources.translations.message_list import write_list
 from resources.translations.reading import marked, texts_of
 
 HERE = Path(__file__).parent
@@ -36,6 +37,7 @@ LANGUAGES = ("es",)
 # Of composing, what is said while the screen is open; the rest goes to the console before there is one.
 COMPOSING = "app/compose"
 COMPOSED = (
+    "accepted_machine.py",
     "desk_part.py",
     "gauge_wire.py",
     "journal.py",
@@ -75,7 +77,10 @@ APART = frozenset(
     {
         *(
             "access_page.py",
-            "access_page.py",
+            "json_keys.py",
+            "table_keys.py",
+            "checks_page.py",
+            "code_book_page.py",
             "access_table.py",
             "code_entry.py",
             "code_table.py",
@@ -101,15 +106,17 @@ APART = frozenset(
 )
 # Read by somebody, and not to be told from names by their looks.
 ALSO = (
-    "its certificate cannot be verified: %1",
-    "it does not support TLS; use an address that begins with http://",
-    "it closed the connection without a response",
-    "it accepts TLS only; use an address that begins with https://",
-    "its response is not HTTP",
-    "its address contains characters that are not allowed in an address",
-    "it rejects the user or the password of [announce] (Not authorized)",
-    "it rejects the user or the password of [announce]",
-    "it closed the connection without an MQTT response; check whether this is its port without TLS",
+    "the server does not support TLS; use an address that begins with http://",
+    "the server closed the connection without a response",
+    "the server accepts TLS only; use an address that begins with https://",
+    "the server's response is not HTTP",
+    "the address contains characters that are not allowed in an address",
+    "the server rejects the user name or the password of [announce] (Not authorized)",
+    "the server rejects the user name or the password of [announce]",
+    (
+        "the server closed the connection without an MQTT response; check whether the server "
+        "uses this port without TLS"
+    ),
     "a drill",
     "a reamer",
     "a tap",
@@ -140,28 +147,15 @@ ALSO = (
     "tools",
     "RED",
     # Of the signal tower.
-    "TOOL LIFE USED UP, OR PARTS TO MEASURE",
+    "TOOL LIFE USED UP, OR PART MEASUREMENT DUE",
     "STOP: FEED HOLD, M00, SINGLE BLOCK",
     "PART FINISHED, NO CYCLE RUNNING",
     "CYCLE RUNNING",
-    "%1 · SIMULATED",
     # What the screen puts together of parts that are texts of their own.
-    "LINE %1",
-    "%1 WARNINGS",
     "1 WARNING",
     # A finding in one line, as an answer names it.
-    "%1: error: %2 [%3]",
-    "%1: error: %2 [%3] — %4",
-    "%1: warning: %2 [%3]",
-    "%1: warning: %2 [%3] — %4",
-    "NOT COUNTED AS A PART: %1; %2 s",
     "NO COUNT is on",
     "wait until the axes are at rest",
-    "%1 is %2, but must be between %3 and %4",
-    "%1 would move to %2 from home, %3 beyond the travel limit of %4",
-    "%1: character %2, %3, is not a valid %4; valid: %5",
-    "Unexpected word in an %1 block",
-    "Unexpected word in a %1 block",
     "starts",
     "ends",
     "passes",
@@ -170,53 +164,15 @@ ALSO = (
     "Type +.",
     "Type (.",
     "Type ).",
-    "AND %1 MORE",
-    "STOP %1: %2",
-    "%1 TURNS ON",
-    "%1 TURNS OFF",
-    "%1 TURNED ON AND %2",
-    "%1 TURNED OFF AND %2",
-    "Line %1 begins inside the part, and no safe path leads there.",
-    "With input %1 %2 at line %3: %4",
-    "With input %1 %2 at line %3 and input %4 %5 at line %6: %7",
     # The same with nothing in a hole, which a template does not know.
     "the arc ends at its start point.",
-    "the arc by %1 ends at its start point.",
-    "%1 accepts no parameters, but the call passes %2.",
-    "%1 accepts 1 parameter, but the call passes %2.",
     # What a fault of SINUMERIK begins with.
-    "channel %1 block %2: %3",
-    "channel %1 block in line %2: %3",
-    "channel %1 block %2 axis %3: %4",
-    "channel %1 block in line %2 axis %3: %4",
-    "Alarm %1: channel %2 block %3: %4",
-    "Alarm %1: channel %2 block in line %3: %4",
-    "Alarm %1: channel %2 block %3 axis %4: %5",
-    "Alarm %1: channel %2 block in line %3 axis %4: %5",
-    "syntax error: %1",
     # What Klartext ends with where a line cannot be read on.
-    "%1; found '%2'.",
-    "%1; the line ends here.",
-    "%1 needs CCA and R",
-    "%1 are missing",
     "The formula needs a number or a parameter.",
-    "The formula needs a number or a parameter for %1",
-    "Not supported: %1 is not supported here.",
-    "%1: this lathe has no axis %2.",
-    "CYCLE%1: %2.",
-    "Cycle not defined: Cycle %1 is a machine-builder cycle, and this machine has no such cycles.",
-    "%1: The argument list %2.",
     "syntax error: The closing parenthesis of the parameter list is missing.",
-    "%1: an R parameter must follow = or be assigned with =, such as R1=10.",
-    "%1: R parameters are R0 to R%2.",
-    "%1: the feed must be greater than 0.",
-    "%1: the speed limit must be greater than 0.",
     # Too short, too like a code, or put together where nobody sees a sentence.
-    "Lower %1.",
-    "Raise %1.",
     "Comments start with a semicolon (;).",
     "Remove the character; comments start with ;",
-    "M%1 is not a code of this machine.",
     "A vector has zero length.",
     "A projection angle of 90 degrees is not possible.",
     "The first and the second point are the same.",
@@ -224,14 +180,11 @@ ALSO = (
     "No position of the rotary axes within their ranges produces this plane.",
     "BEGIN PGM and END PGM specify different units.",
     "BEGIN PGM appears twice.",
-    "The stock sticks out so far that it whips at %1 rpm; it turns at %2.",
     # Last, for what has no words of its own around it: a code and why, and a sentence by its full stop.
-    "%1: %2.",
-    "%1.",
     # What stands in a hole, and is a single word or looks like a code.
     "approach",
     "departure",
-    "C turns",
+    "the C axis turns",
     # A choice that the drawing itself brings.
     "DRAWING UNIT: INCH",
     "DRAWING UNIT: AS DRAWN",
@@ -253,27 +206,32 @@ ALSO = (
         "start",
     ),
     *("starved", "state", "stop", "switch", "test", "thread", "uncounted", "warning"),
-    "%1: the control stopped during its last run",
-    "machine file %1 accepted",
-    "machine file %1 accepted: %2",
-    "machine file %1 accepted by %2",
-    "machine file %1 accepted by %2: %3",
     # What a finding rests on; tools are names.
     "stock",
-    "stock, %1",
 )
 LOUD = ("app", "core/alarms", "core/executor")  # where a single word in capitals is read by somebody
-HOLE = re.compile(r"%\d|\{\w*(?:[:.][^{}]*)?\}")
+HOLE = re.compile(r"\{\w*\}")
 _NO_TEXT = re.compile(
     r"^\s*(?!SELECT [A-Z][A-Z0-9 ,.:]*$)(SELECT|INSERT|UPDATE|DELETE|CREATE|PRAGMA|BEGIN|COMMIT) .*"
     r"|^\s*(WHERE|FROM|JOIN|LEFT|GROUP|ORDER|ON|AND) [^{]*[a-z].*"  # of ours those are in capitals
     r"|^F\d+$|^:memory:$|^[A-Z]{1,3}$|^XYZABC$|^Callable|^finger|^\(?\?|.*[{;]\s*$|^%[YHd]|.*QLineEdit"
     r"|(?!.*\{\w*\}$).*\}\s*$"  # a bracket that ends no hole
     r"|^(Page|Zoom|Pan|Shift) \w+$|^QWERTY|.*\\|^[A-Z]{2}\d"
-    r"|^<(rect|svg|text) |^KeptPass|^'?mill tool'?$|^CYCLE (DEF|CALL)$"
+    r"|^<\w+ |^[^ ]*=\{[^ ]*; |^\s*WHERE .*= \?.*$|^KeptPass|^'?mill tool'?$|^CYCLE (DEF|CALL)$"
 )
-_WORDS = re.compile(
-    r"[^\W\d_]{2,}.*\s+.*[^\W\d_]{2,}|[^\W\d_]{2,}\s*[:.?…]$|[^\W\d_]{3,}[:;,]?\s+%|%\d\s+[^\W\d_]{2,}"
+_WORDS = re.compile(r"[^\W\d_]{2,}.*\s+.*[^\W\d_]{2,}|[^\W\d_]{2,}\s*[:.?…]$")
+_LETTERS = re.compile(r"[^\W\d_]{2}")
+_SENTENCE = 3  # words from which on a text of the command line is a sentence and no name
+# Program lines, scripts of other programs and tables of words, which nobody reads as sentences.
+NO_SENTENCES = (
+    "_book.py",
+    "_lines.py",
+    "cycle_names.py",
+    "word_table.py",
+    "outside_words.py",
+    "hal_border.py",
+    "_keys.py",
+    "alarms_page.py",
 )
 _CAPITALS = re.compile(r"[A-ZÁÉÍÓÚÑ][A-ZÁÉÍÓÚÑ'’-]+$")
 _SHORT = frozenset(
@@ -299,25 +257,39 @@ _SHORT = frozenset(
 
 
 def texts() -> dict[str, str]:
-    """Every text, and the first file that has it."""
+    """Return every text that the screen shows, and the first file that has it; they are translated."""
     found: dict[str, str] = {}
     for room in ROOMS:
         loud = room.startswith(LOUD)
         for path in sorted((HOUSE / room).rglob("*.py")):
-            if not {path.name, f"{path.parent.name}/{path.name}"} & APART and (
-                room != COMPOSING or path.name in COMPOSED
-            ):
-                tree = ast.parse(path.read_text(encoding="utf-8"))
-                texts = texts_of(tree) if room not in MARKED_ALONE else ()
-                read = {text for text in texts if _is_read(text, loud)}
-                for text in sorted(read | set(marked(tree))):
+            if not _is_apart(path, room):
+                for text in _texts_of_file(path, loud, room in MARKED_ALONE):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
-    return {
-        **dict.fromkeys(
-            [*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_shapes()], ""
-        ),
-        **found,
-    }
+    tables = [*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_shapes()]
+    return {**dict.fromkeys(tables, ""), **found}
+
+
+def console_texts(shown: Container[str]) -> dict[str, str]:
+    """Return the texts of command line and drivers that are not among ``shown``, with their files."""
+    found: dict[str, str] = {}
+    for top in ("app", "core", "drivers"):
+        for path in sorted((HOUSE / top).rglob("*.py")):
+            if not path.name.endswith(NO_SENTENCES):
+                for text in _texts_of_file(path, False, False):
+                    if text not in shown and len(text.split()) >= _SENTENCE:
+                        found.setdefault(text, str(path.relative_to(HOUSE)))
+    return found
+
+
+def _is_apart(path: Path, room: str) -> bool:
+    named = {path.name, f"{path.parent.name}/{path.name}"}
+    return bool(named & APART) or (room == COMPOSING and path.name not in COMPOSED)
+
+
+def _texts_of_file(path: Path, loud: bool, marked_alone: bool) -> list[str]:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    read = () if marked_alone else (text for text in texts_of(tree) if _is_read(text, loud))
+    return sorted({*read, *(text for text in marked(tree) if _LETTERS.search(HOLE.sub("", text)))})
 
 
 def _of_levels() -> list[str]:
@@ -328,9 +300,9 @@ def _of_levels() -> list[str]:
 def _of_codes() -> list[str]:
     """What the code table says of codes to an operator; the rest of it is documentation."""
     codes = [code for _, chapter in CHAPTERS for code in chapter]
-    said = {f"%1 {code.not_in_mdi}." for code in codes if code.not_in_mdi} | {code.group for code in codes}
+    said = {code.not_in_mdi for code in codes if code.not_in_mdi} | {code.group for code in codes}
     for refusal in (each for code in codes for each in code.plain_refusals):
-        said |= {_with_numbered_holes(refusal.text), _with_numbered_holes(refusal.hint)}
+        said |= {refusal.text, refusal.hint}
     rules = [rule for code in codes for rule in code.rules.values()]
     said |= {rule.what for rule in rules if any("{what}" in each.text for each in rule.refusals)}
     return sorted(text for text in said if _is_read(text, False))
@@ -343,9 +315,8 @@ def _of_books() -> list[str]:
     shown = chapters | {entry.what for book in books for entry in book.entries}
     shown |= {what for book in books for entry in book.entries for _, what in book.words_of(entry)}
     reasons = {entry.idle for entry in (*FUNCTIONS.values(), *WORDS.values(), *M_FUNCTIONS.values())}
-    refused = {*OUTSIDE.values(), *CYCLES_OUTSIDE.values()} | {f"{name}: %1 %2." for name in CYCLES}
-    refused |= {f"%1: {why}." for why in OUTSIDE.values()}
-    refused |= {f"{name}: %1" for key, name in vars(klartext_faults).items() if key.isupper()}
+    refused = {*OUTSIDE.values(), *CYCLES_OUTSIDE.values()}
+    refused |= {name for key, name in vars(klartext_faults).items() if key.isupper()}
     return sorted(shown | refused | {entry.group for entry in FUNCTIONS.values()} | reasons - {""})
 
 
@@ -366,11 +337,6 @@ def _in_words(field: Field) -> tuple[str, ...]:
     return () if field.word in {"CLASS", "SIZE"} else field.choices
 
 
-def _with_numbered_holes(text: str) -> str:
-    numbers = count(1)
-    return re.sub(r"\{\w+\}", lambda _: f"%{next(numbers)}", text)
-
-
 def _loud_alarms() -> list[str]:
     """Alarms that are shown in capitals and are not found by their small letters: M30, E-stop, C."""
     texts = [entry.text for entry in CATALOGUE.values()]
@@ -389,17 +355,31 @@ def _is_read(text: str, loud: bool) -> bool:
 
 
 def catalogue(language: str) -> dict[str, str]:
-    """What a ``.ts`` file holds: translations by text; unfinished ones are empty."""
+    """Return the finished translations of a ``.ts`` file by their English text."""
+    return {text: told for text, (told, finished) in _entries(language).items() if finished}
+
+
+def _entries(language: str) -> dict[str, tuple[str, bool]]:
+    """Return translation and whether it is finished by English text; empty if there is no file."""
     path = HERE / f"turndesk_{language}.ts"
     if not path.exists():
         return {}
-    messages = ET.parse(path).getroot().iter("message")
-    return {m.findtext("source", ""): m.findtext("translation", "") for m in messages}
+    found = {}
+    for message in ET.parse(path).getroot().iter("message"):
+        translation = message.find("translation")
+        told = translation.text if translation is not None and translation.text else ""
+        finished = bool(told) and translation is not None and translation.get("type") is None
+        found[message.findtext("source", "")] = told, finished
+    return found
 
 
-def write(language: str, wanted: dict[str, str]) -> None:
-    """The ``.ts`` file with exactly the wanted texts, keeping what is translated; and its ``.qm``."""
-    known = catalogue(language)
+def write(language: str, wanted: dict[str, str], successors: Mapping[str, str]) -> None:
+    """Write the ``.ts`` file of the wanted texts with their translations, and its ``.qm``.
+
+    ``successors``: the former English by the present one, for texts that were reworded. They keep the old
+    translation, marked as unfinished.
+    """
+    known = _entries(language)
     root = ET.Element("TS", version="2.1", language=language, sourcelanguage="en")
     context = ET.SubElement(root, "context")
     ET.SubElement(context, "name").text = CONTEXT
@@ -408,8 +388,9 @@ def write(language: str, wanted: dict[str, str]) -> None:
         ET.SubElement(message, "location", filename=file)
         ET.SubElement(message, "source").text = text
         translation = ET.SubElement(message, "translation")
-        translation.text = known.get(text, "")
-        if not translation.text:
+        former = known.get(successors.get(text, ""), ("", False))[0]
+        translation.text, finished = known.get(text, (former, False))
+        if not finished:
             translation.set("type", "unfinished")
     ET.indent(root)
     path = HERE / f"turndesk_{language}.ts"
@@ -420,14 +401,13 @@ def write(language: str, wanted: dict[str, str]) -> None:
 
 
 def main() -> int:
-    """Bring templates and catalogues up to date; the number of texts without a translation."""
-    wanted = texts()
-    holed = sorted(text for text in wanted if HOLE.search(text) and "\n" not in text)
-    (HERE / "templates.txt").write_text("\n".join(holed) + "\n", encoding="utf-8")
+    """Bring list and catalogs up to date; return the number of texts without a translation."""
+    shown = texts()
+    successors = write_list({**shown, **console_texts(shown)})
     missing = 0
     for language in LANGUAGES:
-        write(language, wanted)
-        missing += sum(not text for text in catalogue(language).values())
+        write(language, shown, successors)
+        missing += len(shown) - len(catalogue(language))
     return missing
 
 

@@ -1,10 +1,12 @@
-"""Texts in a syntax tree: whole ones, and those that are put together, with holes for what is put in."""
+"""Texts in a syntax tree: whole strings, templates of messages, and strings that are put together."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
 
+_MARKS = frozenset({"tr", "Message", "runs_cut_off"})
+_OF_PAGES = frozenset({"meaning", "purpose"})  # of keys of the machine file, for its page
 _MISTAKES = frozenset(
     {"ValueError", "RuntimeError", "TypeError", "TimeoutError", "KeyError", "AssertionError"}
     # ValueErrors with a code, whose texts are not translated either
@@ -13,28 +15,33 @@ _MISTAKES = frozenset(
 
 
 def marked(tree: ast.Module) -> Iterator[str]:
-    """What stands in ``tr("…")``: whatever it looks like, it is read."""
+    """Yield the texts in ``tr("…")`` and the templates of messages, whatever they look like."""
     for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and _name(node.func) == "tr" and node.args:
+        if isinstance(node, ast.Call) and _name(node.func) in _MARKS and node.args:
             for part in ast.walk(node.args[0]):
                 if isinstance(part, ast.Constant) and isinstance(part.value, str):
                     yield part.value
 
 
 def texts_of(tree: ast.Module) -> Iterator[str]:
-    """Every string of a module but docstrings, programmer's mistakes, patterns and logs."""
+    """Yield every whole string but docstrings, errors of the programmer, patterns and logs."""
     skipped = _skipped(tree)
-    inner: set[int] = set()
     for node in ast.walk(tree):
-        if id(node) in skipped:
-            continue
-        if isinstance(node, ast.JoinedStr | ast.BinOp) and id(node) not in inner:
-            pieces = _pieces(node)
-            if pieces is not None:
-                inner.update(id(part) for part in _own_parts(node))
-                yield _with_holes(pieces)
-        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in inner:
+        if isinstance(node, ast.JoinedStr | ast.BinOp) and _pieces(node) is not None:
+            skipped.update(id(part) for part in _own_parts(node))
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in skipped:
             yield node.value
+
+
+def composed_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Yield line and text of every string that is put together, with ``{}`` for each value."""
+    skipped = _skipped(tree)
+    for node in ast.walk(tree):
+        if id(node) not in skipped and isinstance(node, ast.JoinedStr | ast.BinOp):
+            pieces = _pieces(node)
+            if pieces is not None and None in pieces:
+                skipped.update(id(part) for part in _own_parts(node))
+                yield node.lineno, "".join("{}" if piece is None else piece for piece in pieces)
 
 
 def _skipped(tree: ast.Module) -> set[int]:
@@ -45,13 +52,15 @@ def _skipped(tree: ast.Module) -> set[int]:
             found.add(id(node.value))
         elif isinstance(node, ast.Call) and _is_silent(node.func):
             found.update(id(part) for part in ast.walk(node))
+        elif isinstance(node, ast.keyword) and node.arg in _OF_PAGES:
+            found.update(id(part) for part in ast.walk(node.value))
     return found
 
 
 def _is_silent(called: ast.expr) -> bool:
     if isinstance(called, ast.Attribute) and _name(called.value) == "_log":
         return True
-    return _name(called) in _MISTAKES | {"compile", "execute", "executescript"}
+    return _name(called) in _MISTAKES | {"compile", "execute", "executescript", "names"}
 
 
 def _name(node: ast.expr) -> str:
@@ -85,14 +94,3 @@ def _own_parts(node: ast.expr) -> Iterator[ast.AST]:
     elif isinstance(node, ast.BinOp):
         yield from _own_parts(node.left)
         yield from _own_parts(node.right)
-
-
-def _with_holes(pieces: list[str | None]) -> str:
-    number, text = 0, ""
-    for piece in pieces:
-        if piece is None:
-            number += 1
-            text += f"%{number}"
-        else:
-            text += piece
-    return text

@@ -328,8 +328,8 @@ def figures(told: dict[str, list[tuple[float, float]]], seen: list[Path]) -> lis
 
 
 HEAD = (
-    "sync_ms", "busy", "SCHED_FIFO", "p50", "p99 / most", "own p99 / most", "witnesses p99 / most", "SYNCs",
-    "gaps", "% of a core", "load", "fault",
+    "sync_ms", "busy processes", "SCHED_FIFO", "median", "99 % / max", "own 99 % / max", "witness 99 % / max",
+    "SYNCs", "gaps", "% of a core", "load", "fault",
 )  # fmt: skip
 
 

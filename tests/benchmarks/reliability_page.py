@@ -9,40 +9,83 @@ from __future__ import annotations
 
 import json
 import sys
+import textwrap
 import tomllib
 from ast import literal_eval
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from core.alarms import CATALOGUE
+from core.page_contents import anchor_of
 from tests.benchmarks.footprint import RESULTS
 
 Result = dict[str, Any]
 _WORDS = {
-    "rss_mib": "memory, MiB", "files": "open files", "threads": "threads", "store_bytes": "store, kB",
-    "log_bytes": "log, kB", "folder_bytes": "data folder, kB",
+    "rss_mib": "memory, MiB", "files": "open files", "threads": "software threads",
+    "store_bytes": "store, kB", "log_bytes": "log, kB", "folder_bytes": "data folder, kB",
 }  # fmt: skip
 WANTED = 92.0  # per cent of branches
 SETTLED = 20.0  # min, by which every page was open and the ring of the scope is full
-TOLD = 85.0  # per cent of mutants that are not the same program
+DETECTED = 85.0  # per cent of mutants that are not equivalent
+_SECTIONS = (
+    ("night_shift", "Night shift", "{parts} parts made while faults occur"),
+    ("screen_hour", "One hour of the screen", "memory and open files of the real window"),
+    ("fuzz", "Fuzzing by coverage", "parsers and drivers with random input"),
+    ("mutants", "Mutation", "tests that run with changed code"),
+    ("branches", "Branches", "branches of the code that the tests execute"),
+)
+_EVENTS = {
+    "collet switch": "collet switch stuck",
+    "correction": "wear correction",
+    "drive trips": "drive fault",
+    "feed pot": "feed override changed",
+    "spindle pot": "spindle override changed",
+    "give up": "program canceled",
+    "hold": "feed hold",
+    "insert": "insert changed",
+    "inverter trips": "inverter fault",
+    "no count": "NO COUNT",
+    "pot noise": "unstable override signal",
+    "slide is pushed": "axis pushed",
+    "slide jams": "axis jammed",
+    "spindle bogs": "spindle overloaded",
+    "spindle switch": "spindle switch OFF",
+    "start": "Cycle Start",
+    "station silent": "station silent",
+    "bar": "new bar",
+    "holds": "feed holds",
+    "starts": "Cycle Starts",
+    "pages": "pages opened",
+    "reading": "part measured",
+}
+"""Events of the stored results, as the page names them; other names stay."""
 _HEAD = """\
-# What holds for years, measured
+# Reliability, measured
 
-Written by `python -m tests.benchmarks.reliability_page` from the figures that the measurements keep; no
-figure is typed. Every measurement is run by hand, none by the tests; CI plays a miniature of the night shift.
+This page lists measurements of how TurnDesk behaves in long runs and with damaged input, and of how
+many code changes its tests detect. All measurements use simulated devices. TurnDesk has not yet
+driven a real machine.
+
+{contents}
+`python -m tests.benchmarks.reliability_page` creates this page from stored results. No value is
+entered by hand. A person starts each measurement; the automatic tests run only a short night shift.
+The line in italics at the end of a section gives the date and the computer.
 """
 
 
 def page(folder: Path = RESULTS) -> str:
     """The whole page; a measurement that was never run is named."""
-    parts = [_HEAD]
-    for name, title, write in (
-        ("night_shift", "Night shift", _night),
-        ("screen_hour", "The screen's hour", _screen),
-        ("fuzz", "Fuzzing by coverage", _fuzz),
-        ("mutants", "Mutation", _mutants),
-        ("branches", "Branches", _branches),
-    ):
+    parts = [_HEAD.format(contents=_contents(folder))]
+    writers = {
+        "night_shift": _night,
+        "screen_hour": _screen,
+        "fuzz": _fuzz,
+        "mutants": _mutants,
+        "branches": _branches,
+    }
+    for name, title, _ in _SECTIONS:
+        write = writers[name]
         parts.append(f"## {title}\n")
         kept = sorted(folder.glob(f"{name}*.json"))
         if not kept:
@@ -51,6 +94,20 @@ def page(folder: Path = RESULTS) -> str:
             result = json.loads(path.read_text())
             parts += [*write(result, folder), f"*{result['date']}, {result['machine']}.*\n"]
     return "\n".join(parts)
+
+
+def _contents(folder: Path) -> str:
+    """Return the table of contents, with the number of parts of the night shift where it was measured."""
+    file = folder / "night_shift.json"
+    parts = json.loads(file.read_text())["parts"] if file.exists() else "many"
+    return "".join(
+        f"- [{title}](#{anchor_of(title)}): {what.format(parts=parts)}\n" for _, title, what in _SECTIONS
+    )
+
+
+def _filled(text: str) -> str:
+    """Return a paragraph wrapped at 100 columns, with an empty line after it."""
+    return textwrap.fill(text, 100, break_long_words=False, break_on_hyphens=False) + "\n"
 
 
 def _table(head: list[str], rows: list[list[object]]) -> str:
@@ -66,63 +123,78 @@ def _footprints(marks: dict[str, dict[str, float]], of: str) -> str:
     for key, words in _WORDS.items():
         share = 1000.0 if words.endswith("kB") else 1.0
         rows.append([words, *(f"{marks[name][key] / share:,.0f}" for name in shown)])
-    return _table(["", *(f"{name} {of}" for name in shown)], rows)
+    return _table(["measured after", *(f"{name} {of}" for name in shown)], rows)
 
 
 def _night(result: Result, _folder: Path) -> Iterator[str]:
     counts, drift = result["counts"], result["drift"]
-    same = not result["disagree"]
-    yield (
-        f"`bench_night_shift`, seed {result['seed']}: {result['parts']} pins from bars in "
-        f"{result['machine_hours']} hours of the machine on the step clock; desk, executor, simulated lathe "
-        "and store are the product's. A witness looks at the slides alone and has seen "
-        f"{counts['seen at the slides']} pins that count.\n"
+    seen = counts["seen at the slides"]
+    yield _filled(
+        f"`bench_night_shift` made {result['parts']} pins from bars in {result['machine_hours']} hours of "
+        f"machine time, with a simulated clock (seed {result['seed']}). It used the screen models, the "
+        "executor, the simulated lathe and the store of the product. An independent observer of the axis "
+        f"positions detected {seen} pins that must be counted."
     )
     yield _footprints(result["marks"], "parts")
-    said = "all the same as what was seen" if same else "; ".join(result["disagree"])
-    yield (
-        f"Counts of executor, desk, store, log and cycles: {said}. Made without count: "
-        f"{counts['pins without count']}; parted off by programs that were then broken off: "
-        f"{counts['pins of programs that were broken off']}; readings {counts['readings']}, inserts "
-        f"{counts['inserts']}; underruns {result['underruns']}.\n"
+    disagree = result["disagree"]
+    agree = f"disagree: {'; '.join(disagree)}" if disagree else "all agree with the observer"
+    spread = drift["turned radii with one offset, spread mm"]
+    error = drift["turned radius against offset and program, mm"]
+    lines = (
+        f"**Counts.** The executor, screen models, store, log and cycle records {agree}.",
+        f"**Not counted.** {counts['pins without count']} pins were made with NO COUNT. "
+        f"Programs that were then canceled parted off {counts['pins of programs that were broken off']} "
+        "pins.",
+        f"**Records.** The store recorded {counts['readings']} part measurements and {counts['inserts']} "
+        f"insert changes. The setpoint queue had {result['underruns']} underruns.",
+        f"**Drift.** {_places(result['at the bar stop'])} With {drift['offsets that were turned with']} "
+        f"different X offsets, the turned radius varied by {spread:g} mm among pins with the same offset. It "
+        f"differed by {error:g} mm from the radius that the offset and the program specify.",
+        f"**Events.** The test caused these events, each the given number of times: {_list(result['done'])}.",
+        f"**Alarms.** These alarms occurred, each the given number of times: {_alarms(result['alarms'])}.",
     )
-    yield (
-        f"Drift: {_places(result['at the bar stop'])}; with "
-        f"{drift['offsets that were turned with']} offsets X of the pin spread by "
-        f"{drift['turned radii with one offset, spread mm']:g} mm and was off what offset and program say by "
-        f"{drift['turned radius against offset and program, mm']:g} mm.\n"
-    )
-    yield f"What was done and what broke: {_list(result['done'])}. Alarms: {_list(result['alarms'])}.\n"
+    yield "".join(f"- {line}\n" for line in lines)
 
 
 def _places(ticks: dict[str, int]) -> str:
-    """How far the setpoints at the bar stop lay apart, and in how many ticks they lay elsewhere."""
+    """Return how much the setpoints at the bar stop differed, as a sentence."""
     usual = literal_eval(max(ticks, key=lambda place: ticks[place]))
     if len(ticks) == 1:
-        return "the setpoints at the bar stop were one place"
+        return "All setpoints at the bar stop were equal."
     apart = max(abs(a - b) for place in ticks for a, b in zip(literal_eval(place), usual, strict=True))
     elsewhere = sum(ticks.values()) - max(ticks.values())
     return (
-        f"the setpoints at the bar stop lay within {apart:.1e} mm, "
-        f"{elsewhere} of {sum(ticks.values())} ticks not at the usual place"
+        f"The setpoints at the bar stop differed by at most {apart:.1e} mm; "
+        f"{elsewhere} of {sum(ticks.values())} ticks were not at the most frequent position."
     )
 
 
 def _list(counted: dict[str, int]) -> str:
-    return ", ".join(f"{name} {count}" for name, count in counted.items()) or "none"
+    return ", ".join(f"{_EVENTS.get(name, name)} {count}" for name, count in counted.items()) or "none"
+
+
+def _alarms(counted: dict[str, int]) -> str:
+    """Return how often each alarm occurred, with the number and text of the catalog."""
+    entries = {str(code): entry for code, entry in CATALOGUE.items()}
+    named = {
+        f"{entries[name].number} {entries[name].text.upper()}:" if name in entries else name: count
+        for name, count in counted.items()
+    }
+    return ", ".join(f"{name} {count}" for name, count in sorted(named.items())) or "none"
 
 
 def _screen(result: Result, _folder: Path) -> Iterator[str]:
     counts, minutes = result["counts"], result["minutes"]
     more = counts["seen at the slides"] - counts["store"]
-    agrees = " (what was seen does not agree)" if more < 0 else ""
+    agrees = " (these numbers do not agree)" if more < 0 else ""
     if more > 0:
-        agrees = f" ({more} parted off in a program that did not come to its end)"
-    yield (
-        f"`bench_screen_hour`: the real window for {minutes:g} minutes by the real clock under an X server, "
-        f"{_list(result['done'])}; {counts['seen at the slides']} pins seen at the slides, {counts['store']} "
-        f"in the store, {counts['log']} in the log, {counts['cycles']} cycles{agrees}. "
-        f"Alarms: {_list(result['alarms'])}.\n"
+        agrees = f" (a program that did not reach its end parted off {more} of the pins)"
+    yield _filled(
+        f"`bench_screen_hour` ran the real window for {minutes:g} min in real time, on an X server. "
+        f"The test performed these actions: {_list(result['done'])}. The observer detected "
+        f"{counts['seen at the slides']} pins. The store contains {counts['store']} pins, the log contains "
+        f"{counts['log']}, and {counts['cycles']} cycles were recorded{agrees}. "
+        f"Alarms: {_alarms(result['alarms'])}."
     )
     yield _footprints(result["marks"], "min")
     if minutes < SETTLED:
@@ -131,16 +203,18 @@ def _screen(result: Result, _folder: Path) -> Iterator[str]:
     middle, last = names[len(names) // 2], names[-1]
     grown = result["marks"][last]["rss_mib"] - result["marks"][middle]["rss_mib"]
     hours = (float(last) - float(middle)) / 60.0
-    yield (
-        f"In the second half, when every page has been open, it grows by {grown:.1f} MiB: "
-        f"{grown / hours:.0f} MiB an hour{'' if minutes >= 60 else ', extrapolated'}.\n"
+    extrapolated = "" if minutes >= 60 else ", extrapolated"
+    yield _filled(
+        f"In the second half, after every page had been open, the memory grew by {grown:.1f} MiB, "
+        f"which is {grown / hours:.0f} MiB per hour{extrapolated}."
     )
 
 
 def _fuzz(result: Result, folder: Path) -> Iterator[str]:
-    yield (
-        "`tests/fuzz`: atheris beside changes that know each language. A fault is what raises what it should "
-        "not, takes over 2 s of processor time or tells no clear sentence. What was mended has a test.\n"
+    yield _filled(
+        "`tests/fuzz` uses atheris and its own mutations, which follow the syntax of each language. It "
+        "reports a fault if an exception occurs that is not permitted, if an input takes more than 2 s of "
+        "CPU time, or if an error message is not clear. A test covers each corrected fault."
     )
     rows = [
         [
@@ -153,13 +227,21 @@ def _fuzz(result: Result, folder: Path) -> Iterator[str]:
         ]
         for name, each in sorted(result["targets"].items())
     ]
-    yield _table(["of", "s of processor time", "runs", "edges", "slowest, s", "faults left"], rows)
+    head = [
+        "input",
+        "CPU time, s",
+        "runs",
+        "code edges covered, start to end",
+        "slowest run, s",
+        "open faults",
+    ]
+    yield _table(head, rows)
     faults = [fault for _, each in sorted(result["targets"].items()) for fault in each["faults"]]
     if faults:
         reasons = tomllib.loads((folder / "limits.toml").read_text())
-        why = [reasons.get(fault["where"], {}).get("why", "not looked at yet") for fault in faults]
+        why = [reasons.get(fault["where"], {}).get("why", "not examined yet") for fault in faults]
         lines = [f"- {f['where']}, {f['text']}: {reason}" for f, reason in zip(faults, why, strict=True)]
-        yield "Those that are left:\n\n" + "\n".join(lines) + "\n"
+        yield "These faults have not been corrected:\n\n" + "\n".join(lines) + "\n"
 
 
 def _mutants(result: Result, folder: Path) -> Iterator[str]:
@@ -177,22 +259,35 @@ def _mutants(result: Result, folder: Path) -> Iterator[str]:
         told = each["told"] + len(since)
         share = 100.0 * told / max(1, count - len(same))
         first = 100.0 * each["told"] / max(1, count - len(same))
-        rows.append([room, count, each["told"], f"{first:.0f} %", len(since), len(same), f"{share:.0f} %"])
+        rows.append([room, count, each["told"], f"{first:.0f}", len(since), len(same), f"{share:.0f}"])
         for survivor in each["survivors"]:
             name = _name(survivor)
             if name not in since:
-                living.append(f"- `{name}`: {known.get(name, {}).get('why', 'no fast test tells')}")
-    yield (
-        "`bench_mutants`: small changes of functions by a seed, each against the tests of its room below 2 s "
-        f"that come by its line; wanted are {TOLD:.0f} % of those that change what the program does. Told "
-        "since is what new tests tell, or such as the quick part leaves out for their time; from motion's "
-        "seed 5 on those are played at first too.\n"
+                living.append(f"- `{name}`: {known.get(name, {}).get('why', 'no fast test detects it')}")
+    yield _filled(
+        "`bench_mutants` makes small random changes to functions. It then runs the tests of the source "
+        "folder that execute the changed line and take less than 2 s. The goal is to detect "
+        f"{DETECTED:.0f} % of the changes that affect the behavior. "
+        '"Detected later" counts the changes that are detected by new tests, or by slower tests that the '
+        "first run omitted. From seed 5 of core/motion on, the first run includes the slower tests. "
+        '"Equivalent" counts the changes that do not affect the behavior.'
     )
-    yield _table(
-        ["room", "mutants", "told", "at first", "told since", "the same", "told of the others"], rows
-    )
+    head = [
+        "source folder",
+        "changes",
+        "detected in first run",
+        "first run, %",
+        "detected later",
+        "equivalent",
+    ]
+    yield _table([*head, "detected of those not equivalent, %"], rows)
     if living:
-        yield "Those that live:\n\n" + "\n".join(living) + "\n"
+        yield _filled(
+            "No test detects the following changes. Each entry gives the file, the function, the change and "
+            'the reason. "Is another" means that a constant has a different value, "with" names the new '
+            'operator (GtE is ≥, LtE is ≤), and "left out" means that a statement was removed.'
+        )
+        yield "\n".join(living) + "\n"
 
 
 def _name(survivor: Result) -> str:
@@ -202,7 +297,10 @@ def _name(survivor: Result) -> str:
 def _branches(result: Result, _folder: Path) -> Iterator[str]:
     rows: list[list[object]] = []
     for room, each in sorted(result["rooms"].items()):
-        rows.append([room, each["branches"], each["taken"], f"{each['per cent']} %"])
+        name = room.replace(
+            "a whole run and the tests since", "a run of the whole test suite and later tests"
+        )
+        rows.append([name, each["branches"], each["taken"], f"{each['per cent']} %"])
         folders = each.get("folders", {})
         if len(folders) > 1:
             rows += [
@@ -210,8 +308,11 @@ def _branches(result: Result, _folder: Path) -> Iterator[str]:
                 for name, (count, taken) in folders.items()
                 if count
             ]
-    yield f"`bench_branches`: taken by the tests of the room alone; wanted are {WANTED:.0f} %.\n"
-    yield _table(["room", "branches", "taken", "share"], rows)
+    yield _filled(
+        f"`bench_branches` counts the code branches that the tests of each source folder execute. The goal "
+        f"is {WANTED:.0f} %."
+    )
+    yield _table(["source folder", "branches", "executed", "share"], rows)
 
 
 if __name__ == "__main__":

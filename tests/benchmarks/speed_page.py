@@ -3,7 +3,7 @@
 All figures are processor time, taken by turns with what they are compared with. Peers run beside where they
 are installed: LinuxCNC's ``rs274``, which only interprets, and shapely. Takes some minutes. What the screen
 and the feeder do was measured by benchmarks of their own, which keep their figures in
-``tests/benchmarks/results``; ``--kept FILE`` writes those parts of a page anew and leaves the others.
+``tests/benchmarks/results``; ``--kept FILE`` writes those parts of a page and leaves the others.
 """
 
 from __future__ import annotations
@@ -11,10 +11,12 @@ from __future__ import annotations
 import json
 import math
 import platform
+import re
 import shutil
 import statistics
 import sys
 import tempfile
+import textwrap
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
@@ -28,6 +30,7 @@ from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_plan import plan
+from core.page_contents import contents
 from core.proving.prove_program import prove
 from tests.benchmarks import bench_feeder, bench_removal, bench_start
 from tests.benchmarks.bench_prove import feeds, program
@@ -40,7 +43,28 @@ from tests.motion.paths import build_path
 
 FEW = 3  # rounds of what takes seconds
 RADIUS, CHORD, FEED = 50.0, 0.02, 100.0
-FIRST_KEPT = "Frames of the window with a long program"
+TITLES = (
+    "Start of a process",
+    "Long programs",
+    "Proofs in a running process",
+    "Cutting the stock",
+    "Chords of a half circle",
+    "Frames of the window with a long program",
+    "At rest",
+    "SYNC of the driver host under load",
+)
+STARTS, BULK, WARM, STOCK, CHORDS, FIRST_KEPT, REST, SYNC = TITLES
+_SHOWN = {
+    "longest by the clock, ms": "longest, wall-clock, ms",
+    "of processor time, ms": "longest, CPU time, ms",
+    "running, held and started": "running, with feed hold and restart",
+    "minimised": "minimized",
+    "servo off": "drives off",
+    "servo on": "drives on",
+}
+"""Names of the stored results, as the page shows them; other names stay."""
+_LATE = "setpoints were {} because this computer stalled for too long"
+"""Fault in the stored results, in the present words of the product."""
 Row = Sequence[str]
 Result = Mapping[str, Any]
 
@@ -58,8 +82,8 @@ def kept(folder: Path = RESULTS) -> str:
     parts = []
     for name, title, write in (
         ("frames", FIRST_KEPT, _frames),
-        ("idle", "At rest", _idle),
-        ("feeder", "SYNC of the feeder beside other work", _feeder),
+        ("idle", REST, _idle),
+        ("feeder", SYNC, _feeder),
     ):
         file = folder / f"{name}.json"
         if not file.exists():
@@ -71,19 +95,30 @@ def kept(folder: Path = RESULTS) -> str:
 
 
 def with_kept(text: str) -> str:
-    """A page with those parts written anew."""
+    """Return a page with those parts written again."""
     return text.partition(f"## {FIRST_KEPT}\n")[0] + kept()
 
 
 def _head() -> str:
-    return f"""# Speed
+    return f"""# Speed, measured
 
-Written by `python -m tests.benchmarks.speed_page docs/speed.md` on {time.strftime("%Y-%m-%d")}:
+This page lists the CPU time and memory that TurnDesk needs, with goals. If a goal is not met, the
+reason is given below the table.
+
+{contents(TITLES)}
+`python -m tests.benchmarks.speed_page docs/speed.md` created this page on {time.strftime("%Y-%m-%d")}:
 {_machine()}.
-Figures are processor time, user and system, of whole processes or of the work alone where that is said:
-medians, taken by turns with what they are compared with. A machine that others use stretches them, ratios
-less. Goals are those of a machine that nobody else uses.
+
+All times are medians of CPU time (user and system). They apply to a whole process unless the section
+states otherwise. Measurements that are compared are taken alternately. If other users share the
+computer, the times are longer, but the ratios change less. The goals apply to a computer without other
+users.
 """
+
+
+def _filled(text: str) -> str:
+    """Return a paragraph wrapped at 100 columns."""
+    return textwrap.fill(text, 100, break_long_words=False, break_on_hyphens=False)
 
 
 def _machine() -> str:
@@ -96,10 +131,10 @@ def _machine() -> str:
     return f"{name or platform.machine()}, {cores} cores, {system}"
 
 
-def _table(title: str, head: Row, rows: Sequence[Row], below: str = "") -> str:
+def _table(title: str, head: Row, rows: Sequence[Row], below: str = "", above: str = "") -> str:
     lines = [head, ["---"] * len(head), *rows]
     text = "".join(f"| {' | '.join(line)} |\n" for line in lines)
-    return f"## {title}\n\n{text}" + (f"\n{below}\n" if below else "")
+    return f"## {title}\n\n" + (f"{above}\n\n" if above else "") + text + (f"\n{below}\n" if below else "")
 
 
 def _starts(home: Path) -> str:
@@ -110,7 +145,7 @@ def _starts(home: Path) -> str:
     ]
     below = _reasons({name: (cost.seconds,) for name, cost in costs.items()})
     return _table(
-        "From a cold process", ("", "s", "goal", "× bare interpreter", "× importing Qt"), rows, below
+        STARTS, ("process", "CPU time, s", "goal, s", "× bare interpreter", "× importing Qt"), rows, below
     )
 
 
@@ -151,8 +186,9 @@ def _bulk(home: Path) -> str:
             )
             for name, cost in costs.items()
         ]
-    head = ("", "s", "goal", "× bare interpreter", "MiB", "goal")
-    return _table("Long programs, whole processes", head, rows, _reasons(figures))
+    head = ("process", "CPU time, s", "goal, s", "× bare interpreter", "memory, MiB", "goal, MiB")
+    above = "`rs274` is the interpreter of LinuxCNC. It interprets the program but does not prove it."
+    return _table(BULK, head, rows, _reasons(figures), above)
 
 
 def _memory_goal(name: str) -> str:
@@ -161,9 +197,19 @@ def _memory_goal(name: str) -> str:
 
 
 def _reasons(figures: Mapping[str, Sequence[float]]) -> str:
-    """What stands below a table: why goals are not met, as profiles have shown."""
+    """Return the list below a table: why goals are not met, as profiles have shown."""
     told = list(not_met(figures))
-    return "\n".join(["Over the goal, by profile:", "", *(f"- {each}" for each in told)]) if told else ""
+    return (
+        "\n".join(
+            [
+                "These goals are not met. A profile shows where the time is spent:",
+                "",
+                *(f"- {each}" for each in told),
+            ]
+        )
+        if told
+        else ""
+    )
 
 
 def _for_rs274(path: Path) -> Path:
@@ -187,7 +233,7 @@ def _median_ms(work: Callable[[], object], rounds: int) -> str:
 
 
 def _proved(text: str, setup: Setup, machine: Machine) -> None:
-    """Read anew and proved."""
+    """Read and prove a text."""
     prove(Source("speed", text), setup, machine)
 
 
@@ -197,14 +243,14 @@ def _warm() -> str:
     setup = setup_for(machine, tools={1: ToolOffset()}, secondary={})
     rows, figures = [], {}
     for count, rounds in ((200, 50), (20_000, 7)):
-        text, name = program(count), f"prove {count:,} blocks, read anew"
+        text, name = program(count), f"prove {count:,} blocks, read again"
         cost = _median_ms(partial(_proved, text, setup, machine), rounds)
         rows.append((name, cost, goal_of(name, "{:.0f}")))
         figures[name] = (float(cost),)
-    text, name = feeds(20_000), "prove 20,000 blocks with an F on each, read anew"
+    text, name = feeds(20_000), "prove 20,000 blocks with F on each, read again"
     cost = _median_ms(partial(_proved, text, setup, machine), FEW)
     rows.append((name, cost, goal_of(name, "{:.0f}")))
-    return _table("In a process that runs", ("", "ms", "goal"), rows, _reasons(figures))
+    return _table(WARM, ("proof", "CPU time, ms", "goal, ms"), rows, _reasons(figures))
 
 
 def _removal() -> str:
@@ -212,18 +258,22 @@ def _removal() -> str:
     todo = bench_removal.moves()
     works: dict[str, bench_removal.Work] = {
         "with all checks": bench_removal.checked,
-        "metal alone": bench_removal.alone,
+        "without checks": bench_removal.alone,
     }
     below = ""
     try:
         works["shapely"] = bench_removal.by_shapely()
     except ImportError:
-        below = "shapely was not installed: no peer."
+        below = "shapely was not installed, so there is no comparison."
     rows = [
         (name, f"{1000.0 * bench_removal.MOVES / float(_median_ms(partial(work, todo), FEW)):,.0f}")
         for name, work in works.items()
     ]
-    return _table("Removal of metal, 1000 roughing moves at .01 mm", ("", "moves a second"), rows, below)
+    above = (
+        f"Each calculation removes the material of {bench_removal.MOVES} roughing moves. TurnDesk's model of "
+        f"the part has a resolution of {bench_removal.STEP} mm."
+    )
+    return _table(STOCK, ("calculation", "moves per second"), rows, below, above)
 
 
 def _chords() -> str:
@@ -237,41 +287,56 @@ def _chords() -> str:
             limits = MotionLimits(grain=max(count, each / math.sqrt(2.0)))
             yield f"{plan(build_path(blocks, limits)).duration / ideal:.3f}"
 
-    rows = [(f"words of {grid} mm", *ratios(grid)) for grid in (0.00127, 0.00254, 0.005)]
-    head = ("", *(f"corner_tolerance {each} mm" for each in tolerances))
-    title = "Half a circle of R 50 mm in .02 mm chords at 100 mm/s: time over the ideal one"
-    return _table(title, head, rows)
+    rows = [(f"coordinates rounded to {grid} mm", *ratios(grid)) for grid in (0.00127, 0.00254, 0.005)]
+    head = ("program", *(f"corner_tolerance {each} mm" for each in tolerances))
+    above = (
+        f"The path is half a circle of radius {RADIUS:g} mm, programmed as chords of {CHORD} mm at "
+        f"{FEED:g} mm/s. Each value is the planned time divided by the ideal time."
+    )
+    return _table(CHORDS, head, rows, above=above)
 
 
 def _frames(title: str, result: Result) -> str:
-    """How long the window took for a frame, and a hold until the slides stood."""
+    """Return the times of frames, and of a feed hold until the axes are at rest."""
     median, most = result["a hold stands after, ms"]
-    head = ("", "frames", "over 33 ms", "longest by the clock, ms", "of processor time, ms")
-    rows = [(name, *(str(row[column]) for column in head[1:])) for name, row in result["rows"].items()]
-    stands = f"a hold stands after {median} ms, {most} at most"
-    below = f"{result['blocks']:,} blocks; {stands}. No frame over 33 ms is wanted."
-    return _table(title, head, rows, below)
+    columns = ("frames", "over 33 ms", "longest by the clock, ms", "of processor time, ms")
+    rows = [
+        (_SHOWN.get(name, name), *(str(row[column]) for column in columns))
+        for name, row in result["rows"].items()
+    ]
+    below = (
+        f"The program has {result['blocks']:,} blocks. After a feed hold, the axes come to rest in {median} "
+        f"ms (median) and in at most {most} ms. The goal is that no frame takes more than 33 ms."
+    )
+    return _table(
+        title, ("action", *(_SHOWN.get(column, column) for column in columns)), rows, _filled(below)
+    )
 
 
 def _idle(title: str, result: Result) -> str:
-    """Processor time of a desk at which nothing happens."""
+    """Return the processor time while nothing happens."""
     rows = [
-        (machine, name, f"{share / 10.0:.1f}")
+        (machine, _SHOWN.get(name, name), f"{share / 10.0:.1f}")
         for machine, shares in result["rows"].items()
         for name, share in shares.items()
     ]
-    below = "At most 2 % are wanted of a desk whose machine does nothing."
-    return _table(title, ("machine", "desk", "% of a core"), rows, below)
+    below = "The goal is at most 2 % of a core while the machine is idle."
+    return _table(title, ("machine", "state of TurnDesk", "% of a core"), rows, below)
 
 
 def _feeder(title: str, result: Result) -> str:
     """How late SYNC was, run by run."""
     below = (
-        "Late in ms. A witness on each core, above the feeder's priority, only waits: how late it is, the "
-        "computer is by itself; `own` are SYNCs at times when no witness was. p99 of .1 ms and no gap are "
-        "wanted."
+        "Delays are in ms. On each core, a witness process with a higher priority than the driver host "
+        'only waits. Its delay is the delay of the computer itself. The column "own" counts only the SYNCs '
+        "at times when no witness was late. The last column gives the fault that ended the run. The goal is "
+        "a delay of at most 0.1 ms at the 99th percentile, and no gap."
     )
-    return _table(title, bench_feeder.HEAD, result["rows"], below)
+    rows = [
+        [re.sub(r"setpoints came (.* late): .*", lambda late: _LATE.format(late[1]), cell) for cell in row]
+        for row in result["rows"]
+    ]
+    return _table(title, bench_feeder.HEAD, rows, _filled(below))
 
 
 def main() -> None:

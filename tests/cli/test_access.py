@@ -19,6 +19,7 @@ from app.cli.main import build_parser, main
 from core.access import pins
 from core.coded_error import CodedError
 from core.store.store import Store
+from tests.texts import text as wording
 
 Captured = pytest.CaptureFixture[str]
 Say = Callable[..., tuple[int, str]]
@@ -97,10 +98,10 @@ def test_a_wrong_pin_changes_nothing_is_logged_and_lets_wait(
         status, told = say("offsets", "clear", "T", "--as", "ben", typed="0815")
         assert (status, codes(refusals), "BEN" in told) == (2, ["wrong-pin"], True)
     status, told = say("offsets", "set", "G54", "z=-1", "--as", "ben", typed="2580")
-    assert (status, "4 wrong PINs in a row: the next can be typed in 10 s" in told) == (0, True)
+    assert (status, "4 wrong PINs in a row; try again in 10 s" in told) == (0, True)
     assert waited == [5.0, 10.0]
     with Store.open(home) as store:
-        assert store.events("wrong PIN")[0].text == "wrong PIN for BEN, 4 in a row, on the command line"
+        assert store.events("wrong PIN")[0].text == wording("cli.wrong-pin", name="BEN", count=4)
 
 
 def test_who_breaks_a_command_off_while_a_pin_is_looked_at_is_counted(
@@ -237,7 +238,11 @@ def test_a_restore_has_the_name_in_the_log(say: Say, people: None, home: Path, t
     (tmp_path / "own.toml").write_text(resources.machine_file("gt75.toml"))
     assert say("machine", "accept", tmp_path / "own.toml", "--as", "anna", typed="4711")[0] == 0
     with Store.open(home) as store:
-        assert store.events("restored from")[0].who == "ANNA"
+        restored = store.events("restored from")[0]
+        (replaced,) = home.glob("turndesk-replaced-*.db")
+        saved = wording("cli.previous-data", path=replaced)
+        assert restored.text == wording("cli.restored-event", path=tmp_path / "b.db", saved=saved)
+        assert restored.who == "ANNA"
         assert "accepted by ANNA" in store.events("machine file")[0].text
 
 
@@ -432,4 +437,4 @@ def test_the_reset_is_typed_at_the_machine(
     assert say("access", "list")[1].startswith("levels are off")
     with Store.open(home) as store:
         row = store.events("service reset")[0]
-    assert (row.who, "2 people and their PINs" in row.text) == ("shop", True)
+    assert (row.who, "2 users and their PINs" in row.text) == ("shop", True)

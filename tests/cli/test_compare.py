@@ -115,7 +115,7 @@ def test_a_folder_tells_it_in_a_line_and_a_report_in_full(
     given = ("--offsets", here, "--compare", there, *STOCK, "--report", report)
     told = turndesk("prove", folder, *given).out
     assert f"with {there}: 2 of 8 diameters and shoulders differ, by 0.0010 in at most" in told
-    assert "With other offsets" in report.read_text(encoding="utf-8")
+    assert "With different offsets" in report.read_text(encoding="utf-8")
     assert turndesk("prove", folder, *given, "--json").lines[0]["compare"] == compared(
         turndesk, folder / "a.nc", here, there
     )

@@ -141,7 +141,7 @@ def test_a_log_folder_that_cannot_be_made_is_told(tmp_path: Path, monkeypatch: p
     (tmp_path / "logs").write_text("a file stands where the folder should be")
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     log = Log()
-    assert log.trouble.startswith("the log cannot be written: ")
+    assert log.trouble.startswith(f"the log cannot be written to {tmp_path / 'logs'}: ")
     log.close()
 
 

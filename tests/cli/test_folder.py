@@ -24,6 +24,7 @@ from core.language.source import Source
 from core.proving.part_setting import PartSetting
 from tests.benchmarks.bench_folder import program
 from tests.cli.conftest import Turndesk
+from tests.texts import text as wording
 
 GOOD = "G90G94F300\nM03S1000\nT1\nX.5Z.1\nG95F.004Z-.2\nG94F300Z1\nM30\n"
 BAD = "G90G94F300\nQ3\nM30\n"
@@ -53,7 +54,7 @@ def test_the_programs_of_a_folder_one_object_a_line_in_the_order_of_names(
     told = turndesk("prove", parts, "--offsets", offsets, "--json")
     assert names(told.lines, parts) == ["A", "b.nc", "below/c.TAP"]
     assert told.status == 1
-    assert told.err == "turndesk: 2 other files left out\n"
+    assert told.err == "turndesk: 2 other files skipped\n"
     one = turndesk("prove", parts / "b.nc", "--offsets", offsets, "--json")
     assert told.lines[1] == one.lines[0]
 
@@ -64,7 +65,7 @@ def test_the_table_at_the_end(turndesk: Turndesk, parts: Path, offsets: Path) ->
     assert rows[2].split()[0:3] == ["proved", "0", "0"]
     assert rows[3].split()[0:2] == ["errors", "1"]
     assert rows[4].strip().startswith("line 2: ")
-    assert rows[5] == "3 programs: 2 proved, 1 with errors, 2 other files left out"
+    assert rows[5] == "3 programs: 2 proved, 1 with errors, 2 other files skipped"
     assert rows[6].startswith("slowest to prove: ")
 
 
@@ -172,7 +173,7 @@ def test_a_full_disk_is_told_once_and_proving_goes_on(
     monkeypatch.setattr(Path, "write_bytes", full)
     told = turndesk("prove", parts, "--offsets", offsets, "--json")
     assert (told.status, len(told.lines)) == (1, 3)
-    assert told.err.count("proofs are not kept") == 1
+    assert told.err.count("proofs cannot be stored") == 1
     assert "No space left" in told.err
     assert kept(home) == []
 
@@ -333,7 +334,7 @@ def test_ctrl_c_that_python_drops_ends_the_command(
 def test_no_number_of_workers(turndesk: Turndesk, parts: Path, number: str) -> None:
     told = turndesk("prove", parts, f"--jobs={number}")
     assert told.status == 2
-    assert "no number of workers" in told.err
+    assert wording("cli.no-job-count", word=repr(number), most=256) in told.err
     assert told.err.count("\n") == 1
 
 
@@ -370,5 +371,5 @@ def test_a_fault_of_ours_is_told_with_its_program(
     monkeypatch.setattr("concurrent.futures.ProcessPoolExecutor.submit", faulty)
     told = turndesk("prove", parts, "--offsets", offsets, "--json")
     assert told.status == 2
-    assert told.err.count("a fault in TurnDesk itself (made for this test)") == 3
+    assert told.err.count("internal error in TurnDesk (made for this test)") == 3
     assert KILLED not in told.err

@@ -48,7 +48,7 @@ def test_a_file_that_nobody_accepted_runs_and_has_no_changes(folder: Path, capsy
 def test_accepted_then_changed_is_shown_by_check_and_run(folder: Path, capsys: Captured) -> None:
     path = machine_file(folder)
     assert main(["machine", "accept", path]) == 0
-    assert "it was not known here" in capsys.readouterr().out
+    assert "this file was never accepted before" in capsys.readouterr().out
     machine_file(folder, **{"vmax = 300": "vmax = 280", "max_feed = 300": "max_feed = 250"})
     assert main(["machine", "check", path]) == 0
     assert "changed since it was accepted: axis.X.vmax: 300 → 280" in capsys.readouterr().out

@@ -45,7 +45,7 @@ def test_a_bus_that_is_not_there_is_one_sentence(capsys: Captured, tmp_path: Pat
     path.write_text(CAN.replace('channel = "can0"', 'channel = "can77"'))
     assert main(["machine", "check", str(path)]) == 1
     told = capsys.readouterr().err
-    assert "can77 cannot be opened" in told
+    assert "CAN interface socketcan, channel can77" in told
     assert "ip link set can77 up" in told
     assert "Traceback" not in told
 
@@ -71,7 +71,7 @@ def test_a_missing_library_is_named_and_the_simulation_does_not_need_it(
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setattr(builtins, "__import__", without)
     assert main(["machine", "check", str(virtual(tmp_path))]) == 1
-    assert "needs python-can: pip install 'turndesk[canopen]'" in capsys.readouterr().err
+    assert "needs python-can; install it with: pip install 'turndesk[canopen]'" in capsys.readouterr().err
     assert main(["machine", "check"]) == 0
 
 

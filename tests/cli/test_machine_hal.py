@@ -46,7 +46,7 @@ def test_nothing_is_replaced(there: str, refusals: list[CodedError], tmp_path: P
 
 def test_another_name_than_the_machine_file_says_is_told(capsys: Captured, tmp_path: Path) -> None:
     assert main(["machine", "hal", "gt75-parport", "--out", str(tmp_path / "mine.hal")]) == 0
-    assert "[hal] file is gt75-parport.hal; the control loads that one" in capsys.readouterr().err
+    assert "[hal] file is gt75-parport.hal, so TurnDesk loads that file" in capsys.readouterr().err
 
 
 def test_json_has_file_wires_and_what_to_measure(capsys: Captured) -> None:
@@ -68,7 +68,7 @@ def test_wrong_pins_are_named_all_at_once(capsys: Captured, tmp_path: Path) -> N
     told = capsys.readouterr()
     assert told.out == ""
     assert len(told.err.splitlines()) == 2
-    assert 'io.in.guard = "hm2_7i97.0.inmux.00.input-91": the board has no such pin' in told.err
+    assert 'io.in.guard = "hm2_7i97.0.inmux.00.input-91": the board does not have this pin' in told.err
 
 
 @pytest.mark.parametrize("name", ["gt75", "gt75-canopen", "no-such-file.toml"])

@@ -67,7 +67,7 @@ def test_an_export_brings_them_to_another_store(
     assert turndesk("store", "export", out).status == 0
     monkeypatch.setenv("TURNDESK_HOME", str(second))
     told = turndesk("store", "import", out)
-    assert "tools of a mill: 1, presets: 1" in told.out
+    assert "mill tools: 1, presets: 1" in told.out
     assert rows(second) == ROWS
 
 

@@ -13,7 +13,9 @@ import pytest
 from app.cli.command_parser import BEFORE
 from app.cli.main import COMMANDS, build_parser, main
 from core.coded_error import CodedError
+from core.message import Message
 from tests.cli.conftest import Turndesk
+from tests.texts import text as wording
 
 PART = (
     "G90G94F300\nT1\nM03S1000\nX.5Z.1\n/G95F.004Z-.2\nM97I10C1P1\nM01(LOOK)\nG94F300Z1\nM30\n}1\nG04F2\nM99\n"
@@ -147,7 +149,11 @@ def test_every_option_of_every_command_is_in_the_table() -> None:
 @pytest.mark.parametrize("name", [name for name, _ in parsers()])
 @pytest.mark.parametrize("option", BEFORE)
 def test_an_option_before_a_command_acts_or_is_refused(
-    name: str, option: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    name: str,
+    option: str,
+    capsys: pytest.CaptureFixture[str],
+    refusals: list[CodedError],
+    tmp_path: Path,
 ) -> None:
     """With a file that is not there: whoever takes the option says so, everybody else refuses the option."""
     has = {each for command, each in options() if command == name}
@@ -191,9 +197,12 @@ def test_an_option_before_a_command_acts_or_is_refused(
     if f"--{option}" in has:
         assert "missing" in said
     else:
-        assert said == f"turndesk: --{option} stands before {name}, which has no such option" + (
-            said[said.index(";") :] if ";" in said else "\n"
-        )
+        (error,) = refusals
+        assert error.code == "option-before-command"
+        (message,) = error.args
+        assert isinstance(message, Message)
+        assert (message.values["name"], message.values["words"]) == (option, name)
+        assert said.startswith(f"turndesk: --{option} ")
 
 
 def test_machine_and_offsets_before_prove_do_what_they_do_behind_it(
@@ -208,24 +217,31 @@ def test_machine_and_offsets_before_prove_do_what_they_do_behind_it(
     assert turndesk("prove", part, "--json").lines != turndesk("prove", part, *lathe, "--json").lines
 
 
-@pytest.mark.parametrize("words", [
-    ["prove", "{part}", "--offsets", "{far}", "--offsets", "{far}"],
-    ["--offsets", "{far}", "prove", "{part}", "--offsets", "{far}"],
-    ["--offsets", "{far}", "--offsets", "{far}", "prove", "{part}"],
-    ["trace", "{part}", "--dt", ".1", "--dt=.2"],
-    ["expand", "{part}", "--machine", "gt75", "--machine", "gt75"],
-    ["serial", "send", "{part}", "--baud", "9600", "--baud", "4800"],
-    ["offsets", "set", "T1", "x=1", "--why", "a", "--why", "b"],
+OFFSETS_TWICE = wording("cli.option-twice", option="--offsets")
+OFFSETS_AROUND = wording("cli.option-twice-around", name="offsets", command="prove")
+
+
+@pytest.mark.parametrize(("words", "refusal"), [
+    (["prove", "{part}", "--offsets", "{far}", "--offsets", "{far}"], OFFSETS_TWICE),
+    (["--offsets", "{far}", "prove", "{part}", "--offsets", "{far}"], OFFSETS_AROUND),
+    (["--offsets", "{far}", "--offsets", "{far}", "prove", "{part}"], OFFSETS_TWICE),
+    (["trace", "{part}", "--dt", ".1", "--dt=.2"], wording("cli.option-twice", option="--dt")),
+    (["expand", "{part}", "--machine", "gt75", "--machine", "gt75"],
+     wording("cli.option-twice", option="--machine")),
+    (["serial", "send", "{part}", "--baud", "9600", "--baud", "4800"],
+     wording("cli.option-twice", option="--baud")),
+    (["offsets", "set", "T1", "x=1", "--why", "a", "--why", "b"],
+     wording("cli.option-twice", option="--why")),
 ])  # fmt: skip
 def test_an_option_that_is_given_twice_is_refused(
-    words: list[str], part: Path, far: Path, capsys: pytest.CaptureFixture[str]
+    words: list[str], refusal: str, part: Path, far: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     try:
         status = main([word.format(part=part, far=far) for word in words])
     except SystemExit as ended:
         status = int(str(ended.code))
     assert status == 2
-    assert "is given twice" in capsys.readouterr().err
+    assert refusal in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("words", [
@@ -249,9 +265,9 @@ def test_version_with_anything_else_is_refused(part: Path, refusals: list[CodedE
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["--version", "--json"], "--json is an option of a command"),
-        (["--json"], "--json is an option of a command"),
-        (["--json", "prove", "a.nc"], "--json is an option of a command"),
+        (["--version", "--json"], "--json is a command option"),
+        (["--json"], "--json is a command option"),
+        (["--json", "prove", "a.nc"], "--json is a command option"),
         (["offsets", "show", "--why", "x"], "this command has no option --why"),
     ],
 )
@@ -420,6 +436,6 @@ def test_a_program_where_a_command_belongs_is_told_both_ways(turndesk: Turndesk,
     program.write_text("M30\n")
     told = turndesk(program)
     assert told.status == 2
-    assert f"prove {program} " in told.err
-    assert f"--program {program} " in told.err
+    assert f"turndesk prove {program};" in told.err
+    assert f"turndesk --program {program};" in told.err
     assert told.err.count("\n") == 1

@@ -87,8 +87,8 @@ def test_in_words(turndesk: Turndesk, made: Path) -> None:
         rest = CycleRow("r", "peg.nc", 10, began, ended, 5.0, "RESTARTED")
         store.write(partial(part_cycles.save_cycle, row=rest)).result(60)
     out = turndesk("parts").out.splitlines()
-    assert out[0] == "peg.nc: parts 10, cycle 65.5 s in the mean of 10"
-    assert out[1] == "  SPIGOT 12.7000 mm: readings 10, last 12.7100 mm of part 10, Cpk 0.94"
+    assert out[0] == "peg.nc: parts 10, mean cycle time 65.5 s (cycles: 10)"
+    assert out[1] == "  SPIGOT 12.7000 mm: readings 10, last reading 12.7100 mm (part 10), Cpk 0.94"
     assert out[2] == "ring.nc: parts 1"
 
 

@@ -16,6 +16,7 @@ from core.sharing.shared_folder import MARK, SharedFolder
 from core.sharing.shared_place import SharedPlace
 from core.sharing.sharing_errors import Cause, SharingError
 from tests.coded import raises_code
+from tests.texts import text as wording
 
 
 class Place:
@@ -39,8 +40,8 @@ def test_a_silent_place_is_told_once_and_its_answer_still_counts(
 
     monkeypatch.setattr(place_answer, "_tell", tell_and_answer)
     assert answered(cast("SharedPlace", Place()), lambda: told.wait(60.0), 0.0) is True
-    words = "turndesk: the database shop has not answered for 0 s; Ctrl+C ends the wait\n"
-    assert capsys.readouterr() == ("", words)
+    said = wording("cli.no-response", place="the database shop", seconds=0, until="")
+    assert capsys.readouterr() == ("", f"turndesk: {said}\n")
 
 
 def test_an_answer_in_time_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
@@ -88,5 +89,6 @@ def test_a_folder_that_hangs_is_told_before_it_is_touched(
     with raises_code(SharingError, "away", "300 s"):
         answered(SharedFolder(tmp_path), touched.set)
     assert (waits, touched.is_set()) == ([30.0, 270.0], False)
-    said = " has not answered for 30 s; it is given up behind 300 s; Ctrl+C ends the wait\n"
-    assert capsys.readouterr().err.endswith(said)
+    until = wording("cli.stops-waiting", seconds=300)
+    said = wording("cli.no-response", place=f"the folder {tmp_path}", seconds=30, until=until)
+    assert capsys.readouterr().err == f"turndesk: {said}\n"

@@ -62,6 +62,8 @@ def test_several_files_give_a_line_each_and_the_worst_status(
     (finding,) = told.lines[1]["diagnostics"]
     assert (finding["line"], finding["column"], finding["severity"]) == (4, 7, "error")
     assert finding["hint"]
+    assert finding["args"]
+    assert all(str(value) in finding["message"] for value in finding["args"].values())
 
 
 def test_a_file_that_cannot_be_read_does_not_keep_the_others_from_their_proof(

@@ -14,6 +14,7 @@ import pytest
 
 from tests.cli.conftest import Turndesk
 from tests.cli.test_prove import written
+from tests.texts import text as wording
 
 pytestmark = pytest.mark.usefixtures("qapp")  # one asks for a PDF, whose fonts need an application
 
@@ -81,13 +82,11 @@ def test_all_that_is_promised_stands_in_one_file(turndesk: Turndesk, tmp_path: P
     page, text = report_of(turndesk, tmp_path, path, "--offsets", offsets, "--stock", "bar:1.0:2+.02")
     for words in (
         "Proved", "GT-75", "bar:1.0:2+.02", hashlib.sha256(PART.encode()).hexdigest(),
-        "drill, Ø 0.2500 in, point 118° (assumed)", "M00", "What the operator reads", "Offsets",
+        "drill, Ø 0.2500 in, point 118° (assumed)", "M00", "Message to the operator", "Offsets",
     ):  # fmt: skip
         assert words in page.words
     assert page.open == []
-    assert {"Section: stock and finished part", "Path of the tools", "Outline of the tool"} == set(
-        drawings(text)
-    )
+    assert {"Section: stock and finished part", "Tool paths", "Tool outline"} == set(drawings(text))
 
 
 def test_nothing_in_it_runs_or_is_loaded(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
@@ -124,10 +123,10 @@ def test_a_finding_of_the_part_has_its_line_and_a_picture(
 ) -> None:
     path = written(tmp_path, PART.replace("G95F.004Z-.5", "G00Z-.5"))
     page, text = report_of(turndesk, tmp_path, path, "--offsets", offsets, "--stock", "bar:1.0:2+.02")
-    assert "1 error: will not run" in page.words
+    assert wording("cli.report-errors", errors="1 error") in page.words
     assert "Line 9\n error \nrapid-into-stock" in page.words
     assert "G00Z-.5" in page.words
-    place = drawings(text)["Place of the finding"]
+    place = drawings(text)["Location of the finding"]
     assert extent(place, "wrong")[1] == 0.0  # a move along Z
     assert extent(place, "wrong")[0] > 50.0
     assert extent(place, "part")[0] > 50.0
@@ -137,7 +136,7 @@ def test_times_by_tool_come_to_the_cycle_time(turndesk: Turndesk, tmp_path: Path
     path = written(tmp_path, PART)
     page, _ = report_of(turndesk, tmp_path, path, "--offsets", offsets)
     cycle = turndesk("prove", path, "--offsets", offsets, "--json").lines[0]["cycle_time_s"]
-    words = page.words[page.words.index("Tools, and their times") : page.words.index("Stops")]
+    words = page.words[page.words.index("Tools and times") : page.words.index("Stops")]
     figures = [float(each) for each in re.findall(r"^\d+\.\d$", words, flags=re.MULTILINE)]
     assert sum(figures) == pytest.approx(cycle, abs=0.05 * len(figures))
 
@@ -162,7 +161,7 @@ def test_several_programs_and_one_that_cannot_be_read_in_one_file(
 
 def test_a_mill_has_a_report_without_a_section(turndesk: Turndesk, tmp_path: Path) -> None:
     page, text = report_of(turndesk, tmp_path, "resources/programs/roof.h", "--machine", "ac-table-mill")
-    assert "Nothing is turned here" in page.words
+    assert "does not turn a part" in page.words
     assert drawings(text) == {}
 
 

@@ -154,7 +154,7 @@ def test_a_run_that_broke_off_is_not_begun_anew_unasked(
     assert told.status == 0
     with closing(Journal(home)) as journal:
         assert journal.left is None
-        assert "begun anew from the command line" in journal.events("", {"cleared"}, 9)[0].text
+        assert "started again from the command line" in journal.events("", {"cleared"}, 9)[0].text
 
 
 def test_a_simulated_run_remembers_nothing_and_says_so(

@@ -11,7 +11,7 @@ from core.store.store import Store
 from tests.cli.conftest import Told, Turndesk
 from tests.cli.test_prove import written
 from tests.cli.test_stock_option import PART, chuck
-from tests.texts import fragment, shows
+from tests.texts import fragment, shows, text
 
 SLIP = PART.replace("G95F.004Z-.5", "G00Z-.5")  # the diameter of .8 is turned at a rapid
 TOOL = '[tool.1]\nkind = "turning"\ntip = 3\nnose_radius = 0.0156\ninsert = "DCMT11T304"\n'
@@ -75,7 +75,7 @@ def test_a_check_that_is_silenced_for_the_program_refuses_nothing(
             store.set_setting(key, value).result()
     told = turndesk("run", path, "--headless", "--json", "--offsets", offsets, "--tools", tools)
     assert state(told) == (0, "complete")
-    assert "Silenced: soft wax" in told.err
+    assert text("findings.check-off", why="soft wax") in told.err
 
 
 def test_a_tool_that_runs_into_the_chuck_is_refused_without_a_stock(

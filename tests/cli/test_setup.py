@@ -56,7 +56,7 @@ def test_a_check_changes_nothing(
     saved: Path, turndesk: Turndesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "other"))
-    assert "is whole" in turndesk("setup", "load", saved, "--check").out
+    assert "is undamaged" in turndesk("setup", "load", saved, "--check").out
     assert not (tmp_path / "other").exists()
 
 
@@ -187,7 +187,7 @@ def test_a_disk_that_becomes_full_leaves_the_desk_as_it_was(
 def test_files_of_a_computer_without_a_clock_go_along(saved: Path, turndesk: Turndesk, home: Path) -> None:
     os.utime(home / "programs" / "part.nc", (0, 0))
     assert turndesk("setup", "save", saved).status == 0
-    assert "is whole" in turndesk("setup", "load", saved, "--check").out
+    assert "is undamaged" in turndesk("setup", "load", saved, "--check").out
 
 
 def test_a_setup_takes_the_place_of_a_setup_alone(saved: Path, turndesk: Turndesk, tmp_path: Path) -> None:

@@ -98,22 +98,25 @@ def test_what_follows_a_bar_loop_is_its_part(form: Path, turndesk: Turndesk) -> 
 @pytest.mark.parametrize(
     ("steps", "said"),
     [
-        ('[[step]]\nkind = "face"\n', "step 1: a program begins with its head"),
-        (HEAD + '[[step]]\nkind = "fase"\n', "step 2: kind fase is none; did you mean face?"),
+        ('[[step]]\nkind = "face"\n', "step 1: a program must begin with a head"),
+        (HEAD + '[[step]]\nkind = "fase"\n', "step 2: kind fase does not exist; did you mean face?"),
         (HEAD + "[[step]]\nt = 1\n", "step 2 has no kind"),
         (HEAD + '[[step]]\nkind = "face"\ntoo = 1\n', "step 2, face: too is unknown; did you mean to?"),
-        (HEAD + '[[step]]\nkind = "face"\nto = true\n', "step 2, face: to is neither a figure nor a word"),
+        (HEAD + '[[step]]\nkind = "face"\nto = true\n', "step 2, face: to must be a number or a word"),
         (HEAD + '[[step]]\nkind = "face"\nfeed = -1\n', "step 2, face: feed: "),
         (HEAD + '[[step]]\nkind = "drill"\ndia = "a"\n', "step 2, drill: dia: "),
-        ('[[step]]\nkind = "head"\nunit = "ell"\n', "step 1, head: unit ell is none of inch, metric"),
+        (
+            '[[step]]\nkind = "head"\nunit = "ell"\n',
+            "step 1, head: unit cannot be ell; use one of inch, metric",
+        ),
         (
             HEAD + '[[step]]\nkind = "turn"\npoints = [{x = 1, y = 2}]\n',
-            "step 2, turn: point 1: y is unknown",
+            "step 2, turn: point 1: key y is unknown",
         ),
-        (HEAD + '[[step]]\nkind = "turn"\npoints = 3\n', "step 2, turn: points are a list"),
+        (HEAD + '[[step]]\nkind = "turn"\npoints = 3\n', "step 2, turn: points must be a list"),
         ("[stpe]\n", "stpe is unknown; did you mean step?"),
         ("", "has no steps"),
-        ("[[step]]\nkind = \n", "is no TOML"),
+        ("[[step]]\nkind = \n", "is not a valid TOML file"),
     ],
 )
 def test_what_makes_no_program_is_told_by_step_and_key(

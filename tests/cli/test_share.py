@@ -14,6 +14,7 @@ from core.store.store import Store
 from core.table_schema import MachineFileError
 from tests.cli.conftest import Told, Turndesk
 from tests.coded import raises_code
+from tests.texts import begins
 
 
 class Shop:
@@ -41,19 +42,20 @@ class Shop:
 @pytest.fixture
 def shop(tmp_path: Path, turndesk: Turndesk, monkeypatch: pytest.MonkeyPatch) -> Shop:
     made = Shop(tmp_path, turndesk, monkeypatch)
-    assert made.share(1, "begin")[1].endswith("is laid out for shared programs\n")
+    assert made.share(1, "begin")[1].endswith("is set up for shared programs\n")
     return made
 
 
 def test_published_seen_compared_taken_and_settled(shop: Shop) -> None:
     shop.program(1, "CAP.NC").write_text("G00 X1\nM30\n")
-    assert shop.share(1, "publish")[1].endswith("has the one program of LATHE 1\n")
+    assert shop.share(1, "publish")[1].endswith("contains the only program from LATHE 1\n")
     told = json.loads(shop.share(2, "status", "--json")[1])
     (program,) = told["programs"]
     assert (program["program"], program["state"], program["here"]) == ("CAP.NC", "new", None)
     assert (program["elsewhere"][0]["desk"], program["elsewhere"][0]["on"]) == ("LATHE 1", ["LATHE 1"])
     assert not (shop.folder / "home2" / "turndesk.db").exists()  # a look keeps nothing
-    assert shop.share(2, "take", "cap.nc")[1].startswith("CAP.NC is that of LATHE 1 now")
+    taken = shop.share(2, "take", "cap.nc")[1]
+    assert begins(taken, "cli.version-taken", name="CAP.NC", desk="LATHE 1")
     assert shop.program(2, "CAP.NC").read_text() == "G00 X1\nM30\n"
     for number in (1, 2):
         shop.program(number, "CAP.NC").write_text(f"G00 X1{number}\nM30\n")
@@ -62,7 +64,7 @@ def test_published_seen_compared_taken_and_settled(shop: Shop) -> None:
     assert shop.share(1, "compare", "CAP.NC")[1] == (
         "    1       - G00 X11\n          1 + G00 X12\n    2     2   M30\n"
     )
-    assert shop.share(1, "keep", "CAP.NC")[1] == "CAP.NC stands as it is here\n"
+    assert shop.share(1, "keep", "CAP.NC")[1] == "the local version of CAP.NC is used\n"
     assert shop.share(2, "take", "CAP.NC")[0] == 0
     assert shop.program(2, "CAP.NC").read_text() == "G00 X11\nM30\n"
     with Store.open(shop.folder / "home2", read_only=True) as store:

@@ -12,6 +12,8 @@ from app.desk.kept_part import KeptPart
 from core.store.store import Store
 from tests.cli.conftest import Turndesk
 from tests.cli.test_prove import written
+from tests.texts import shows
+from tests.texts import text as wording
 
 # Tool offset 1 of the fixture; faced at Z0, .8 in diameter turned .5 in long.
 PART = (
@@ -45,7 +47,7 @@ def test_without_a_word_the_bar_is_assumed_and_told(
     stock = turndesk("prove", path, "--offsets", offsets, "--json").lines[0]["stock"]
     assert stock["given"] is None
     assert any("T1" in words for words in stock["assumed"])
-    assert "as nobody has said it" in turndesk("prove", path, "--offsets", offsets).out
+    assert shows(turndesk("prove", path, "--offsets", offsets).out, "cli.bar-assumed", unit="in")
 
 
 def test_a_finding_of_the_part_refuses_the_program(turndesk: Turndesk, tmp_path: Path, offsets: Path) -> None:
@@ -243,8 +245,8 @@ def test_a_kept_file_is_found_from_every_folder_and_told_when_it_is_gone(
     assert turndesk("prove", path, *given).lines[0]["stock"]["given"].startswith("profile:")
     blank.unlink()
     told = turndesk("prove", path, *given)
-    assert told.status == 2
-    assert "kept with part.nc" in told.err
+    assert (told.status, told.code) == (2, "kept-stock")
+    assert "part.nc" in told.err
     assert "--keep-stock" in told.err
     assert turndesk("prove", path, *given, "--stock", "bar:1", "--keep-stock").status == 0
     assert turndesk("prove", path, *given).lines[0]["stock"]["given"] == "bar:1"
@@ -283,7 +285,7 @@ def test_what_the_store_silences_for_a_program_counts_for_that_alone(
         for key, value in kept.settings("part.nc").items():
             store.set_setting(key, value).result()
     told = turndesk("prove", path, *given)
-    assert (told.status, "Silenced: drilled before" in told.out) == (0, True)
+    assert (told.status, wording("findings.check-off", why="drilled before") in told.out) == (0, True)
     assert turndesk("prove", other, *given).status == 1
     assert turndesk("prove", path.parent, *given).status == 1  # of the folder the other one alone
     assert turndesk("prove", path, *given, "--jobs", "1").status == 0

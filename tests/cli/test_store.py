@@ -51,7 +51,7 @@ def test_the_store_of_an_older_turndesk_is_brought_up_to_date(
 
 def test_without_a_store_nothing_is_brought_up_to_date(home: Path, capsys: Captured) -> None:
     assert main(["store", "upgrade"]) == 0
-    assert "there is no store" in capsys.readouterr().out
+    assert wording("cli.no-stored-data", folder=home) in capsys.readouterr().out
     assert not home.exists()
 
 
@@ -80,9 +80,24 @@ def test_backup_and_restore(capsys: Captured, filled: Path, tmp_path: Path) -> N
     with Store.open(filled) as store:
         store.set_tool(1, "x", x=0.0).result()
     assert main(["store", "restore", target]) == 0
-    assert "the replaced store is kept as" in capsys.readouterr().out
+    told = capsys.readouterr().out
+    (replaced,) = filled.glob("turndesk-replaced-*.db")
+    saved = wording("cli.previous-data", path=replaced)
+    assert told.endswith(wording("cli.restored", folder=filled, path=target, saved=saved) + "\n")
     with Store.open(filled) as store:
         assert store.tools()[1].x == 31.75
+
+
+def test_a_restore_without_a_previous_store_names_no_saved_file(
+    capsys: Captured, filled: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target, second = str(tmp_path / "b.db"), tmp_path / "second"
+    assert main(["store", "backup", target]) == 0
+    monkeypatch.setenv("TURNDESK_HOME", str(second))
+    capsys.readouterr()
+    assert main(["store", "restore", target]) == 0
+    said = wording("cli.restored", folder=second, path=target, saved="")
+    assert capsys.readouterr().out == f"{said}\n"
 
 
 def test_export_and_import_into_an_empty_home(
@@ -96,7 +111,7 @@ def test_export_and_import_into_an_empty_home(
         assert store.tools() == {1: ToolRow(31.75, 0.0, 0.015 * 25.4)}
         assert store.secondary() == {4: SecondaryRow(-0.0127, 0.0, 0.0)}
         assert store.load_program("PIN.nc") == b"G90\r\n"
-        assert store.history()[0].why == "import of out"
+        assert store.history()[0].why == wording("cli.import-from", folder="out")
 
 
 def test_every_field_goes_with_an_export(
@@ -135,7 +150,7 @@ def test_verify_says_whole_or_what_is_wrong(capsys: Captured, filled: Path) -> N
 
 def test_verify_of_no_store(capsys: Captured, home: Path) -> None:
     assert main(["store", "verify"]) == 0
-    assert "there is no store" in capsys.readouterr().out
+    assert wording("cli.no-stored-data", folder=home) in capsys.readouterr().out
     assert not home.exists()
 
 

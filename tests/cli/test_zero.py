@@ -104,4 +104,4 @@ def test_shipped_machines_by_their_names(turndesk: Turndesk) -> None:
     for name in ("sinumerik-modulo", "sinumerik-linear"):
         told = turndesk("machine", "check", name)
         assert told.status == 0
-        assert f"{name}.toml is good" in told.out
+        assert f"{name}.toml is valid" in told.out

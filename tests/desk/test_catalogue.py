@@ -1,109 +1,105 @@
-"""Sentences, sentences with values, values that are sentences; and texts that are nobody's."""
+"""Texts with values, values that are texts, texts of the user; and texts that the catalog does not have."""
 
 from __future__ import annotations
 
+import pickle
+
 import pytest
 
-from app.desk.translation import Catalogue, data, speak, tr
+from app.desk.translation import data, speak, tr
+from core.language.sinumerik.sinumerik_alarms import fault
+from core.message import Message, join_messages, named_values
 
 KNOWN = {
     "READY": "LISTO",
+    "STEP": "PASO",
+    "rapid": "rápido",
     "following error": "error de seguimiento",
-    "REFUSED: %1": "RECHAZADO: %1",
-    "%1 is %2 off": "%1 está a %2",
+    "REFUSED: {why}": "RECHAZADO: {why}",
+    "{axis} is {distance} off": "{axis} está a {distance}",
     "{made} OF {target} PARTS": "DE {target} PIEZAS, {made}",
-    "the entry is longer than %1 characters": "la entrada pasa de %1 caracteres",
-    "LINE %1: ": "LÍNEA %1: ",
-    "WILL NOT RUN: %1%2": "NO CORRERÁ: %1%2",
-    "SPINDLE %1": "HUSILLO %1",
-    "spindle has stopped": "el husillo se detuvo",
-    "LINE %1": "LÍNEA %1",
-    "in": "pulg",
-    "in/min": "pulg/min",
-    "{number} OF {count}": "{number} DE {count}",
+    "{name} SAVED": "{name} GUARDADO",
+    "{word} is not defined.": "{word} no está definido.",
+    "CONTROL IN {mode}": "CONTROL EN {mode}",
+    "{{{key}}} IS MISSING": "FALTA {{{key}}}",
 }
 
 
 @pytest.fixture
-def spanish() -> Catalogue:
-    return Catalogue(lambda text: KNOWN.get(text, ""), [text for text in KNOWN if "%" in text or "{" in text])
+def spanish() -> object:
+    speak(lambda text: KNOWN.get(text, ""), "es")
+    yield
+    speak(None)
 
 
+OFF = Message("{axis} is {distance} off", axis="Z", distance=2.1)
+
+
+@pytest.mark.usefixtures("spanish")
 @pytest.mark.parametrize(
-    ("english", "told"),
+    ("text", "shown"),
     [
         ("READY", "LISTO"),
         ("FOLLOWING ERROR", "ERROR DE SEGUIMIENTO"),
-        ("REFUSED: Z is 2.1 off", "RECHAZADO: Z está a 2.1"),
-        ("3 OF 9 PARTS", "DE 9 PIEZAS, 3"),
-        ("REFUSED: the entry is longer than 80 characters", "RECHAZADO: la entrada pasa de 80 caracteres"),
-        ("READY  ·  X  ·  READY", "LISTO  ·  X  ·  LISTO"),
-        ("SPINDLE HAS STOPPED · READY", "EL HUSILLO SE DETUVO · LISTO"),
-        ("LINE 4: X · 3 OF 9 PARTS · READY", "LÍNEA 4: X · DE 9 PIEZAS, 3 · LISTO"),
-        ("300.00 in/min", "300.00 pulg/min"),
-        ("0.00800 in … 0.08000 in", "0.00800 pulg … 0.08000 pulg"),
-        ("4 in line", "4 in line"),
+        (OFF, "Z está a 2.1"),
+        (OFF.upper(), "Z ESTÁ A 2.1"),
+        (Message("REFUSED: {why}", why=OFF), "RECHAZADO: Z está a 2.1"),
+        (Message("REFUSED: {why}", why=ValueError(OFF)), "RECHAZADO: Z está a 2.1"),
+        (Message("{made} OF {target} PARTS", made=3, target=9), "DE 9 PIEZAS, 3"),
+        (Message("{what} · {more}", what="READY", more=OFF), "LISTO · Z está a 2.1"),
+        (join_messages("  ·  ", ["READY", "X", OFF]), "LISTO  ·  X  ·  Z está a 2.1"),
+        (join_messages(" {} ", ["READY", "X"]), "LISTO {} X"),
+        (Message("{{{key}}} IS MISSING", key="a"), "FALTA {a}"),
+        (Message("{word} is not defined.", word="STEP"), "STEP no está definido."),  # a word of the program
+        (Message("{name} SAVED", name="STEP"), "STEP GUARDADO"),  # a program of that name
+        (Message("CONTROL IN {mode}", mode="STEP"), "CONTROL EN PASO"),  # the screen's own word
+        (Message("CONTROL IN {mode}", mode=data("STEP")), "CONTROL EN STEP"),
+        (data("STEP"), "STEP"),
         ("−0.12345", "−0.12345"),
         ("bushing.nc", "bushing.nc"),
         ("", ""),
         ("LISTO", "LISTO"),
-        ("nobody knows this sentence", "nobody knows this sentence"),
+        ("the catalog has no such sentence", "the catalog has no such sentence"),
+        (Message("NO SUCH {what}", what="READY"), "NO SUCH LISTO"),
     ],
 )
-def test_what_is_known_is_told(spanish: Catalogue, english: str, told: str) -> None:
-    assert spanish.translate(english) == told
+def test_a_text_is_shown_in_spanish(text: str, shown: str) -> None:
+    assert tr(text) == shown
 
 
-def test_the_more_exact_sentence_wins() -> None:
-    known = {"%1 FIRST": "PRIMERO %1", "PRESS %1 FIRST": "PULSE PRIMERO %1"}
-    catalogue = Catalogue(lambda text: known.get(text, ""), known)
-    assert catalogue.translate("PRESS R FIRST") == "PULSE PRIMERO R"
-    assert catalogue.translate("STOP FIRST") == "PRIMERO STOP"
+@pytest.mark.usefixtures("spanish")
+def test_a_message_in_a_hole_for_names_is_translated() -> None:
+    assert tr(Message("{name} SAVED", name=OFF)) == "Z está a 2.1 GUARDADO"
+    assert tr(Message("{name} SAVED", name="READY")) == "READY GUARDADO"
 
 
-def test_signs_of_patterns_are_only_signs() -> None:
-    known = {"(%1) [word+ *%2": "(%2) [otra+ *%1"}
-    catalogue = Catalogue(lambda text: known.get(text, ""), known)
-    assert catalogue.translate("(a) [word+ *b") == "(b) [otra+ *a"
+@pytest.mark.usefixtures("spanish")
+@pytest.mark.parametrize("code", [14011, "following"])
+def test_the_sentence_of_a_sinumerik_fault_is_translated(code: int | str) -> None:
+    found = fault(1, 1, code, "N10", "following error", "")
+    assert tr(found.message).endswith("block N10: error de seguimiento")
 
 
-def test_tr_is_english_until_somebody_translates() -> None:
-    assert tr("READY") == "READY"
-    speak(lambda text: {"READY": "LISTO"}.get(text, ""))
-    try:
-        assert tr("READY") == "LISTO"
-        assert tr("ALARM") == "ALARM"
-    finally:
-        speak(None)
-
-
-def test_a_hole_does_not_reach_into_the_next_part(spanish: Catalogue) -> None:
-    assert spanish.translate("SPINDLE HAS STOPPED  ·  LINE 4") == "EL HUSILLO SE DETUVO  ·  LÍNEA 4"
-
-
-def test_two_holes_and_a_preposition_are_not_found_in_a_name(spanish: Catalogue) -> None:
-    assert spanish.translate("BUSH OF BRASS") == "BUSH OF BRASS"
-    assert spanish.translate("{number} OF {count}") == "{number} DE {count}"
-
-
-def test_what_a_program_says_is_never_translated() -> None:
-    known = {
-        "STEP": "PASO",
-        "WILL NOT RUN: %1": "NO CORRERÁ: %1",
-        "%1 is not defined.": "%1 no está definido.",
-        "CONTROL IN %1": "CONTROL EN %1",
-        "{name} SAVED": "{name} GUARDADO",
-    }
-    spanish = Catalogue(lambda text: known.get(text, ""), [t for t in known if "%" in t or "{" in t])
-    assert spanish.translate("STEP is not defined.") == "STEP no está definido."
-    assert spanish.translate("WILL NOT RUN: STEP is not defined.") == "NO CORRERÁ: STEP no está definido."
-    assert spanish.translate("STEP SAVED") == "STEP GUARDADO"  # a program of that name
-    assert spanish.translate("CONTROL IN STEP") == "CONTROL EN PASO"  # the screen's own word
-    speak(spanish.translate, "es")
-    try:
-        assert tr("STEP") == "PASO"
-        assert tr(f"CONTROL IN {data('STEP')}") == "CONTROL EN STEP"
-        assert tr(data("STEP")) == "STEP"
-    finally:
-        speak(None)
+def test_without_a_language_texts_stay_english() -> None:
+    assert tr(OFF) == "Z is 2.1 off"
     assert tr(data("STEP")) == "STEP"
+    assert type(tr(OFF)) is str
+
+
+def test_a_message_keeps_its_values_in_another_process() -> None:
+    made = pickle.loads(pickle.dumps(Message("REFUSED: {why}", why=OFF).upper()))
+    assert (made, made.template) == ("REFUSED: Z IS 2.1 OFF", "REFUSED: {why}")
+    assert made.values["why"].values == {"axis": "Z", "distance": 2.1}
+
+
+def test_a_value_that_is_missing_is_refused() -> None:
+    with pytest.raises(KeyError, match="distance"):
+        Message("{axis} is {distance} off", axis="Z")
+
+
+def test_the_values_of_messages_in_messages_are_named_too() -> None:
+    nested = Message("REFUSED: {why}", why=Message("{axis}: {why}", axis="X", why=OFF))
+    values = named_values(nested)
+    assert values == {"axis": "X", "distance": 2.1, "why": "X: Z is 2.1 off"}
+    assert all(type(value) in {str, float} for value in values.values())
+    assert named_values("plain") == {}

@@ -251,8 +251,8 @@ def test_changed_offsets_are_taken_up_with_what_the_part_says(
 def test_what_was_warned_of_is_told_where_cycles_are_started() -> None:
     starts = wording("screen.spindle-starts", rpm=900, direction="FORWARD")
     shot = Snapshot(announced=("WARNING: LINE 11: RAPID-INTO-STOCK", starts))
-    assert announced(shot) == f"WARNING: LINE 11: RAPID-INTO-STOCK · {starts} · "
-    assert announced(shot, starts_here=False) == f"{starts} · "
+    assert announced(shot) == ("WARNING: LINE 11: RAPID-INTO-STOCK", starts)
+    assert announced(shot, starts_here=False) == (starts,)
 
 
 def test_beside_the_warning_stands_what_to_do(desk: Make) -> None:

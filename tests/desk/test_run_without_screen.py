@@ -70,10 +70,10 @@ def test_palms_that_nobody_presses_are_waited_for_and_then_it_is_said() -> None:
     ended = outcome(Idle(), said)
     assert said == ["homing X, Z, C", "palms"]
     assert ended.state == "waiting"
-    assert "no start has come" in ended.why
+    assert "no Cycle Start received" in ended.why
 
 
 def test_slides_that_do_not_find_home_are_no_complete_run() -> None:
     ended = outcome(Idle(homes=False), [])
     assert ended.state == "waiting"
-    assert "home" in ended.why
+    assert "homing did not finish" in ended.why

@@ -9,6 +9,7 @@ from app.editor.find_replace import Search, following, preceding
 from app.editor.versions import DifferenceRow as Row
 from app.editor.versions import differences
 from core.language.source import Dialect, dialect_of, usual_ending
+from tests.texts import text as wording
 
 TEXT = "F100\nX1F1000\nf100(F100.)\nF100.5 F100X2\n"
 
@@ -16,7 +17,7 @@ TEXT = "F100\nX1F1000\nf100(F100.)\nF100.5 F100X2\n"
 def test_whole_numbers_are_found_and_longer_ones_are_only_counted() -> None:
     places = Search("F100").places(TEXT)
     assert [TEXT[p : p + 5] for p in places] == ["F100\n", "f100(", "F100.", "F100X"]
-    assert Search("F100").words(TEXT) == "4 FOUND, 2 MORE WITHIN LONGER WORDS"
+    assert Search("F100").words(TEXT) == wording("editor.longer-words", found="4 FOUND", more=2)
     assert Search("F100", whole=False).words(TEXT) == "6 FOUND, INCLUDING PARTS OF WORDS"
 
 

@@ -63,7 +63,12 @@ def test_the_bar_moves_in_its_bore_only_while_the_spindle_stands(direction: int)
 
 
 @pytest.mark.parametrize(
-    ("direction", "message"), [(1, "TURN EDGE TO X+"), (2, "TURN EDGE TO Y+"), (3, "TURN EDGE TO X-")]
+    ("direction", "message"),
+    [
+        (1, ("TURN THE CUTTING EDGE TOWARD X+")),
+        (2, ("TURN THE CUTTING EDGE TOWARD Y+")),
+        (3, ("TURN THE CUTTING EDGE TOWARD X-")),
+    ],
 )
 def test_the_operator_is_told_where_the_edge_has_to_be(direction: int, message: str) -> None:
     rig = boring(direction)

@@ -50,7 +50,7 @@ def test_a_hold_by_the_station_says_so() -> None:
     rig.sim.machine.release_hold()
     assert stop_of(rig) == (
         "feed-hold",
-        text("executor.asked-by", source="the button at the operator station"),
+        text("executor.asked-by", source="the feed hold button on the operator station"),
     )
 
 

@@ -10,6 +10,7 @@ import pytest
 from core.interpreter.actions import Coolant
 from core.interpreter.elementary_blocks import Block, Kind
 from tests.interpreter.programs import INCH, Pass, body, lines, passed, setup
+from tests.texts import text
 
 
 @dataclass(frozen=True)
@@ -215,7 +216,11 @@ def test_refused(program: tuple[str, ...], error: tuple[int, int, str]) -> None:
 def test_the_message_says_what_is_left_of_the_line() -> None:
     found = passed(body(HEAD, "X.5C.2", "Z-.3C.11", "X.9")).interpreter.diagnostics
     assert [each.message for each in found] == [
-        "Corner C is not possible: it needs 0.11000 in of the move on line 5, which has only 0.10000 in left."
+        text(
+            "findings.corner-impossible",
+            letter="C",
+            why=text("findings.corner-too-large", needed="0.11000 in", line=5, left="0.10000 in"),
+        )
     ]
 
 

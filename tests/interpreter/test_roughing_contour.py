@@ -8,6 +8,7 @@ import pytest
 
 from core.interpreter.elementary_blocks import Kind
 from tests.interpreter.programs import INCH, Pass, body, passed, setup
+from tests.texts import text
 
 SHAFT = ("X.2Z0", "Z-.5", "X.4")
 """Cylinder of radius .2 to Z-.5, shoulder out to .4."""
@@ -252,7 +253,7 @@ def test_a_contour_that_falls_at_once_is_told_how_it_begins() -> None:
     fall = ("X.4Z0", "X.2Z-.5", "Z-.6", "RF")
     result = passed(body("X.5Z.1", "G75I.05U.01F4", *fall))
     (refused,) = [each for each in result.interpreter.diagnostics if each.code == "cycle-start-near"]
-    assert "up the face from its lowest X" in refused.hint
+    assert refused.hint == text("findings.begins-deeper")
     assert not passed(body("X.5Z.1", "G75I.05U.01F4", "X.2Z0", "X.4", *fall[1:])).errors
 
 

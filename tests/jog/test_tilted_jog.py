@@ -90,13 +90,11 @@ def test_no_axis_goes_beyond_its_travel(rig: Rig) -> None:
     assert shows(rig.said("refused")[-1], "jog.end-of-travel")
 
 
-@pytest.mark.parametrize(
-    ("along", "told"), [((0.0, 0.0, 2.0), "a direction of length 1"), ((float("nan"), 0.0, 1.0), "length 1")]
-)
-def test_what_is_no_direction_moves_nothing(rig: Rig, along: tuple[float, float, float], told: str) -> None:
+@pytest.mark.parametrize("along", [(0.0, 0.0, 2.0), (float("nan"), 0.0, 1.0)])
+def test_what_is_no_direction_moves_nothing(rig: Rig, along: tuple[float, float, float]) -> None:
     rig.post(Jog("Z", 25.0, LEASE, along=along))
     rig.run(0.1)
-    assert told in rig.said("refused")[-1]
+    assert text("jog.plane-needs-three") in rig.said("refused")[-1]
     assert rig.shot.demand == (0.0,) * 5
 
 

@@ -86,7 +86,7 @@ def test_contour_milling_follows_the_walls_in_its_sense(turn: str, sense: int) -
         (6, ("CYCL DEF 6.2 PECKG3 F100 ALLOW+0.5\n", ""), "Cycle incomplete", "6.2"),
         (6, ("ALLOW+0.5", ""), "Cycle incomplete", "6.2"),
         (6, ("F400", "FMAX"), "Cycle incomplete", "rapid"),
-        (15, (NAMED, ""), "Cycle incomplete", "no contour"),
+        (15, (NAMED, ""), "Cycle incomplete", "No contour is defined for cycle 15"),
         (16, ("DEPTH-7", ""), "Cycle incomplete", "16.1"),
         (16, ("LABEL 1/2", "LABEL 9"), "Label not found", "LBL 9"),
     ],
@@ -161,7 +161,7 @@ def test_contour_def_takes_programs_and_declared_contours() -> None:
         ('DECLARE CONTOUR QC1 = "ONE" DEPTH5', "Not supported", "its own depth"),
         ('SEL CONTOUR "NONE"', "Program not found", "NONE"),
         ('SEL CONTOUR "ONE"', "Cycle incomplete", "no contour formula"),
-        (DECLARED + "QC10 = ( QC1 & QC2 ) \\ QC1", "Input value incorrect", "enclose no area"),
+        (DECLARED + "QC10 = ( QC1 & QC2 ) \\ QC1", "Input value incorrect", "islands cover the pockets"),
         ("CONTOUR DEF P1 = QC4", "Cycle incomplete", "QC4"),
     ],
 )

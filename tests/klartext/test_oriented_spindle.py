@@ -113,4 +113,4 @@ def test_where_nothing_orients_m19_names_the_key_of_the_machine_file(text: str, 
 
 def test_cycle_13_needs_its_angle() -> None:
     (error,) = on("CYCL DEF 13.0 ORIENTATION\nCYCL DEF 13.1\n").errors
-    assert "no angle" in error.message
+    assert "No angle is programmed in cycle 13" in error.message

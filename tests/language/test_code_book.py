@@ -86,12 +86,12 @@ def _words(dialect: Dialect, head: str) -> dict[str, str]:
 @pytest.mark.parametrize(
     ("dialect", "head", "word", "means"),
     [
-        (OMNITURN, "G33", "C", "the angle of infeed, degrees: 0 … 30"),
-        (OMNITURN, "G83", "R", "Z to which the drill retracts"),
+        (OMNITURN, "G33", "C", "infeed angle in degrees: 0 … 30"),
+        (OMNITURN, "G83", "R", "the Z position to which the drill retracts"),
         (OMNITURN, "G94", "F", "the feed per minute"),
-        (SINUMERIK, "CYCLE83", "VARI", "0 breaks chips, 1 retracts out of the hole"),
+        (SINUMERIK, "CYCLE83", "VARI", "0 = chip breaking, 1 = retract out of the hole"),
         (SINUMERIK, "CYCLE97", "PIT", "lead"),
-        (SINUMERIK, "CYCLE84", "PIT", "pitch; negative for left-hand"),
+        (SINUMERIK, "CYCLE84", "PIT", "pitch; negative for a left-hand thread"),
         (KLARTEXT, "CYCL DEF 200", "Q201", "depth, measured from the surface"),
     ],
 )

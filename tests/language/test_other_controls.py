@@ -11,6 +11,7 @@ from core.language.diagnostics import Diagnostic
 from core.language.omniturn import lex_line
 from core.language.source import Source
 from core.proving.prove_program import prove
+from tests.texts import text
 
 
 def errors(*lines: str, name: str = "A", machine: str | None = None) -> list[Diagnostic]:
@@ -74,7 +75,8 @@ HEAD = ("G90G94F300", "T1", "X.5Z.1")
     ("X.5\u2013.2", "character", "special minus sign"), ("X\u201c.5\u201d", "character", "quotation mark"),
     ("X.5;TURN", "character", "comment"), ("X#1", "character", "variable"),
     ("X[1+2]", "character", "calculations"),
-    ("X.4F0", "out-of-range", "G00 is the rapid"), ("T0101", "tool-number", "T1 selects tool 1"),
+    ("X.4F0", "out-of-range", text("findings.rapid-is-g00", word="F0")),
+    ("T0101", "tool-number", "T1 selects tool 1"),
     ("T0102", "tool-number", "D2"), ("M06", "m-unknown", "T alone"), ("M17", "m-unknown", "M99"),
     ("M50", "m-disabled", "not enabled"), ("M10", "m-disabled", "not enabled"),
     ("G33X.3Z-.5I.01K.05C-1", "thread-angle", "0 to 30"),
@@ -123,7 +125,7 @@ KLARTEXT = ("0 BEGIN PGM A MM", "1 TOOL CALL 1 Z S1000")
 def test_klartext_text_without_its_sign_is_one_error(line: str, column: int) -> None:
     (found,) = errors(*KLARTEXT, line, "3 END PGM A MM", name="a.h", machine="ac-table-mill")
     assert (found.line, found.column) == (3, column)
-    assert found.hint.endswith("A comment begins with ;.")
+    assert found.hint.endswith(text("findings.comment-sign", hint="").strip())
 
 
 @pytest.mark.parametrize(("line", "column"), [
@@ -148,7 +150,13 @@ def test_a_feed_per_revolution_is_judged_per_revolution() -> None:
     (found,) = errors(*HEAD, "M03S3000", "G95F.15X.4", "M30")
     assert (found.code, found.message) == (
         "feed-over-speed",
-        "Feed 0.15 in/rev is over the maximum of 0.1 in/rev at 3000 rpm, which equals 300 in/min.",
+        text(
+            "findings.feed-over-maximum",
+            feed="0.15 in/rev",
+            per_rev="0.1 in/rev",
+            rpm=3000,
+            limit="300 in/min",
+        ),
     )
     (found,) = errors(*HEAD, "M03S3000", "G95F6X.4", "M30")
     assert "0.00005 in/rev to 0.2 in/rev" in found.message

@@ -11,6 +11,7 @@ from app.desk.command_errors import CommandError
 from core.table_schema import Finding, MachineFileError
 from drivers.hal.boards.hal_lines import text_of
 from tests.coded import raises_code
+from tests.texts import text as wording
 
 
 def changed(name: str, *pairs: tuple[str, str]) -> str:
@@ -29,36 +30,91 @@ def refused(text: str) -> tuple[Finding, ...]:
 
 
 STEP, SERVO, BUS, PORT = "mesa-7i76e", "mesa-7i97", "ethercat", "parport"
+BOARDS = '"sim", "parport", "mesa-7i76e", "mesa-7i97", "ethercat"'
 
 
 @pytest.mark.parametrize(
     ("name", "old", "new", "path", "expected"),
     [
-        (STEP, 'kind = "mesa-7i76e"', 'kind = "mesa-7i77"', "board.kind", 'one of "sim", "parport"'),
+        (
+            STEP,
+            'kind = "mesa-7i76e"',
+            'kind = "mesa-7i77"',
+            "board.kind",
+            wording("machine.one-of", choices=BOARDS),
+        ),
         (STEP, 'address = "192.168.1.121"', 'address = "eth0"', "board.address", "the card's address"),
         (PORT, 'address = "0x378"', 'address = "lpt1"', "board.address", "0x378"),
-        (STEP, "channel = 1", "channel = 0", "board.axis.Z.channel", "board.axis.X.channel has it"),
-        (STEP, "channel = 1", "channel = 5", "board.axis.Z.channel", "0…4"),
-        (STEP, "channel = 1\n", "", "board.axis.Z.channel", "missing; expected a step generator"),
-        (STEP, "encoder = 0 ", "encoder = 1 ", "board.spindle.encoder", "the one encoder"),
-        (STEP, "full_speed = 3500 ", "# ", "board.spindle.full_speed", "missing; expected the speed at 10 V"),
-        (STEP, 'speed_abs = "spindle-rpm-abs"', "", "hal.spindle.speed", "an output for it"),
-        (STEP, "encoder_ppr = 1024 ", "encoder_ppr = 0 ", "spindle.encoder_ppr", "lines of the encoder"),
-        (STEP, "step_ns = 5000 ", "step_ns = 99000 ", "axis.X.vmax", "33333 steps/s; step_ns and space_ns"),
+        (STEP, "channel = 1", "channel = 0", "board.axis.Z.channel", "board.axis.X.channel already uses"),
+        (STEP, "channel = 1", "channel = 5", "board.axis.Z.channel", "0 to 4"),
+        (
+            STEP,
+            "channel = 1\n",
+            "",
+            "board.axis.Z.channel",
+            f"missing; expected {wording('machine.step-channel')}",
+        ),
+        (STEP, "encoder = 0 ", "encoder = 1 ", "board.spindle.encoder", wording("machine.only-encoder")),
+        (
+            STEP,
+            "full_speed = 3500 ",
+            "# ",
+            "board.spindle.full_speed",
+            "missing; expected the spindle speed at 10 V",
+        ),
+        (STEP, 'speed_abs = "spindle-rpm-abs"', "", "hal.spindle.speed", "an output for the spindle speed"),
+        (
+            STEP,
+            "encoder_ppr = 1024 ",
+            "encoder_ppr = 0 ",
+            "spindle.encoder_ppr",
+            "the line count of the encoder",
+        ),
+        (
+            STEP,
+            "step_ns = 5000 ",
+            "step_ns = 99000 ",
+            "axis.X.vmax",
+            "33333 steps/s, but the maximum for the specified step_ns and space_ns",
+        ),
         (STEP, "[board.axis.Z]", "[board.axis.Y]", "board.axis.Y", "unknown key"),
-        (STEP, "[board.axis.Z]", "[board.axis.Y]", "board.axis.Z", "missing; what of the board moves Z"),
-        (SERVO, "full_speed = 400 ", "# ", "board.axis.X.full_speed", "missing; expected its speed at 10 V"),
-        (SERVO, "full_speed = 400 ", "full_speed = 299 ", "board.axis.X.full_speed", "axis.X.vmax or more"),
-        (SERVO, "p = 20 ", "# ", "board.axis.X.p", "missing; expected the gain of its pid"),
+        (
+            STEP,
+            "[board.axis.Z]",
+            "[board.axis.Y]",
+            "board.axis.Z",
+            "missing; specify the board outputs that move axis Z",
+        ),
+        (
+            SERVO,
+            "full_speed = 400 ",
+            "# ",
+            "board.axis.X.full_speed",
+            "missing; expected the axis speed at 10 V",
+        ),
+        (SERVO, "full_speed = 400 ", "full_speed = 299 ", "board.axis.X.full_speed", "at least axis.X.vmax"),
+        (SERVO, "p = 20 ", "# ", "board.axis.X.p", "missing; expected the P gain for the axis's pid"),
         (SERVO, "channel = 4 ", "channel = 2 ", "board.spindle.channel", "4 or 5"),
-        (SERVO, "channel = 1\n", "channel = 4\n", "board.axis.Z.channel", "common enable, 0…3"),
+        (SERVO, "channel = 1\n", "channel = 4\n", "board.axis.Z.channel", wording("machine.servo-channel")),
         (BUS, 'vendor = "0x0000026c"  ', "# ", "board.axis.X.vendor", "missing"),
         (BUS, 'product = "0x0000003c"', 'product = "60"', "board.axis.X.product", "ethercat slaves -v"),
-        (BUS, "velocity_per_rpm = 68.2666667 ", "# ", "board.spindle.velocity_per_rpm", "60FF counts"),
-        (BUS, "channel = 2", "channel = 1", "board.spindle.channel", "board.axis.Z.channel has it"),
-        (BUS, "channel = 2\n", "", "board.spindle.channel", "missing; expected the drive's place on the bus"),
-        (PORT, 'step = "parport.0.pin-02-out"', "", "board.axis.X.step", "the pin of its steps"),
-        (PORT, "vmax = 50 ", "vmax = 200 ", "axis.X.vmax", "base_us = 50 make 16667 at the most"),
+        (
+            BUS,
+            "velocity_per_rpm = 68.2666667 ",
+            "# ",
+            "board.spindle.velocity_per_rpm",
+            "object 60FF at 1 rpm",
+        ),
+        (BUS, "channel = 2", "channel = 1", "board.spindle.channel", "board.axis.Z.channel already uses"),
+        (
+            BUS,
+            "channel = 2\n",
+            "",
+            "board.spindle.channel",
+            f"missing; expected {wording('machine.bus-position')}",
+        ),
+        (PORT, 'step = "parport.0.pin-02-out"', "", "board.axis.X.step", ("the pin for the step signal")),
+        (PORT, "vmax = 50 ", "vmax = 200 ", "axis.X.vmax", "base_us = 50 is 16667 steps/s"),
         (PORT, 'phase_b = "parport.0.pin-15-in"', "", "board.spindle.phase_b", "missing"),
     ],
 )
@@ -76,7 +132,7 @@ INPUT = "hm2_7i76e.0.7i76.0.0.input"
 @pytest.mark.parametrize(
     ("name", "old", "new", "path", "expected"),
     [
-        (STEP, f"{INPUT}-01", f"{INPUT}-32", "io.in.guard", "the board has no such pin"),
+        (STEP, f"{INPUT}-01", f"{INPUT}-32", "io.in.guard", "the board does not have this pin"),
         (
             STEP,
             f'"{INPUT}-01"',
@@ -91,19 +147,31 @@ INPUT = "hm2_7i76e.0.7i76.0.0.input"
             "io.out.coolant",
             "is an input, expected an output",
         ),
-        (STEP, f'"{INPUT}-10"', '"x-home"', "hal.axes.X.home", "a signal that nothing makes"),
+        (STEP, f'"{INPUT}-10"', '"x-home"', "hal.axes.X.home", "a signal that is not connected to a pin"),
         (STEP, '"x-pos-cmd"', '"pid.z.command"', "hal.axes.X.command", "expected pid.x.command, the name of"),
         (STEP, 'machine_on = "hm2_7i76e.0.7i76.0.0.output-00"', "", "hal.machine_on", "missing"),
-        (SERVO, "input-11-not", "input-16-not", "board.axis.Z.fault_input", "the board has no such pin"),
+        (
+            SERVO,
+            "input-11-not",
+            "input-16-not",
+            "board.axis.Z.fault_input",
+            "the board does not have this pin",
+        ),
         (BUS, "DI.din-1", "DI.din-8", "io.in.guard", "EL1008"),
-        (PORT, "parport.0.pin-08-out", "parport.0.pin-02-out", "io.out.coolant", "board.axis.X.step has it"),
-        (PORT, "parport.0.pin-11-in", "parport.0.pin-14-in", "io.in.collet_closed", "no such pin"),
+        (
+            PORT,
+            "parport.0.pin-08-out",
+            "parport.0.pin-02-out",
+            "io.out.coolant",
+            "board.axis.X.step already uses",
+        ),
+        (PORT, "parport.0.pin-11-in", "parport.0.pin-14-in", "io.in.collet_closed", "does not have this pin"),
         (
             STEP,
             '"x-pos-fb"',
             f'"x-pos-fb"\nenable = "{INPUT}-12"',
             "hal.axes.X.enable",
-            "or leave it out: hal",
+            "or remove this key: hal",
         ),
         (
             PORT,
@@ -144,7 +212,10 @@ def test_a_board_without_hal_has_nobody_to_drive() -> None:
         parse_machine(text, "test.toml")
     (error, *_) = caught.value.errors
     assert error.path == "hal"
-    assert "missing; [board] is what lies behind the pins that [hal] names" in str(error)
+    assert (
+        "missing; [board] needs this table, because [board] describes the hardware "
+        "connected to the pins that [hal] specifies"
+    ) in str(error)
 
 
 def test_a_pot_is_refused_where_the_board_has_none() -> None:

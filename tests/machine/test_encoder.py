@@ -47,15 +47,15 @@ def test_an_encoder_at_a_drive() -> None:
     ("old", "new", "path", "expected"),
     [
         ('node = "turns"', 'node = "wheel"', "spindle.encoder.node", "profile = 406"),
-        ('node = "turns"', 'node = "io"', "spindle.encoder.node", "terminals do not count"),
+        ('node = "turns"', 'node = "io"', "spindle.encoder.node", "does not count revolutions"),
         ('node = "turns"', 'node = "Z"', "spindle.encoder.object", "60E4:1"),
-        ('node = "turns"', 'node = "Z"', "canopen.nodes.turns.profile", "nobody reads"),
+        ('node = "turns"', 'node = "Z"', "canopen.nodes.turns.profile", "this encoder is not used"),
         ('node = "turns"', 'node = "turns", object = "6004"', "spindle.encoder.object", "sub-index"),
-        ("counts_per_rev = 4096", "counts_per_rev = 0", "spindle.encoder.counts_per_rev", "16 or more"),
+        ("counts_per_rev = 4096", "counts_per_rev = 0", "spindle.encoder.counts_per_rev", "at least 16"),
         ("counts_per_rev = 4096", "counts_per_rev = 1.5", "spindle.encoder.counts_per_rev", "whole"),
         (", counts_per_rev = 4096", "", "spindle.encoder.counts_per_rev", "missing"),
         ("counts_per_rev = 4096", "counts_per_rev = 4096, ppr = 1", "spindle.encoder.ppr", ""),
-        ("profile = 406", "profile = 404", "canopen.nodes.turns.profile", "406 (an encoder)"),
+        ("profile = 406", "profile = 404", "canopen.nodes.turns.profile", "406 (encoder)"),
         ("hz_per_rpm = 0.01667", "hz_per_rpm = 0.01667, disagree_pct = 80", "spindle.vfd.disagree_pct", "50"),
     ],
 )
@@ -67,11 +67,11 @@ def test_a_drive_on_the_bus_has_its_own() -> None:
     text = changed(
         'driver = "cia402"', 'driver = "cia402"\nencoder = { node = "turns", counts_per_rev = 99 }'
     )
-    assert_refused(text, "spindle.encoder", 'spindle.driver = "vfd"')
+    assert_refused(text, "spindle.encoder", 'spindle.driver must be "vfd"')
 
 
 def test_the_simulated_spindle_does_not_follow_an_inverter() -> None:
     text = resources.machine_file("gt75-vfd.toml").replace(
         "encoder_ppr = 0", 'encoder_ppr = 0\nencoder = { node = "turns", counts_per_rev = 4096 }'
     )
-    assert_refused(text, "spindle.encoder", "reads no encoder on a bus")
+    assert_refused(text, "spindle.encoder", "does not support an encoder on a bus")

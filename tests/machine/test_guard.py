@@ -7,6 +7,7 @@ import pytest
 import resources
 from app.compose.machine_files import parse_machine
 from tests.machine.test_hardware import assert_refused, changed
+from tests.texts import text as wording
 
 LINE = "guard_stops = true"
 STOPPED = (
@@ -44,7 +45,7 @@ def test_left_out_it_is_shown_and_stops_nothing() -> None:
 def test_without_its_switch_it_is_refused() -> None:
     text = changed(LINE, LINE).replace("\nguard ", "\nlid ")
     assert "\nlid " in text
-    assert_refused(text, "interlocks.guard_stops", "input guard")
+    assert_refused(text, "interlocks.guard_stops", wording("machine.needs-guard"))
 
 
 def test_a_parallel_port_has_no_input_left_for_a_guard_and_promises_none() -> None:
@@ -56,7 +57,7 @@ def test_a_parallel_port_has_no_input_left_for_a_guard_and_promises_none() -> No
     assert_refused(
         text.replace("two_hand_start = false", "guard_stops = true\ntwo_hand_start = false"),
         "interlocks.guard_stops",
-        "input guard",
+        wording("machine.needs-guard"),
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import resources
@@ -48,7 +50,7 @@ def test_shipped_table_in_model_units() -> None:
         ('enable = "z-motor.sel"', 'enable = "out-coolant"', "io.out.coolant.at", "hal.axes.Z.enable"),
         ("[hal.axes.Z]", "[hal.axes.Y]", "hal.axes.Y", "unknown key"),
         ('position = "spindle.position-fb"', "", "hal.spindle.position", "encoder_ppr"),
-        ('speed = "spindle-ramp.in" ', "", "hal.spindle.speed", "what turns it"),
+        ('speed = "spindle-ramp.in" ', "", "hal.spindle.speed", "speed, speed_abs or on to turn the spindle"),
         ('speed = "spindle-ramp.in" ', 'speed_abs = "spindle-ramp.in" ', "hal.spindle.forward", "sign"),
         ("[hal.spindle]\n", "[hal.spindel]\n", "hal.spindel", "did you mean"),
         ('file = "gt75-hal.hal"', "", "hal.file", "missing"),
@@ -62,17 +64,37 @@ def test_each_refusal_names_its_key(old: str, new: str, path: str, expected: str
     assert expected in str(found[0])
 
 
+@pytest.mark.parametrize("name", ["gt75-ethercat", "gt75-mesa-7i97", "gt75-mesa-7i76e"])
+@pytest.mark.parametrize("inverted", ["", "-not"])
+@pytest.mark.parametrize("key", ["start", "hold"])
+def test_an_input_that_is_a_home_switch_too_is_rejected(name: str, inverted: str, key: str) -> None:
+    """Homing on it would start a cycle or hold it."""
+    text = resources.machine_file(f"{name}.toml")
+    home = re.search(r'^home = "([^"]+)"', text, re.MULTILINE)
+    assert home is not None
+    shared = re.sub(
+        rf'^{key} = {{ at = "[^"]+"', f'{key} = {{ at = "{home[1]}{inverted}"', text, flags=re.MULTILINE
+    )
+    found = only_finding(shared)
+    assert (found.path, "hal.axes.X.home" in str(found)) == (f"io.in.{key}.at", True)
+
+
 HOMED = "absolute = false\nhome = {{ method = {}, speed = 60, order = 1 }}"
 
 
 @pytest.mark.parametrize(
     ("method", "pins", "path", "expected"),
     [
-        (7, "", "axis.X.home.method", "expected a method that this backend has: 1, 2, 3"),
-        (18, 'limit_high = "a"', "axis.X.home.offset", "expected a way off the limit switch, below 0"),
-        (1, 'limit_low = "a"', "hal.axes.X.index_enable", "axis.X.home.method = 1 looks for it"),
-        (19, 'limit_low = "a"', "hal.axes.X.home", "axis.X.home.method = 19 looks for it"),
-        (3, 'home = "a"', "hal.axes.X.index_enable", "axis.X.home.method = 3 looks for it"),
+        (7, "", "axis.X.home.method", "expected a homing method that this backend supports: 1, 2, 3"),
+        (
+            18,
+            'limit_high = "a"',
+            "axis.X.home.offset",
+            "below 0, because at home the axis must be clear of the limit switch",
+        ),
+        (1, 'limit_low = "a"', "hal.axes.X.index_enable", "required by axis.X.home.method = 1"),
+        (19, 'limit_low = "a"', "hal.axes.X.home", "required by axis.X.home.method = 19"),
+        (3, 'home = "a"', "hal.axes.X.index_enable", "required by axis.X.home.method = 3"),
     ],
 )
 def test_homing_needs_its_pins(method: int, pins: str, path: str, expected: str) -> None:

@@ -16,6 +16,7 @@ from drivers.grblhal.grblhal_table import GrblhalTable
 from drivers.inverter.inverter_table import InverterTable
 from drivers.lookalikes.plant_config import PlannedFault
 from drivers.simulated.simulated_table import SimulatedTable
+from tests.texts import text as wording
 
 CAN = resources.machine_file("gt75-canopen.toml")
 SHIPPED = resources.machine_file("gt75.toml")
@@ -121,49 +122,64 @@ def test_addresses_of_terminals() -> None:
     [
         ('channel = "can0"\n', "", "canopen.channel", "missing"),
         ("bitrate = 1000000\nsync", "bitrate = 20\nsync", "canopen.bitrate", "10000…1e+06"),
-        ("Z = { id = 2,", "Z = { id = 1,", "canopen.nodes.Z.id", "canopen.nodes.X has it"),
-        ("Z = { id = 2,", "Z = { id = 127,", "canopen.nodes.Z.id", "canopen.host_id has it"),
+        ("Z = { id = 2,", "Z = { id = 1,", "canopen.nodes.Z.id", "canopen.nodes.X already uses"),
+        ("Z = { id = 2,", "Z = { id = 127,", "canopen.nodes.Z.id", "canopen.host_id already uses"),
         ("Z = { id = 2,", "Z = { id = 128,", "canopen.nodes.Z.id", "1…127"),
         (
             "Z = { id = 2,",
             "W = { id = 2,",
             "canopen.nodes.W",
-            "named after what it moves: X, Z, C, spindle",
+            "named after the axis or spindle that it moves: X, Z, C, spindle",
         ),
         ("Z = { id = 2, counts_per_rev = 4000 }", "", "canopen.nodes.Z", "axis Z needs a drive"),
-        ("Z = { id = 2,", "Z = { id = 2, profile = 401,", "canopen.nodes.Z.profile", "402, a drive"),
+        ("Z = { id = 2,", "Z = { id = 2, profile = 401,", "canopen.nodes.Z.profile", "402 (drive)"),
         ("spindle = { id = 3 }", "", "canopen.nodes.spindle", 'spindle.driver = "cia402"'),
-        ("io = { id = 10, profile = 401 }", "", "io.in.estop.at", "none is there"),
-        ('driver = "cia402"', 'driver = "sim"', "spindle.driver", "expected cia402 or vfd"),
+        ("io = { id = 10, profile = 401 }", "", "io.in.estop.at", "none defined"),
+        ('driver = "cia402"', 'driver = "sim"', "spindle.driver", "must be cia402 or vfd"),
         ('driver = "cia402"', 'driver = "vfd"', "spindle.vfd", "missing"),
         ('mode = "pvt"', 'mode = "pv"', "canopen.mode", '"pvt", "csp", "ip", "pp"'),
         ('drive = "epos2"', 'drive = "epos3"', "canopen.drive", '"cia402", "epos2", "epos4", "copley"'),
-        ('drive = "epos2"', 'drive = "epos4"', "canopen.nodes.X.drive", "needs a queue in the drive"),
+        ('drive = "epos2"', 'drive = "epos4"', "canopen.nodes.X.drive", '"pvt" needs a drive with a queue'),
         ('drive = "epos2"', "", "canopen.nodes.Z.drive", '"epos2" or "copley"'),
-        (", counts_per_rev = 4000", "", "canopen.nodes.X.counts_per_rev", "EPOS2 counts speeds in rpm"),
-        ("record_ms = 20", "record_ms = 12.5", "canopen.record_ms", "whole milliseconds"),
-        ("commit_ms = 140", "commit_ms = 90", "machine.commit_ms", "100 or more"),  # 3 · 20 + 40
+        (", counts_per_rev = 4000", "", "canopen.nodes.X.counts_per_rev", "EPOS2 reports speeds in rpm"),
+        ("record_ms = 20", "record_ms = 12.5", "canopen.record_ms", "whole number of milliseconds"),
+        ("commit_ms = 140", "commit_ms = 90", "machine.commit_ms", "at least 100"),  # 3 · 20 + 40
         ("heartbeat_ms = 100", "heartbeat_ms = 20\nx = 1", "canopen.x", "unknown key"),
-        ("sync_ms = 10", "sync_ms = 60", "canopen.heartbeat_ms", "two times sync_ms"),
-        ('"6007:0" = 3', '"6065:0" = 4294967295', 'canopen.sdo.all."6065:0"', "monitoring off"),
-        ('"6007:0" = 3', '"6065:0" = -1', 'canopen.sdo.all."6065:0"', "monitoring off"),
+        ("sync_ms = 10", "sync_ms = 60", "canopen.heartbeat_ms", "at least twice sync_ms"),
+        (
+            '"6007:0" = 3',
+            '"6065:0" = 4294967295',
+            'canopen.sdo.all."6065:0"',
+            wording("machine.monitoring-off"),
+        ),
+        ('"6007:0" = 3', '"6065:0" = -1', 'canopen.sdo.all."6065:0"', wording("machine.monitoring-off")),
         ('"6007:0" = 3', '"6007" = 3', 'canopen.sdo.all."6007"', '"6007:0"'),
-        ('"6007:0" = 3', '"6007:0" = 3.5', 'canopen.sdo.all."6007:0"', "whole number"),
-        ('"6007:0" = 3', '"6007:0" = true', 'canopen.sdo.all."6007:0"', "whole number"),
+        ('"6007:0" = 3', '"6007:0" = 3.5', 'canopen.sdo.all."6007:0"', "32-bit integer"),
+        ('"6007:0" = 3', '"6007:0" = true', 'canopen.sdo.all."6007:0"', "32-bit integer"),
         ("all = {", "everything = {", "canopen.sdo.everything", "unknown key"),
-        ('all = { "6007:0" = 3, "605E:0" = 2 }', "all = 3", "canopen.sdo.all", "expected a table"),
+        ('all = { "6007:0" = 3, "605E:0" = 2 }', "all = 3", "canopen.sdo.all", "must be a table"),
         # 127 << 16 | 300 is 8323372; 126 << 16 | 300 is 8257836
         ('"6007:0" = 3', '"1016:1" = 8257836', 'canopen.sdo.all."1016:1"', "8323372"),
-        ('"6007:0" = 3', '"1016:1" = 8323172', 'canopen.sdo.all."1016:1"', "for 100 ms"),
+        ('"6007:0" = 3', '"1016:1" = 8323172', 'canopen.sdo.all."1016:1"', "timeout of 100 ms"),
         ('at = "401.6200.1.0"', 'at = "OUT-1"', "io.out.coolant.at", '"401.6200.1.0"'),
         ('at = "401.6200.1.0"', 'at = "401.6000.9.0"', "io.out.coolant.at", "6200"),
-        ('at = "401.6200.1.0"', 'at = "401.6200.1.8"', "io.out.coolant.at", "0…7"),
+        ('at = "401.6200.1.0"', 'at = "401.6200.1.8"', "io.out.coolant.at", "from 0 to 7"),
         ('at = "401.6200.1.0"', 'at = "401.6200.9.0"', "io.out.coolant.at", "sub-index 1…8"),
         ('at = "401.6401.1"', 'at = "401.6401.5"', "io.analog.feed_pot.at", "sub-index 1…4"),
         ('at = "401.6200.1.0"', 'at = "io2.6200.1.0"', "io.out.coolant.at", "[canopen.nodes]: io"),
-        ('at = "401.6200.1.0"', 'at = "X.60FD.0.1"', "io.out.coolant.at", "inputs only"),
+        (
+            'at = "401.6200.1.0"',
+            'at = "X.60FD.0.1"',
+            "io.out.coolant.at",
+            wording("machine.drive-inputs-only"),
+        ),
         ('at = "401.6401.1"', 'at = "401.6401.1.3"', "io.analog.feed_pot.at", '"401.6401.1"'),
-        ('at = "401.6401.1"', 'at = "401.6401.2"', "io.analog.spindle_pot.at", "feed_pot is on this one"),
+        (
+            'at = "401.6401.1"',
+            'at = "401.6401.2"',
+            "io.analog.spindle_pot.at",
+            "io.analog.feed_pot already uses",
+        ),
         ('switch = "spindle_auto"', 'switch = "auto"', "io.analog.spindle_pot.switch", "[io.in]"),
         ('safe = "keep"', 'safe = "keep", refresh_ms = 300', "io.out.collet.refresh_ms", "safe = false"),
         ('1.0", safe = false', '1.0", safe = false, refresh_ms = 3', "io.out.coolant.refresh_ms", "50"),
@@ -172,14 +188,29 @@ def test_addresses_of_terminals() -> None:
             'spindle_auto = { at = "401.6000.1.6" }',
             "",
             "io.analog.spindle_pot.switch",
-            'add there the line: spindle_auto = { at = "401.6000.1.6" }',
+            wording("machine.switch-line", key="spindle_auto", terminal="401.6000.1.6"),
         ),
-        ('at = "401.6200.1.1"', 'at = "io.6200.1.0"', "io.out.collet.at", "coolant is on this one"),
-        ('at = "401.6000.1.2"', 'at = "401.6000.01.1"', "io.in.hold.at", "io.in.start is on this one"),
+        ('at = "401.6200.1.1"', 'at = "io.6200.1.0"', "io.out.collet.at", "io.out.coolant already uses"),
+        ('at = "401.6000.1.2"', 'at = "401.6000.01.1"', "io.in.hold.at", "io.in.start already uses"),
         # X: -4 in and 4 in of counts of .00005 in are -80000 and 80000
-        ("all = {", 'X = { "607D:1" = -79999 }\nall = {', 'canopen.sdo.X."607D:1"', "needs -80000 counts"),
-        ("all = {", 'X = { "607D:2" = 79999 }\nall = {', 'canopen.sdo.X."607D:2"', "needs 80000 counts"),
-        ("range = [0, 1.5]", "range = [0, 3]", "io.analog.feed_pot.range", "0…1.5"),
+        (
+            "all = {",
+            'X = { "607D:1" = -79999 }\nall = {',
+            'canopen.sdo.X."607D:1"',
+            wording("machine.limit-below-travel", path="axis.X.travel", needed=-80000),
+        ),
+        (
+            "all = {",
+            'X = { "607D:2" = 79999 }\nall = {',
+            'canopen.sdo.X."607D:2"',
+            wording("machine.limit-below-travel", path="axis.X.travel", needed=80000),
+        ),
+        (
+            "range = [0, 1.5]",
+            "range = [0, 3]",
+            "io.analog.feed_pot.range",
+            wording("machine.fractions", top=1.5),
+        ),
         ("spindle_pot = {", "pot = {", "io.analog.pot", "unknown key"),
         ("method = 1,", "", "axis.X.home.method", "limit switch"),
         ("method = 1,", "method = 99,", "axis.X.home.method", "-128…37"),
@@ -192,17 +223,37 @@ def test_refused(old: str, new: str, path: str, expected: str) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "path", "expected"),
     [
-        ('backend = "sim"', 'backend = "canopen"', "[canopen]", "needs it"),
-        ('backend = "sim"', 'backend = "grblhal"', "[grblhal]", "needs it"),
-        ("[sim]\n", '[sim]\nfaults = [{ at = 1, what = "jam" }]\n', "sim.faults.1.axis", "one of X, Z, C"),
+        (
+            'backend = "sim"',
+            'backend = "canopen"',
+            "[canopen]",
+            wording("machine.table-required", backend="canopen"),
+        ),
+        (
+            'backend = "sim"',
+            'backend = "grblhal"',
+            "[grblhal]",
+            wording("machine.table-required", backend="grblhal"),
+        ),
+        (
+            "[sim]\n",
+            '[sim]\nfaults = [{ at = 1, what = "jam" }]\n',
+            "sim.faults.1.axis",
+            "one of these axes: X, Z, C",
+        ),
         (
             "[sim]\n",
             '[sim]\nfaults = [{ at = 1, what = "estop", axis = "X" }]\n',
             "sim.faults.1.axis",
-            "take it out",
+            "estop is not an axis fault; remove this key",
         ),
         ("[sim]\n", '[sim]\nfaults = [{ at = 1, what = "rust" }]\n', "sim.faults.1.what", "encoder_stuck"),
-        ("[sim]\n", '[sim]\nfaults = [{ at = 1, what = "loose_gib" }]\n', "sim.faults.1.axis", "one of X"),
+        (
+            "[sim]\n",
+            '[sim]\nfaults = [{ at = 1, what = "loose_gib" }]\n',
+            "sim.faults.1.axis",
+            "one of these axes: X",
+        ),
         (
             "[sim]\n",
             '[sim]\nfaults = [{ at = 1, what = "encoder_ripple", axis = "X", turn = 0 }]\n',
@@ -257,4 +308,4 @@ def test_a_bus_without_io_names_every_signal() -> None:
 
 def test_a_serial_port_has_one_owner() -> None:
     text = resources.machine_file("gt75-vfd.toml").replace('"/dev/ttyUSB1"', '"/dev/ttyUSB0"')
-    assert_refused(text, "dnc.port", "spindle.vfd.port has it")
+    assert_refused(text, "dnc.port", "spindle.vfd.port already uses")

@@ -10,6 +10,7 @@ import resources
 from app.compose.machine_files import load_machine, parse_machine
 from core.table_schema import Finding, MachineFileError
 from tests.coded import raises_code
+from tests.texts import text as wording
 
 SHIPPED = resources.machine_file("gt75.toml")
 
@@ -113,7 +114,7 @@ def test_unknown_table_says_which_are_known() -> None:
     [
         ('units = "inch"', 'units = "furlong"', "machine.units", '"inch", "mm"'),
         ('backend = "sim"', 'backend = "canbus"', "machine.backend", '"sim", "canopen", "grblhal"'),
-        ('name = "GT-75"', 'name = ""', "machine.name", "a text"),
+        ('name = "GT-75"', 'name = ""', "machine.name", wording("machine.nonblank-text")),
         ("commit_ms = 30", 'commit_ms = "30"', "machine.commit_ms", "1…200 ms"),
         ("commit_ms = 30", "commit_ms = true", "machine.commit_ms", "1…200 ms"),
         ("amax = 120", "amax = nan", "axis.X.amax", "in/s²"),
@@ -141,17 +142,22 @@ def test_wrong_value_is_named_with_what_was_expected(old: str, new: str, path: s
     [
         ("count = 0.00005", "count = 0.000001", "axis.X.vmax", "counts/s"),
         ("lease_ms = 200", "lease_ms = 260", "machine.lease_ms", "limits.clearance"),
-        ("travel = [-4.0, 4.0]", "travel = [1.0, 4.0]", "axis.X.travel", "0 must lie inside"),
+        ("travel = [-4.0, 4.0]", "travel = [1.0, 4.0]", "axis.X.travel", "so 0 must be within the travel"),
         ("max_feed = 300", "max_feed = 301", "limits.max_feed", "axis.X.vmax = 300 in/min"),
-        ("low_water_ms = 80", "low_water_ms = 20", "machine.commit_ms", "run dry"),
+        (
+            "low_water_ms = 80",
+            "low_water_ms = 20",
+            "machine.commit_ms",
+            ("the setpoint queue would run empty"),
+        ),
         ("timeout_s = 5", "timeout_s = 2.6", "spindle.timeout_s", "2.63 s"),  # 3500 / 1500 + .3
         ("rpm = [50, 3500]", "rpm = [4, 3500]", "spindle.stop_below", "counts as stopped"),
-        ('{ at = "IN-3" }', '{ at = "OUT-1" }', "io.in.hold.at", "io.out.coolant is on this one"),
+        ('{ at = "IN-3" }', '{ at = "OUT-1" }', "io.in.hold.at", "io.out.coolant already uses"),
         ('coolant = { at = "OUT-1", safe = false }', "", "io.out.coolant", "M08"),
         ('start = { at = "IN-2" }', "", "io.in.start", "two-hand relay"),
         ('collet_closed = { at = "IN-5" }', "", "io.in.collet_closed", "collet open"),
         ('16 = { output = "live1"', '16 = { output = "mill"', "m_codes.16.output", "live1"),
-        ('25 = { output = "catcher"', '8 = { output = "catcher"', "m_codes.8", "meaning of its own"),
+        ('25 = { output = "catcher"', '8 = { output = "catcher"', "m_codes.8", "M08 has a fixed meaning"),
         ('25 = { output = "catcher"', '2500 = { output = "catcher"', "m_codes.2500", "0…999"),
     ],
 )
@@ -196,7 +202,7 @@ def test_output_without_safe_state_is_refused() -> None:
 def test_output_that_nothing_switches_off_is_refused() -> None:
     found = only(changed('26 = { output = "catcher", on = false }', ""))
     assert found.path == "m_codes.25"
-    assert "no M code switches it off" in found.expected
+    assert found.expected == wording("machine.output-stays-on", output="catcher")
 
 
 def test_all_errors_come_in_one_pass() -> None:

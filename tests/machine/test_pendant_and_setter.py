@@ -18,6 +18,7 @@ from drivers.clocks import StepClock
 from drivers.pendant.pendant_buttons import AxisRange
 from drivers.pendant.pendant_table import PendantModel
 from tests.drivers.pendant.made import ABS_HAT0X, Peer
+from tests.texts import text as wording
 
 PENDANT = """
 [pendant]
@@ -78,30 +79,38 @@ def test_a_pendant_and_a_setter() -> None:
         (
             'start = { at = "IN-2" }',
             'start = { at = "pendant.BTN_START" }',
-            "nothing is started from a pendant",
+            "a pendant cannot start anything",
         ),
-        ("wheel_x =", "cycle_start =", "nothing is started from a pendant"),
-        ("wheel_x =", "palm_left =", "nothing is started from a pendant"),
-        ("wheel_x =", "spindle_auto =", "nothing is started from a pendant"),
+        ("wheel_x =", "cycle_start =", "a pendant cannot start anything"),
+        ("wheel_x =", "palm_left =", "a pendant cannot start anything"),
+        ("wheel_x =", "spindle_auto =", "a pendant cannot start anything"),
         (
             'estop = { at = "IN-1", active = "low" }',
             'estop = { at = "pendant.BTN_A" }',
-            "USB is no wire for it",
+            "USB is not suitable for this signal",
         ),
-        ('guard = { at = "IN-4" }', 'guard = { at = "pendant.BTN_A" }', "USB is no wire for it"),
-        ('coolant = { at = "OUT-1"', 'coolant = { at = "pendant.BTN_A"', "switches nothing"),
-        ("pendant.BTN_2", "pendant.BTN_0", "io.in.wheel_x is on this one"),
-        ("pendant.BTN_2", "pendant.BTN_NOPE", "expected a button by its name in Linux"),
-        ("pendant.REL_DIAL", "pendant.BTN_A", "expected a wheel by its name in Linux"),
+        (
+            'guard = { at = "IN-4" }',
+            'guard = { at = "pendant.BTN_A" }',
+            "USB is not suitable for this signal",
+        ),
+        ('coolant = { at = "OUT-1"', 'coolant = { at = "pendant.BTN_A"', "a pendant cannot switch an output"),
+        ("pendant.BTN_2", "pendant.BTN_0", "io.in.wheel_x already uses"),
+        ("pendant.BTN_2", "pendant.BTN_NOPE", "expected the Linux name of a button"),
+        ("pendant.REL_DIAL", "pendant.BTN_A", "expected the Linux name of a wheel"),
         ("wheel_step", "wheel_axis", "a button or switches, not both"),
-        ("jog_z_minus", "jog_y_minus", "no jog button: one of jog_rapid, jog_x_plus"),
-        ('[pendant]\ndevice = "0b33:0030"\ncounts = "place"\n', "", "[pendant]: missing"),
+        ("jog_z_minus", "jog_y_minus", "is not a jog button; use one of jog_rapid, jog_x_plus"),
+        (
+            '[pendant]\ndevice = "0b33:0030"\ncounts = "place"\n',
+            "",
+            f"[pendant]: {wording('machine.pendant-missing', used='io.in.wheel_x')}",
+        ),
         ('counts = "place"', 'counts = "clicks"', "pendant.counts"),
-        ("handwheel = {", "feed_pot = {", "only a handwheel is at a pendant"),
-        ('probe = { at = "IN-7" }\n', "", "io.in.probe: missing; [setter] needs its input"),
-        ("speed = 20\nslow", "speed = 100\nslow", "over setter.overtravel; go slower"),
+        ("handwheel = {", "feed_pot = {", "the handwheel is the only analog input that can be on a pendant"),
+        ('probe = { at = "IN-7" }\n', "", f"io.in.probe: {wording('machine.setter-needs-input')}"),
+        ("speed = 20\nslow", "speed = 100\nslow", "exceeds setter.overtravel; reduce the speed"),
         ("slow = 0.5", "slow = 15", "setter.slow"),
-        ("speed = 20\nslow = 0.5", "speed = 0.3\nslow = 0.5", "faster than setter.speed"),
+        ("speed = 20\nslow = 0.5", "speed = 0.3\nslow = 0.5", wording("machine.setter-too-fast")),
         ("width = 0.25", "width = 0", "setter.width"),
     ],
 )

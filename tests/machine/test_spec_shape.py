@@ -8,6 +8,7 @@ import resources
 from app.compose.machine_files import load_machine, parse_machine
 from core.table_schema import Finding, MachineFileError
 from tests.machine.spoil import spec_text
+from tests.texts import text as wording
 
 
 def findings(text: str) -> list[Finding]:
@@ -47,8 +48,9 @@ def test_the_example_on_a_bus_wants_the_switch_wired_and_says_the_line() -> None
     told = {finding.path: finding.expected for finding in findings(text)}
     # bits 0 to 5 of the module's first byte are taken by estop … end_of_bar
     assert told["io.analog.spindle_pot.switch"].endswith('spindle_auto = { at = "401.6000.1.6" }')
-    assert "100 or more" in told["machine.commit_ms"]  # three records of 20 ms and a restart of 40 ms
-    assert told["spindle.driver"].startswith("expected cia402 or vfd")
+    assert "at least 100" in told["machine.commit_ms"]  # three records of 20 ms and a restart of 40 ms
+    spindle = wording("machine.no-spindle-driver", allowed="cia402 or vfd", backend='"canopen"')
+    assert told["spindle.driver"] == spindle
 
 
 def test_a_switch_of_another_name_has_no_button_on_the_screen() -> None:

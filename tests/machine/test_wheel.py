@@ -7,6 +7,7 @@ import pytest
 import resources
 from app.compose.machine_files import parse_machine
 from tests.machine.test_hardware import assert_refused, changed
+from tests.texts import text as wording
 
 PADS = "[io.analog]"
 WHEEL = '\nhandwheel = { at = "401.6401.3", counts_per_click = -4 }'
@@ -27,10 +28,15 @@ def test_a_wheel_with_its_switches() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "path", "expected"),
     [
-        ("= -4", "= 0", "io.analog.handwheel.counts_per_click", "negative where"),
+        ("= -4", "= 0", "io.analog.handwheel.counts_per_click", "negative if"),
         ("= -4", "= 2000", "io.analog.handwheel.counts_per_click", "1000"),
         ("= -4", "= 1.5", "io.analog.handwheel.counts_per_click", "whole"),
-        ("range = [0, 1.5]", "counts_per_click = 2", "io.analog.feed_pot.counts_per_click", "no clicks"),
+        (
+            "range = [0, 1.5]",
+            "counts_per_click = 2",
+            "io.analog.feed_pot.counts_per_click",
+            wording("machine.pot-without-clicks"),
+        ),
     ],
 )
 def test_counts_that_make_no_sense(old: str, new: str, path: str, expected: str) -> None:
@@ -39,7 +45,7 @@ def test_counts_that_make_no_sense(old: str, new: str, path: str, expected: str)
 
 def test_switches_of_a_wheel_that_is_not_there() -> None:
     text = changed("[io.in]", SWITCHES)
-    assert_refused(text, "io.in.wheel_x", "expected [io.analog] handwheel")
+    assert_refused(text, "io.in.wheel_x", "add [io.analog] handwheel")
 
 
 def test_a_switch_that_selects_nothing() -> None:
@@ -50,4 +56,4 @@ def test_a_switch_that_selects_nothing() -> None:
 
 def test_a_controller_that_counts_nothing() -> None:
     text = resources.machine_file("gt75-grblhal.toml") + '\n[io.analog]\nhandwheel = { at = "in.0" }\n'
-    assert_refused(text, "io.analog.handwheel", "no input that counts")
+    assert_refused(text, "io.analog.handwheel", "does not have a counter input")

@@ -148,7 +148,7 @@ def test_clear_asks_once_more(room: Room) -> None:
     room.desk.answer()
     room.settle(page)
     assert room.store.secondary() == {}
-    assert page.old_to_new == "2 offsets changed. F5: show them"
+    assert page.old_to_new == text("offsets.count-changed", count=2)
     page.undo()
     room.confirm()
     room.settle(page)

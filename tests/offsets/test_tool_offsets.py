@@ -145,7 +145,7 @@ def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> No
     assert room.desk.book.master == 0
     grid.choose(1, 0)
     room.enter(grid, "1")
-    assert "PRESS F3" in room.desk.notice  # from the master they are only shown
+    assert room.desk.notice == text("offsets.shown-from-master")  # from the master they are only shown
     assert room.store.tools()[1].x == -12.7
 
 
@@ -216,7 +216,7 @@ def test_another_unit_in_the_middle_gives_the_entry_up(room: Room) -> None:
     room.at(metric=True)
     grid.look(room.now[0])
     assert grid.text == ""
-    assert "NOTHING SAVED" in room.desk.notice
+    assert room.desk.notice == text("offsets.units-changed")
 
 
 def test_a_part_that_switches_to_diameters_leaves_an_entry_of_wear_alone(room: Room) -> None:

@@ -11,7 +11,7 @@ from core.store.offset_fields import TOOL_KINDS
 from core.store.store_rows import Kind, ShapeRow
 from tests.offsets.conftest import LIMIT, Room
 from tests.screen.yes import read
-from tests.texts import text
+from tests.texts import shows, text
 
 INCH = 25.4
 
@@ -178,7 +178,13 @@ def test_f3_takes_the_shape_away_after_asking_and_undo_brings_it_back(room: Room
             1,
             "insert",
             ("Enter", "Delete", "CNXG432", "Enter"),
-            "CNXG432: character 3, X, is not a valid tolerance class",
+            text(
+                "offsets.insert-invalid",
+                code="CNXG432",
+                what="tolerance class",
+                where="character 3 (X)",
+                known=" ".join("ACEFGHJKLMNU"),
+            ),
         ),
         (1, "nose_radius", (".26", "Enter"), "the nose radius is too large for insert CNMG432"),
         (
@@ -204,7 +210,7 @@ def test_value_that_means_nothing_is_refused_and_stays_to_be_mended(
     write(page, *keys)
     if not says:  # a contradiction with another field is kept, and shown there
         save(room, page)
-        assert "on a rear tool the tip is at X+" in page.prompt(room.now[0])
+        assert shows(page.prompt(room.now[0]), "offsets.front-quadrant", quadrant=3, place="X+")
         assert page.outline is None
         return
     assert says in room.desk.notice

@@ -291,7 +291,7 @@ def test_sizes_that_nobody_has_stated_are_named() -> None:
 
 
 def test_code_that_means_nothing_is_not_drawn() -> None:
-    with raises_code(InsertCodeError, "unknown-character", "3, X"):
+    with raises_code(InsertCodeError, "unknown-character", "character 3 (X)"):
         outline(ToolShape(tip=3, insert="CNXG 120408"))
 
 

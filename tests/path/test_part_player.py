@@ -16,6 +16,7 @@ from app.path.path_picture import Picture
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.part.solid_view import SolidView
+from tests.texts import begins
 
 HEAD = "G90G94F300\nM03S1500\nT1\n"
 SHAFT = HEAD + "X.6Z.05\nX.4\nG95F.004Z-.5\nX.45Z-.6\nX.55\nG94F300Z.05\nX.3\nG95F.004Z-.3\nX.55\nM30\n"
@@ -209,7 +210,7 @@ def test_of_a_program_that_is_too_long_the_view_says_why(
     assert views_of(made, part=True)[-1] == (Aspect.SECTION,)
     assert views_of(made) == [(Aspect.PATH,)]
     player.show(made)
-    assert player.trouble.startswith("12 blocks")
+    assert begins(player.trouble, "findings.part-too-long", blocks=12, most=5)
     assert settled(player).played is None
 
 

@@ -15,6 +15,7 @@ from core.proving.part_proof import prove_with_part
 from core.proving.part_report import PartReport
 from core.proving.part_setting import PartSetting
 from tests.proving.test_part_proof import WAYS, text
+from tests.texts import text as text_of
 
 # 55° in a holder of 93°: the back of the insert rises at 180 - 93 - 55 = 32°.
 RIGHT = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.4, insert="DCMT11T304")
@@ -196,8 +197,8 @@ def test_what_could_not_be_checked_is_said() -> None:
     turned = "T1\nX[.6]Z[.05]\nX[.4]\nG95F[.004]Z[-.3]\nX[.6]\nG94F[300]Z[1]\n"
     plain = turned + "T3\nX[0]Z[.1]\nG95F[.004]Z[-.3]\nG94F[300]Z[1]"
     said = part_of(text(plain), shapes={3: ToolShape(ToolKind.DRILL, diameter=6.0)}).unchecked
-    assert said[0] == "T1: holder, edge length and hand not defined"
-    assert said[1] == "T3: maximum depth (no flute length defined)"
+    assert said[0] == text_of("findings.shape-unknown", tools="T1")
+    assert said[1] == text_of("findings.depth-unknown", tools="T3")
     assert len(said) == 4  # chuck, and its speed
     held = Clamping(100.0, 40.0, 10.0, 60.0, 5000.0)
     assert part_of(text(plain), clamping=held).unchecked == ()

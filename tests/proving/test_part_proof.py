@@ -25,6 +25,8 @@ from core.proving.part_proof import prove_with_part
 from core.proving.part_report import PartReport
 from core.proving.part_setting import PartSetting
 from core.proving.proof_report import Report
+from tests.texts import shows
+from tests.texts import text as text_of
 from tests.worked import FOLDER, worked
 
 INCH = 25.4
@@ -140,7 +142,8 @@ def test_the_three_slips_are_warnings_without_a_word_about_stock_and_tools(slip:
     _, part = proved(text(SOUND), None, {})
     assert checks(part) == []
     assert part.stock is not None
-    assert part.assumed == ("T1 is treated as a turning tool (based on its moves)",)
+    by_moves = text_of("findings.by-its-moves")
+    assert part.assumed == (text_of("findings.treated-as", tool="T1", kind="a turning tool", why=by_moves),)
     _, part = proved(text(SOUND.replace(*slip)), None, {})
     (first, *_) = part.findings
     assert (first.line, first.severity, "stock" in first.assumed) == (9, "warning", True)
@@ -180,7 +183,10 @@ def test_a_bar_that_is_fed_begins_anew_at_its_stop() -> None:
 def test_a_comment_says_more_than_the_moves() -> None:
     drilled = "T7(1/4 DRILL)\nX[0]Z[.1]\nG95F[.004]Z[-.5]\nG94F[300]Z[1]"
     _, part = proved(text(drilled), bar(20.0, 0.0, -40.0), {})
-    assert part.assumed == ("T7 is treated as a drill, 0.250 in (based on its comment)",)
+    by_comment = text_of("findings.by-its-comment")
+    assert part.assumed == (
+        text_of("findings.treated-as", tool="T7", kind="a drill, 0.250 in", why=by_comment),
+    )
     assert part.last is not None
     assert part.last.bore is not None
     assert part.last.bore[0][1] == pytest.approx(3.175, abs=0.001)
@@ -342,7 +348,7 @@ def test_of_a_very_long_program_the_part_is_made_where_its_stock_is_said(
     monkeypatch.setattr(part_proof, "MOST_MOVES", 5)
     _, part = proved(text(SOUND))
     assert (part.stock, part.removed, part.findings) == (None, 0.0, ())
-    assert "too many to compute the part without specified stock" in part.assumed[0]
+    assert shows(part.assumed[0], "findings.no-part-without-stock")
     _, part = proved(text(SOUND), BAR)
     assert part.removed > 0.0
 
@@ -407,7 +413,7 @@ def test_a_spindle_that_stands_again_turns_nothing() -> None:
     stock = bar(INCH, 0.0, -2 * INCH)
     (_, alone), (report, part) = proved(text(turned), stock), proved(still, stock)
     assert part.removed == pytest.approx(alone.removed)
-    assert "cuts of T1 with the spindle stopped, from line 11 on" in part.unchecked
+    assert text_of("findings.cuts-stopped", tool="T1", line=11) in part.unchecked
     assert [each for each in report.errors if each.check] == []
     _, running = proved(still.replace("M05\n", ""), stock)
     assert running.removed > 1.5 * alone.removed

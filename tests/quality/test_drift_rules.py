@@ -49,4 +49,4 @@ def test_points_that_do_not_scatter_tell_nothing() -> None:
 
 def test_each_has_words() -> None:
     assert len({words for words, _ in RULES.values()}) == 8
-    assert findings(Chart(np.asarray([4.0]), 0, -3, 3))[0].words == "beyond a control limit"
+    assert findings(Chart(np.asarray([4.0]), 0, -3, 3))[0].words == ("one point beyond a control limit")

@@ -152,7 +152,7 @@ def test_a_port_that_is_not_there(bench: Bench) -> None:
     assert gone.turn() == ""
     bench.wire = gone
     (why,) = bench.hears(bool)
-    assert "there is no such port" in str(why)
+    assert "this port does not exist" in str(why)
 
 
 def test_silence_is_told(bench: Bench) -> None:

@@ -23,6 +23,7 @@ from core.store.store import Store
 from core.store.store_rows import EventRow
 from core.store.tool_lives import LifeRow
 from tests.coded import raises_code, recorded_refusals
+from tests.texts import text
 
 DAY = "2026-03-02T"
 EIGHT = Shift(
@@ -210,7 +211,7 @@ class TestCommand:
         assert main(["shift", *self.TIMES]) == 0
         said = capsys.readouterr().out
         assert "Parts: 3\n" in said
-        assert "27.1 %: in cycle 2:10:00 of 8:00:00" in said
+        assert text("quality.in-cycle", share=27.1, run="2:10:00", planned="8:00:00") in said
         assert main(["shift", *self.TIMES, "--json"]) == 0
         told = json.loads(capsys.readouterr().out)
         assert (told["parts"], told["producing"], told["stopped"]) == (3, 7800.0, 2700.0)

@@ -10,6 +10,7 @@ import pytest
 
 from app.scope.analyses import Analyses, Kind, analysed, last_run, scaled
 from tests.scope.played_record import record_of, seconds
+from tests.texts import text
 
 
 def turned_arc() -> object:
@@ -104,7 +105,7 @@ def test_a_drawing_names_its_axes_with_the_unit_that_is_shown() -> None:
 
 def test_what_is_not_there_is_told() -> None:
     record = record_of(seconds(0.0, 3.0))
-    assert "no arc" in analysed(Kind.BALL_BAR, record, 0, {}).why
+    assert analysed(Kind.BALL_BAR, record, 0, {}).why == text("scope.no-arc")
     still = record_of(seconds(0.0, 3.0), spindle_turns=np.full(3001, 7.0))
     assert "does not turn" in analysed(Kind.THREAD, still, 0, {}).why
     assert (

@@ -11,6 +11,7 @@ from app.scope.axis_response import last_move, response_sheet
 from core.records.record_errors import AnalysisError
 from tests.coded import raises_code
 from tests.scope.played_record import record_of, seconds
+from tests.texts import text
 
 DRIVES = {axis.name: axis for axis in load_machine(None).axes}
 TAU = 0.004
@@ -57,9 +58,9 @@ def test_at_twice_the_speed_it_is_twice_as_far_behind() -> None:
 
 def test_what_would_trip_is_said() -> None:
     """A lag of a tenth of a second: far outside a quarter of any window."""
-    words = figures_of(moved(tau=0.1, way=8.0))
-    assert words["WITH 25 % OF THE LIMIT"].startswith("trips at")
-    assert figures_of(moved(tau=1e-5))["WITH 25 % OF THE LIMIT"] == "no trip"
+    words, reduced = figures_of(moved(tau=0.1, way=8.0)), text("scope.limit-reduced", share="25 %")
+    assert words[reduced].startswith("trips at")
+    assert figures_of(moved(tau=1e-5))[reduced] == "no trip"
 
 
 def test_without_a_move_there_is_nothing() -> None:

@@ -14,6 +14,7 @@ from app.scope.signals import Quantity, first_chosen, signals_of
 from core.executor.snapshot import State
 from core.records.record import channels_of
 from tests.scope.played_record import CHANNELS, STATES, PlayedSamples, record_of, seconds
+from tests.texts import text
 
 SIGNALS = {each.key: each for each in signals_of(CHANNELS)}
 
@@ -275,7 +276,7 @@ def test_a_rotary_axis_is_in_degrees() -> None:
 
 
 def test_what_is_derived_says_over_what_time() -> None:
-    assert SIGNALS["X velocity"].note == "over 8 ms"
+    assert SIGNALS["X velocity"].note == text("scope.window", ms=8)
     assert SIGNALS["X actual"].note == ""
 
 

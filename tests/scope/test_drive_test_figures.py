@@ -25,6 +25,7 @@ from core.records.record_errors import AnalysisError
 from core.records.step_response import bandwidth, narrowest_window, sine_response, speed_of_window
 from tests.coded import raises_code
 from tests.scope.played_record import RATE, record_of, seconds
+from tests.texts import text
 
 DRIVES = {axis.name: axis for axis in load_machine(None).axes if not axis.rotary}
 LIMITS = Limits(top=42.0, amax=3000.0, rate=RATE)
@@ -109,7 +110,7 @@ def test_sines_have_gain_and_lag_of_the_formula_and_so_the_bandwidth() -> None:
     assert seen.down == pytest.approx(1.0 / (2.0 * math.pi * TAU), rel=0.02)
     assert seen.quarter is None
     words = {row.cells[0]: row.cells[2] for row in figures_sheet("", found, True).rows}
-    assert words["90° PHASE LAG"] == "not reached up to 80 Hz"
+    assert words["90° PHASE LAG"] == text("scope.not-reached", most=80)
 
 
 def test_the_analyses_page_knows_a_record_of_a_test() -> None:

@@ -15,6 +15,7 @@ from core.records.record import FloatArray, Record
 from core.records.record_errors import AnalysisError
 from tests.coded import raises_code
 from tests.scope.played_record import record_of, seconds
+from tests.texts import text
 
 MODEL = load_machine(None).spindle  # at speed within 5 %
 TAU = 0.2  # s
@@ -95,7 +96,7 @@ def test_its_sheet_and_drawing() -> None:
     page.found = analysed(Kind.SPINDLE, turned((1.0, 1000.0)), 0, {}, MODEL)
     rows = {row.cells[0]: row.cells[1] for row in page.sheet().rows}
     assert rows["SPEED"] == "0 → 1000 rpm"
-    assert rows["WITHIN 5 % AFTER"] == "0.600 s"
+    assert rows[text("scope.settled-after", share="5 %")] == "0.600 s"
     drawing = scaled(page.drawing(), 1.0 / 25.4)
     assert drawing.curves[0][:, 1].max() == pytest.approx(1000.0, abs=0.2)  # rpm in inch too
     page.close()

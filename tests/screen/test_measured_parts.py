@@ -21,10 +21,11 @@ from app.screen import page_table
 from core.executor.snapshot import State
 from tests.screen.day import Day, Key, begun
 from tests.screen.yes import yes
-from tests.texts import begins, fragment, shows
+from tests.texts import Pattern, begins, fragment, pattern, shows
 from tests.texts import text as wording
 
 PEG = "(PEG)\nG90G94F300G72\nT1\nM03S2000\nG00X.7Z.1\nX.5\nG01G94F60Z-.3\nX.7\nG00Z1\nM05\nM30\n"
+NUMBER = Pattern(r"\d+")
 FEATURES, READINGS, CHARTS, LIFE, TRENDS = "12345"
 
 
@@ -475,10 +476,10 @@ def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
     day.sees(lambda: "3 parts" in cells(day)[0][1])
     rows = texts(day)
     last = day.shot.last_cycle
-    assert rows["CYCLE TIME"].startswith(f"last {last:.1f} s")
+    assert begins(rows["CYCLE TIME"], "measure.cycle-times", last=f"{last:.1f} s", count=3)
     assert rows["WEAR"] == wording("measure.no-correction-yet")
     assert "BETWEEN CYCLES" in rows["STOPS"]
-    assert re.fullmatch(r"last \d+ %, highest \d+ %", rows["SPINDLE LOAD"])
+    assert re.fullmatch(pattern("measure.loads", last=NUMBER, highest=NUMBER), rows["SPINDLE LOAD"])
     for _ in range(4):
         day.key(Key.Key_Down)
         day.run(0.05)

@@ -99,7 +99,7 @@ def test_every_difference_is_marked_by_its_sign(operator: Operator) -> None:
     rows = {row.label: row for row in page.state.shown.rows}
     assert (rows["X VALUES"].wanted, rows["X VALUES"].now) == ("G72 Ø", "G73 R")
     assert (rows["SPINDLE"].wanted, rows["SPINDLE"].now) == ("M03", "M05")
-    assert (rows["F USED AS RAPID"].wanted, rows["FEED"].wanted) == ("300.00", "0.00600 in/rev")
+    assert (rows[text("search.first-feed")].wanted, rows["FEED"].wanted) == ("300.00", "0.00600 in/rev")
     assert rows["COOLANT"].differs
     assert not rows["UNITS"].differs
     assert page.state.grab().width() > 0
@@ -325,7 +325,8 @@ def test_the_pass_of_a_loop_is_chosen_by_keys_and_by_fingers(operator: Operator)
         == f"{text('search.state-at-line', line=8)}, {text('search.pass', number=3, count=5)}"
     )
     loop = page.state.shown.rows[0]
-    assert (loop.label, loop.wanted, loop.now) == ("PASS OF LINES 6-12", "3 OF 5", "—")
+    assert loop.label == text("search.pass-of-lines", first=6, last=12)
+    assert (loop.wanted, loop.now) == ("3 OF 5", "—")
     rows = {row.label: row.wanted for row in page.state.shown.rows}
     assert rows["X Ø"] == "0.37500"  # .54 and .055 in, .02 out and .02 in again, in each pass
     operator.key(Key.Key_Right)

@@ -108,7 +108,7 @@ def test_a_target_stops_the_repeating_and_is_told(hands: Hands, journal: Journal
     page = open_function(hands, 2)
     hands.type("2")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: cells(page, 1) == ("STOP AT", "2"))
+    hands.sees(lambda: cells(page, 1) == ("PART TARGET", "2"))
     hands.machine.now = replace(hands.machine.now, parts=1, cycle_repeat=True, counts=True, state=State.WAIT)
     hands.sees(lambda: SetSwitch("cycle_repeat", False) in hands.machine.posted)
     assert begins(hands.prompt(), "screen.last-part-of-target")
@@ -262,7 +262,7 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     (folder / "2026-11-22-bad.turndesk.db").write_bytes(b"no store any more")
     store.set_tool(3, "x", x=2.0).result(60)
     hands.key(Key.Key_F4)
-    said = ["RESTORE: BACKUP IS INTACT", "NOTHING: BACKUP DAMAGED"]
+    said = ["RESTORE: BACKUP IS INTACT", "NO ACTION: BACKUP IS DAMAGED"]
     hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:3]] == said)
     hands.key(Key.Key_Down)
     hands.sees(lambda: page.table.sheet.notes[0] == wording("screen.other-than-now", what="tool offsets 1"))
@@ -366,7 +366,7 @@ def test_a_run_that_will_be_no_part_is_not_the_last_of_the_target(hands: Hands, 
     page = open_function(hands, 2)
     hands.type("1")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: cells(page, 1) == ("STOP AT", "1"))
+    hands.sees(lambda: cells(page, 1) == ("PART TARGET", "1"))
     hands.machine.now = replace(hands.machine.now, cycle_repeat=True, counts=False, state=State.WAIT)
     hands.window.refresh()
     assert SetSwitch("cycle_repeat", False) not in hands.machine.posted

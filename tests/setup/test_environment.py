@@ -171,7 +171,7 @@ def test_a_network_that_does_not_answer_is_told_as_one(shop: Path) -> None:
     )
     assert told.returncode == 2
     assert "is there a network" in told.stderr
-    assert "docs/setup.md" in told.stderr
+    assert "docs/integrator/install.md" in told.stderr
 
 
 @needs_pip

@@ -17,6 +17,7 @@ from core.shapes.shape_setting import Setting, Shop
 from core.shapes.shape_table import HELPERS
 from core.shapes.tapping import TAP
 from tests.shapes.hand import Programmer, bad, proved
+from tests.texts import text as wording
 
 INCH, MM = Setting(), Setting(metric=True)
 TAPER: dict[str, Value] = {"SMALL": 0.5, "LARGE": 1.0, "LONG": 1.0, "ANGLE": math.degrees(math.atan(0.25))}
@@ -40,16 +41,17 @@ def test_a_taper_is_written_and_told() -> None:
     assert TRIANGLE.says(one, INCH) == (
         "slant length 1.0308",
         "included angle 28.0725°",
-        "taper on the diameter 1 : 2",
+        wording("shapes.taper-ratio", ratio="1 : 2"),
     )
 
 
 def test_a_triangle_that_is_none() -> None:
-    assert "enter it" in said(filled(TRIANGLE, {"SMALL": 0.5, "LARGE": 1.0}, INCH), INCH)[0]
+    assert (
+        wording("shapes.value-missing", label="LENGTH")
+        in said(filled(TRIANGLE, {"SMALL": 0.5, "LARGE": 1.0}, INCH), INCH)[0]
+    )
     four = filled(TRIANGLE, {**TAPER, "ANGLE": 20.0}, INCH)
-    assert said(four, INCH) == [
-        "These four values do not make a taper: the angle would be 14.04. Clear one of them."
-    ]
+    assert said(four, INCH) == [wording("shapes.no-taper", angle=14.04)]
     through = filled(TRIANGLE, {"LARGE": 0.5, "LONG": 1.0, "ANGLE": 30.0}, INCH)
     assert "crosses the axis" in said(through, INCH)[0]
 
@@ -99,13 +101,15 @@ def test_passes_of_a_thread() -> None:
     assert one.n("FIRST") == pytest.approx(0.01)
     assert one.lines(INCH) == ["G33X.44Z-1I.02K.05C"]
     told = THREADS.says(one, INCH)
-    assert told[:2] == ("depth .03 per side, first pass .01", "the tool starts at X .48")
-    assert told[2].split()[4:] == [
-        f"{0.5 - 0.02 * math.sqrt(k):.4f}".rstrip("0").lstrip("0") for k in range(1, 10)
-    ]
+    assert told[:2] == (
+        wording("shapes.thread-depth", depth=".03", first=".01"),
+        wording("shapes.starts-at", value=".48"),
+    )
+    places = [f"{0.5 - 0.02 * math.sqrt(k):.4f}".rstrip("0").lstrip("0") for k in range(1, 10)]
+    assert told[2] == wording("shapes.x-of-passes", positions=" ".join(places))
     assert filled(THREADS, {**own, "FIRST": 0.01}, INCH).n("PASSES") == pytest.approx(9.0)
     torn = filled(THREADS, {**own, "FIRST": 0.01, "PASSES": 4.0}, INCH)
-    assert "4 passes need a first pass depth of .015" in said(torn, INCH)[0]
+    assert wording("shapes.first-pass-given", count=4, depth=".015") == said(torn, INCH)[0]
 
 
 # --- templates, in the editor
@@ -173,10 +177,14 @@ def test_a_tap_goes_in_and_out_at_its_pitch() -> None:
 def test_the_hole_before_a_tap() -> None:
     """M10: minor diameter of 6H from 8.376 to 8.676 (ISO 965-1); G 1/2: from 18.631 to 19.172 (ISO 228-1)."""
     one = filled(TAP, {"SERIES": "M", "SIZE": "M10", "DEEP": 12.0}, MM)
-    assert TAP.says(one, MM) == ("hole before tapping: 8.53, from 8.38 to 8.68", "tap drill: 8.5 mm")
+    assert TAP.says(one, MM) == (
+        wording("shapes.hole-before-tapping", size="8.53", smallest="8.38", largest="8.68"),
+        "tap drill: 8.5 mm",
+    )
     assert one.n("PITCH") == 1.5
     pipe = filled(TAP, {"SERIES": "BSP", "SIZE": "1/2", "DEEP": 15.0}, MM)
-    assert TAP.says(pipe, MM)[0] == "hole before tapping: 18.9, from 18.63 to 19.17"
+    limits = {"smallest": "18.63", "largest": "19.17"}
+    assert TAP.says(pipe, MM)[0] == wording("shapes.hole-before-tapping", size="18.9", **limits)
 
 
 DRILLS = {
@@ -232,13 +240,20 @@ def test_no_drill_is_told_where_none_is_sold() -> None:
     ("typed", "says"),
     [
         ({"SERIES": "NPT", "SIZE": "1/4"}, "NPT cannot be tapped here"),
-        ({"SIZE": "9/7"}, "UNC has no size 9/7"),
-        ({"SIZE": "1/4-20", "SHORT": 0.5}, "stops 0.5 short of depth 0.5"),
+        ({"SIZE": "9/7"}, wording("shapes.no-such-size", series="UNC", size="9/7")),
+        ({"SIZE": "1/4-20", "SHORT": 0.5}, wording("shapes.tap-stops-short", short=0.5, depth=0.5)),
         (
             {"SIZE": "1/4-20", "T": 5.0},
-            "T5 has a pitch of 0.03937 in its tool data, but this thread has 0.05",
+            wording(
+                "shapes.pitch-of-thread",
+                words=wording("shapes.pitch-of-tool", tool="T5", pitch=0.03937),
+                pitch=0.05,
+            ),
         ),
-        ({"SIZE": "1/4-20", "DEEP": 1.0, "T": 4.0}, "Depth 1 is more than the flute length of T4, 0.7874"),
+        (
+            {"SIZE": "1/4-20", "DEEP": 1.0, "T": 4.0},
+            wording("shapes.beyond-flutes", depth=1, tool=4, length=0.7874),
+        ),
     ],
 )
 def test_what_no_tap_does(typed: dict[str, Value], says: str) -> None:

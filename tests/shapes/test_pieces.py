@@ -12,6 +12,8 @@ from core.shapes.shape_fields import Value
 from core.shapes.shape_setting import Setting, Shop
 from core.shapes.shape_table import SHAPES
 from tests.shapes.hand import Programmer, bad, proved
+from tests.texts import shows
+from tests.texts import text as wording
 
 SHOP = Shop(slide_accel=3048.0)
 PROFILE = (Row(0.0, 0.0), Row(0.5, chamfer=0.05), Row(z=-0.5), Row(0.7, -0.6, arc=0.2), Row(0.7, -0.9))
@@ -348,8 +350,7 @@ def test_a_comment_that_is_spoilt_is_told_with_its_line(spoilt: str, line: int) 
     hand = Programmer(text=text)
     hand.open(text.replace(DRILLED, spoilt), line)
     assert hand.shapes.form is None
-    told = "LINE 3: THE COMMENT OF THIS DRILL WAS EDITED AND IS NOT READABLE. UNDO THE EDIT"
-    assert hand.shapes.prompt() == told
+    assert hand.shapes.prompt() == wording("shapes.comment-edited", line=3, shape="DRILL")
 
 
 @pytest.mark.parametrize(
@@ -360,4 +361,4 @@ def test_a_comment_of_another_hand_is_none_of_ours(comment: str, line: int) -> N
     text = Programmer().strike("n§d.25⏎.5§").close()
     hand = Programmer(text=text)
     hand.open(text.replace(DRILLED, f"T1{comment}" if line > 2 else comment), line)
-    assert "CANNOT BE READ" not in hand.shapes.prompt()
+    assert not shows(hand.shapes.prompt(), "shapes.comment-edited")

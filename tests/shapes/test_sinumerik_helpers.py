@@ -13,6 +13,7 @@ from core.language.source import Dialect
 from core.shapes.shape_setting import Setting, Shop
 from core.shapes.shape_table import HELPERS
 from tests.shapes.test_sinumerik_shapes import NEAR, metal, strike
+from tests.texts import begins
 
 SHOP = Shop(slide_accel=3048.0, chuck=(69, 68))
 HEAD = "G54 G18 G90 G95 G710 DIAMON\n"
@@ -104,4 +105,4 @@ def test_a_bar_is_fed_by_the_codes_of_the_chuck() -> None:
 
 def test_a_bar_without_codes_of_a_chuck_is_refused() -> None:
     _, said = written("b5⏎3⏎22§", HEAD, shop=replace(SHOP, chuck=None))
-    assert said.startswith("No M code of this machine opens and closes the chuck")
+    assert begins(said, "shapes.no-chuck-codes")

@@ -14,6 +14,7 @@ from core.shapes.shape_table import SHAPES
 from core.shapes.thread_limits import Limits, classes, limits, pipe_length
 from core.shapes.thread_series import METRIC, Series, size_of
 from tests.shapes.test_ten_parts import blocks_of
+from tests.texts import text as wording
 
 # ASME B1.1, tables of limits: major, pitch (least, most); minor of internal threads.
 OUTSIDE = [
@@ -174,13 +175,13 @@ def thread(typed: dict[str, float | str], *, metric: bool = False) -> Filled:
 def test_a_size_that_the_series_has_not_is_refused() -> None:
     one = thread({"SIZE": "7/13", "LONG": 0.5, "PITCH": 0.05, "CREST": 0.5, "ROOT": 0.4, "RPM": 300.0})
     said = {each.word: each.text for each in one.refusals(Setting())}
-    assert said == {"SIZE": "UNC has no size 7/13: choose one with the arrows."}
+    assert said == {"SIZE": wording("shapes.no-such-size", series="UNC", size="7/13")}
 
 
 def test_a_class_of_the_other_side_is_refused() -> None:
     one = thread({"SIZE": "1/2", "LONG": 0.5, "CLASS": "2B"})
     assert [each.text for each in one.refusals(Setting())] == [
-        "CLASS 2B is not one of 2A, 1A, 3A: choose one of these."
+        wording("shapes.no-such-class", tolerance="2B", allowed="2A, 1A, 3A")
     ]
     assert classes(Series.UNC, inside=False) == ("2A", "1A", "3A")
 
@@ -255,8 +256,8 @@ def test_a_thread_of_its_own_figures_has_the_angle_of_its_tool() -> None:
     assert one.n("INFEED") == 14.0
     assert not one.refusals(setting)
     named = filled(SHAPES["R"], {"SERIES": "M", "SIZE": "M20", "LONG": 30.0}, setting)
-    assert [each.text[:44] for each in named.refusals(setting)] == [
-        "T1 cuts 30°, but this thread has 60°: use an"
+    assert [each.text for each in named.refusals(setting)] == [
+        wording("shapes.thread-angle", tool="T1", point=30, angle=60)
     ]
 
 
@@ -276,8 +277,8 @@ def test_what_a_thread_is_measured_by() -> None:
 def test_the_cone_before_a_pipe_thread() -> None:
     """1/2-14 NPT: E0 .7584 and .8 / 14 to the crest; 1 in 16 over the .5337 of L2 (B1.20.1)."""
     assert SHAPES["R"].says(thread({"SERIES": "NPT", "SIZE": "1/2"}), Setting()) == (
-        "pitch diameter .7584 at the start",
-        "taper before threading: .8156 at the start, .849 at the end",
+        wording("shapes.pitch-diameter", size=".7584"),
+        wording("shapes.taper-before-thread", start=".8156", end=".849"),
     )
 
 

@@ -319,7 +319,7 @@ def test_git_that_is_not_there_or_does_not_answer(tmp_path: Path, monkeypatch: p
     (stuck / "git").chmod(0o755)
     command = GitCommand(tmp_path / "copy.git", "the repository", patience=0.01)
     cause, words = cause_of(command.run, ["fetch"])
-    assert (cause, "no answer in 0.01 s" in words) == (Cause.AWAY, True)
+    assert (cause, "no response for 0.01 s" in words) == (Cause.AWAY, True)
 
 
 def test_a_damaged_copy_of_the_repository_is_made_again(tmp_path: Path) -> None:

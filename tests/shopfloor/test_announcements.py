@@ -54,7 +54,9 @@ def test_the_first_look_tells_nothing() -> None:
 
 
 def test_a_part_is_done() -> None:
-    assert told(RUNNING, {**RUNNING, "made": 4, "parts": 3}) == [("part", "part 4 of pin.nc is done")]
+    assert told(RUNNING, {**RUNNING, "made": 4, "parts": 3}) == [
+        ("part", text("shopfloor.part-done", number=4, program="pin.nc"))
+    ]
 
 
 @pytest.mark.parametrize("now", [{"program": "nut.nc", "made": 90}, {"made": 4}])
@@ -183,8 +185,8 @@ def test_a_web_hook_hears_in_order(posts: tuple[str, SimpleQueue[dict[str, objec
 @pytest.mark.parametrize(
     ("path", "values"),
     [
-        ("301", ["301 Moved Permanently", "https://office: ", "[announce] hook"]),
-        ("307", ["307 Temporary Redirect", "https://office: ", "[announce] hook"]),
+        ("301", ["301 Moved Permanently", "https://office;", "[announce] hook"]),
+        ("307", ["307 Temporary Redirect", "https://office;", "[announce] hook"]),
         ("404", ["404 Not Found"]),
     ],
 )

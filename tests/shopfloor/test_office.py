@@ -44,7 +44,7 @@ from core.store.part_cycles import StopRow
 from core.table_schema import MachineFileError
 from resources import machine_file
 from tests.coded import raises_code
-from tests.texts import text
+from tests.texts import text, text_in_spanish
 
 LATHE = load_machine(None)
 TOKEN = "gt75-word-of-ours"
@@ -255,7 +255,7 @@ def test_the_page_is_read_in_the_language_of_the_screen() -> None:
         speak_in("en")
     assert '<html lang="es">' in body
     assert ">EN MARCHA<" in body
-    assert ">Tiempo que falta<" in body
+    assert f">{text_in_spanish('shopfloor.time-remaining')}<" in body
     assert ">RUNNING<" not in body
     assert json.loads(told) == STATUS  # which programs read
 

@@ -40,7 +40,7 @@ def test_what_a_small_control_lacks(text: str, named: str, control: str) -> None
     error = run(text, of(control)).errors[0]
     assert error.code == "not-in-control"
     assert f"{named} is not a function of the SINUMERIK {control.upper()}" in error.message
-    assert "control under [machine]" in error.hint
+    assert '"control" under [machine]' in error.hint
 
 
 def test_cycle99_is_one_of_the_808d_and_none_of_the_802d() -> None:

@@ -54,14 +54,14 @@ def test_its_offsets_and_distances() -> None:
 @pytest.mark.parametrize(
     ("name", "text", "code", "said"),
     [
-        ("Q1", "G0 C90", "not-in-subset", "no axis C; its third axis is Q1"),
-        ("Q1", "G0 X10 C=DC(90)", "not-in-subset", "no axis C; its third axis is Q1"),
-        ("Q1", "G0 B90", "not-in-subset", "no axis B"),
+        ("Q1", "G0 C90", "not-in-subset", "no C axis; its third axis is Q1"),
+        ("Q1", "G0 X10 C=DC(90)", "not-in-subset", "no C axis; its third axis is Q1"),
+        ("Q1", "G0 B90", "not-in-subset", "no B axis"),
         ("Q1", "G0 Q1=360", "16830", "axis Q1"),
         ("B", "G0 B=DC(360)", "16830", "axis B"),
         ("B", "G0 B10 B20", "12010", ""),
         ("B", "G0 B=QC(1)", "12080", ""),
-        ("C", "G0 B90", "not-in-subset", "no axis B"),
+        ("C", "G0 B90", "not-in-subset", "no B axis"),
         ("Y", "M5\nTRANSMIT", "14401", "third axis of this machine is Y"),
     ],
 )

@@ -42,6 +42,7 @@ def older(folder: Path) -> None:
         for table in ("zero_offset_changes", "tool_shape_changes"):
             connection.execute(f"UPDATE {table} SET step = step - (SELECT min(step) FROM {table}) + 1")
         connection.execute("DELETE FROM row_sums WHERE tbl IN ('zero_offset_changes', 'events')")
+        connection.execute("ALTER TABLE events DROP COLUMN message")
         connection.execute("PRAGMA user_version = 14")  # histories have no sums then
         connection.commit()
 

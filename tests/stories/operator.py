@@ -16,7 +16,7 @@ from core.store.store import Store
 from tests.stories.fork_server import ForkServer
 from tests.stories.patience import LOOK, PATIENCE, throughout, until
 from tests.stories.x11 import MODIFIERS, Server
-from tests.texts import shows
+from tests.texts import begins, shows
 
 INCH = 25.4  # mm
 READS = 1.2  # s of looking at the prompt before the palms
@@ -487,7 +487,7 @@ class Operator:
             if self.soon(runs):
                 return True
             refused = str(self.machine["refused"])
-            assert not refused or refused.startswith("read this first"), refused
+            assert not refused or begins(refused, "executor.look-first"), refused
             return False
 
         self.until(started, "a start")

@@ -38,7 +38,8 @@ def is_refused(operator: Operator, line: int, why: str, remedy: str) -> None:
 
 def test_the_end_of_the_bar_would_run_against_the_limit_and_the_bar_is_not_even_begun(story: Story) -> None:
     operator = story.begins(BAR, tools=TOOLS)
-    why = text("findings.with-input", number=10, state="on", line=5, what=beyond("9.0000"))
+    at = text("findings.input-at", number=10, state="on", line=5)
+    why = text("findings.with-input", input=at, what=beyond("9.0000"))
     is_refused(operator, 9, why, "check the Z word")
 
 

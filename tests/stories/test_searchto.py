@@ -89,7 +89,7 @@ def test_a_boring_line_is_chosen_with_the_tool_in_a_groove_and_x_goes_out_first(
     to_searchto(operator)
     operator.sees(fragment("search.broke-off", line=8))
     operator.enters("16")  # inside the bore, which is not bored yet
-    operator.sees("begins in material")
+    operator.sees(fragment("search.in-uncut-material", line=16))
     operator.enters("14")
     operator.sees(text("search.state-at-line", line=14))
     operator.sees("1 X")

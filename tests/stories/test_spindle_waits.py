@@ -43,7 +43,7 @@ def test_off_and_auto_in_feed_hold_turn_nothing_and_the_palms_do(story: Story) -
     operator.until(lambda: not turns(operator), "at rest")
     operator.key("a")
     operator.until(lambda: SAID in operator.prompt, "the announcement")
-    operator.keeps(lambda: not turns(operator), 1.5, "the spindle stands")
+    operator.keeps(lambda: not turns(operator), 1.5, "the spindle is stopped")
     stood = operator.rests()
     assert operator.slides == stood
     operator.cycle_start()
@@ -103,7 +103,7 @@ def test_an_opened_guard_holds_and_closing_it_waits_for_the_palms(story: Story) 
     stood = operator.rests()
     operator.ask("break", name="set_input", values=["guard", True])
     operator.until(lambda: SAID in operator.prompt, "the announcement")
-    operator.keeps(lambda: not turns(operator), 1.5, "the spindle stands")
+    operator.keeps(lambda: not turns(operator), 1.5, "the spindle is stopped")
     assert operator.slides == stood
     operator.cycle_start()
     operator.until(lambda: operator.machine["turning"] == 600, "the spindle")

@@ -8,7 +8,7 @@ import pytest
 
 from tests.stories.conftest import INCH, Story
 from tests.stories.operator import Operator
-from tests.texts import shows
+from tests.texts import fragment, shows
 from tests.texts import text as wording
 
 TOOLS = {4: (0.0, 0.0)}
@@ -54,7 +54,7 @@ def test_the_spindle_stops_in_a_pass_and_the_tool_is_drawn_out(story: Story, how
         operator.breaks("spindle_bog", 0.0)
     operator.reaches("ALARM")
     operator.sees(wording("stories.spindle-lost-in-thread").upper())
-    operator.sees("the tool left the thread at Z")
+    operator.sees(fragment("executor.retracted-from-thread"))
     x, z, *_ = operator.rests()
     assert x == pytest.approx(OUT, abs=0.01)
     assert z < 0.0

@@ -43,7 +43,7 @@ def test_half_a_second_of_stall_at_a_standstill_is_told_and_nothing_starts_unrea
     operator.until(lambda: operator.machine["outputs"] == ["collet"], "coolant off")
     operator.reaches("FEED HOLD" if text is DWELL else "PROGRAM STOP")
     operator.sees(wording("screen.spindle-starts", rpm=600, direction="FORWARD"))
-    operator.sees(wording("screen.output-comes-on", name="COOLANT"))
+    operator.sees(wording("screen.output-comes-on", output="COOLANT"))
     operator.until(lambda: operator.machine["rpm"] == 0, "a spindle that stands")
     operator.keeps(lambda: operator.is_at((0.05 * INCH, 0.0)), 1.0, "rest")
     operator.cycle_start()

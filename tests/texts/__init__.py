@@ -13,9 +13,12 @@ from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
+from core.message import Message
+from resources.translations.message_list import read_list
+
 FOLDER = Path(__file__).parent
 SPANISH = FOLDER.parents[1] / "resources" / "translations" / "turndesk_es.ts"
-HOLE = re.compile(r"%\d|\{[^{}]*\}")
+HOLE = re.compile(r"\{[^{}]*\}")
 
 
 class Pattern(str):
@@ -36,6 +39,14 @@ def text(name: str, /, **values: object) -> str:
     """Return a text with its values put in; raises KeyError for an unknown id or a missing value."""
     template = all_texts()[name]
     return template.format(**values) if values else template
+
+
+def message(name: str, /, **values: object) -> Message:
+    """Return a text as the product makes it: with the names that its template has for the values."""
+    template = all_texts()[name]
+    source, _ = spanish_texts()[HOLE.sub("{}", template)]
+    names = dict(zip(HOLE.findall(template), HOLE.findall(source), strict=True))
+    return Message(source, **{names[f"{{{key}}}"][1:-1]: value for key, value in values.items()})
 
 
 def pattern(name: str, /, **values: object) -> Pattern:
@@ -86,6 +97,12 @@ def _runs(name: str, values: dict[str, object]) -> list[str]:
     for key, value in values.items():
         template = template.replace(f"{{{key}}}", str(value))
     return HOLE.split(template)
+
+
+@cache
+def product_texts() -> frozenset[str]:
+    """Return every English text of the product with its holes as ``{}``; those of drivers stay English."""
+    return frozenset(HOLE.sub("{}", each) for each in read_list().values())
 
 
 @cache

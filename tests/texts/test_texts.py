@@ -13,15 +13,15 @@ from tests.texts import (
     fragment,
     opening,
     pattern,
+    product_texts,
     shows,
-    spanish_texts,
     text,
     text_in_spanish,
 )
 
 
 def test_the_product_has_every_text_of_the_tables() -> None:
-    known = spanish_texts()
+    known = product_texts()
     assert [name for name, each in all_texts().items() if HOLE.sub("{}", each) not in known] == []
 
 
@@ -45,7 +45,7 @@ def test_a_part_of_what_is_shown_is_found_by_its_id() -> None:
     assert not shows(shown, "screen.no-start")
     assert fragment("search.no-such-pass", count=5) in shown
     assert fragment("search.no-such-pass", count=55) not in shown
-    assert opening("search.no-such-pass", line=8) == "Line 8 runs"
+    assert opening("search.no-such-pass", line=8) == "Line 8 is executed only"
 
 
 def test_a_translation_takes_the_values_by_their_names() -> None:

@@ -33,7 +33,7 @@ def around(name: str, model: DncModel) -> list[str]:
         ("BITS, PARITY, STOP BITS", 7),
         ("FLOW CONTROL", 3),
         (text("programs.serial-wrap"), 2),
-        ("LINE END", 3),
+        ("LINE ENDING", 3),
         ("DC CODES", 2),
         (text("programs.serial-after-dc1"), 2),
         (text("programs.serial-leader"), 4),

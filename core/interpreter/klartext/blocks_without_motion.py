@@ -14,6 +14,7 @@ from core.interpreter.klartext.text_values import text_of, texts_agree
 from core.language.klartext import klartext_nodes as nodes
 from core.language.klartext.klartext_faults import LABEL
 from core.language.klartext.structure_blocks import MOST_REPEATS
+from core.message import Message
 
 
 def go_on(state: State, flow: Flow, line: int, node: nodes.Label | nodes.Call | nodes.Jump) -> None:
@@ -49,7 +50,7 @@ class EndlessJumps:
             state.selected_program,
         )
         if self._loops.comes_round((stands, held), lambda: (stands, deepcopy(held))):
-            text = "This jump repeats forever: nothing that affects a jump changes in the loop."
+            text = "This jump repeats forever because the loop does not change anything that affects a jump."
             raise state.refuse(
                 node.column,
                 ENDLESS,
@@ -73,7 +74,7 @@ def _label(state: State, flow: Flow, name: int | str | nodes.TextName, *, subpro
     found = text_of(state, name)
     at = flow.program.labels.get(found)
     if at is None or (subprogram and flow.program.subprogram_end(at) is None):
-        text = f'LBL "{found}" is not in the program or has no LBL 0.'
+        text = Message('LBL "{value}" is not in the program or has no LBL 0.', value=found)
         raise state.refuse(
             name.column, LABEL, text, ("Correct the label name in the QS parameter, or add the label.")
         )

@@ -22,6 +22,7 @@ from core.interpreter.klartext.klartext_state import State
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula
 from core.language.klartext.q_parameters import MAX_FEED
+from core.message import Message
 
 _RAMP = math.tan(math.radians(3.0))
 _MOST_OVERLAP = 2.0
@@ -40,7 +41,8 @@ class Clearing:
         depth = tool.length(1)
         if depth > 0.0:
             raise tool.refuse(
-                f"Depth Q1={depth:+.10g} mm is positive (upward).", ("Enter the depth with a minus sign.")
+                Message("Depth Q1={depth} mm is positive (upward).", depth=f"{depth:+.10g}"),
+                ("Enter the depth with a minus sign."),
             )
         self.surface = tool.length(5, 0.0)
         self.bottom = self.surface + depth
@@ -48,7 +50,7 @@ class Clearing:
         self.safe = max(tool.length(7), self.clear)
         self.side, self.floor = tool.length(3, 0.0), tool.length(4, 0.0)
         if tool.radius <= SMALLEST:
-            raise tool.refuse("The tool has no radius.", "Enter R in the tool table.")
+            raise tool.refuse("The tool radius is not defined.", "Enter the tool radius R in the tool table.")
 
     @property
     def against(self) -> bool:
@@ -60,7 +62,11 @@ class Clearing:
         """From ring to ring: Q2 tool radii, and no more than one, which leaves nothing standing."""
         overlap = self.tool.plain(2, 1.0)
         if not 0.0 < overlap < _MOST_OVERLAP:
-            text = f"With path overlap {self.tool.named(2)}={overlap:g}, the cycle cannot clear the area."
+            text = Message(
+                "With path overlap {named}={overlap}, the cycle cannot clear the area.",
+                named=self.tool.named(2),
+                overlap=f"{overlap:g}",
+            )
             raise self.tool.refuse(text, "Enter a value between 0.0001 and 1.9999.")
         return min(overlap, 1.0) * self.tool.radius
 
@@ -82,9 +88,10 @@ class Clearing:
 
     def unfit(self, problem: AreaError | GougeError) -> ProgramError:
         """What is told where a contour cannot be followed at the tool's radius."""
-        text = (
-            f"The contour cannot be milled with tool radius {self.tool.radius:.10g} mm plus the "
-            f"allowance: {problem}."
+        text = Message(
+            "The contour cannot be milled with tool radius {radius} mm plus the allowance: {problem}.",
+            radius=f"{self.tool.radius:.10g}",
+            problem=problem,
         )
         return self.tool.refuse(text, "Use a smaller tool, or correct the contour.")
 
@@ -121,7 +128,9 @@ def pilot_drilling(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
     told = Clearing(tool, area)
     radius = tool.radius_of(int(tool.plain(13)))
     if radius is None or radius <= SMALLEST:
-        text = f"Rough-out tool {tool.plain(13):g} (Q13) has no radius in the tool table."
+        text = Message(
+            "Rough-out tool {plain} (Q13) has no radius in the tool table.", plain=f"{tool.plain(13):g}"
+        )
         raise tool.refuse(text, "Set Q13 to the number of a measured tool.")
     feed, bottom = told.tool.cut(11), told.bottom + told.floor
     yield from told.above()
@@ -141,8 +150,8 @@ def rough_out(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
     told = Clearing(tool, area)
     if tool.plain(18, 0.0):
         tool.tell(
-            "Q18: the whole pocket is milled again, including the area that the coarse roughing "
-            "tool has cleared."
+            "the whole pocket is milled again, including the area that the coarse roughing tool "
+            "(Q18) has cleared."
         )
     feed = told.tool.cut(12)
     slow = feed * min(max(tool.plain(401, 100.0), 1.0), 100.0) / 100.0
@@ -233,7 +242,7 @@ def side_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
     except AreaError as problem:
         raise told.unfit(problem) from None
     if not loops:
-        raise told.unfit(AreaError("the tool does not fit anywhere inside it"))
+        raise told.unfit(AreaError("the tool does not fit anywhere inside the contour"))
     room = Within(area)
     yield from told.above()
     for loop in loops:
@@ -280,7 +289,7 @@ def contour_train(tool: CycleTool, figures: Figures) -> Iterator[Block]:
     """25: along a contour at its side, level by level; Q15 0 there and back, -1 up-cut milling."""
     told = Clearing(tool, above=_ABOVE)
     if len(figures) > 1:
-        tool.tell("Cycle 25 mills only the first contour of cycle 14.")
+        tool.tell("Cycle 25 mills only the first contour listed in cycle 14.")
     figure = figures[0]
     way = _beside(told, figure)
     kind = tool.plain(15, 1.0)
@@ -306,7 +315,8 @@ def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
     elements = list(figure.elements)
     if not elements:
         raise told.tool.refuse(
-            f"The contour {figure.label} has no elements.", ("Add path functions to the contour.")
+            Message("The contour {figure} does not contain any elements.", figure=figure.label),
+            ("Add path functions to the contour."),
         )
     if not figure.side:
         return elements

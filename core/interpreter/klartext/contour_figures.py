@@ -22,6 +22,7 @@ from core.interpreter.klartext.path_functions import PathRunner
 from core.language.formulas import Formula, Operation, Parameter
 from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, unsupported
 from core.language.klartext.klartext_nodes import Move
+from core.message import Message
 
 OPEN = 0.016  # mm by which a contour may miss its start: as much as an arc its circle
 
@@ -57,7 +58,9 @@ class FigureRunner(PathRunner):
     def draw(self, node: Move) -> None:
         """The element of a path function. Raises ProgramError for what no contour has."""
         if node.form.startswith(("APPR", "DEP")):
-            raise unsupported(self._state.line, node.column, (f"{node.form} inside an SL cycle contour"))
+            raise unsupported(
+                self._state.line, node.column, (Message("{form} inside an SL cycle contour", form=node.form))
+            )
         if not node.axes and not node.words and node.form == "L":
             return
         self.side = self.side or node.compensation.strip("0+-")
@@ -152,10 +155,13 @@ def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool
         found = boundary(loops, inside)
     except AreaError as problem:
         raise state.refuse(
-            column, INPUT_VALUE, f"The contours cannot be combined: {problem}.", ("Correct these entries.")
+            column,
+            INPUT_VALUE,
+            Message("The contours cannot be combined: {problem}.", problem=problem),
+            ("Correct these entries."),
         ) from None
     if not found:
-        text = "The contours enclose no area because the islands cover the pockets."
+        text = "The contours do not enclose an area because the islands cover the pockets."
         raise state.refuse(column, INPUT_VALUE, text, "Correct the contours.")
     return found
 
@@ -163,11 +169,13 @@ def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool
 def _closed(state: State, figure: ContourFigure, column: int) -> Loop:
     """The contour as a loop. Raises ProgramError for an open one."""
     if not figure.elements:
-        text = f"The contour {figure.label} has no elements."
+        text = Message("The contour {figure} does not contain any elements.", figure=figure.label)
         raise state.refuse(column, CYCLE_MISSING, text, "Add path functions to the contour.")
     gap = math.dist(figure.elements[-1].end, figure.elements[0].start)
     if gap > OPEN:
-        text = f"The contour {figure.label} ends {gap:.10g} mm from its start."
+        text = Message(
+            "The contour {figure} ends {gap} mm from its start.", figure=figure.label, gap=f"{gap:.10g}"
+        )
         raise state.refuse(column, INPUT_VALUE, text, "End the contour at its start point.")
     return follows(figure.elements)
 
@@ -176,7 +184,7 @@ def _is_pocket(state: State, figure: ContourFigure, loop: Loop, column: int) -> 
     if figure.pocket is not None:
         return figure.pocket
     if not figure.side:
-        text = f"The side on which contour {figure.label} is milled is not programmed."
+        text = Message("The side on which contour {figure} is milled is not programmed.", figure=figure.label)
         raise state.refuse(column, CYCLE_MISSING, text, ("Write RL or RR in the first block of the contour."))
     return goes_round(loop) == (figure.side == "L")
 

@@ -13,6 +13,7 @@ from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import ORIGIN, ROTARY, SLIDES, State
 from core.language.klartext.klartext_faults import INPUT_VALUE, NO_TABLE, WRONG_AXIS
 from core.language.klartext.klartext_nodes import AxisWord, Datum, Transform, Value
+from core.message import Message
 
 MOST_FACTOR = 99.999999
 MOST_ROW = 999_999.0
@@ -48,7 +49,7 @@ def _of_the_table(state: State, row: Value, column: int) -> tuple[AxisWord, ...]
     number = int(word_values.number(state, row, "#", MOST_ROW, 0.0))
     found = state.datum_table.get(number)
     if found is None:
-        text = f"The datum table has no row {number}."
+        text = Message("The datum table has no row {number}.", number=number)
         raise state.refuse(column, NO_TABLE, text, "Correct the row number, or add the row.")
     told = ((axis, found[axis]) for axis in (*SLIDES, *ROTARY) if axis in found)
     return tuple(
@@ -59,8 +60,13 @@ def _of_the_table(state: State, row: Value, column: int) -> tuple[AxisWord, ...]
 
 def _demand_no_turn(state: State, axis: str, value: float, column: int) -> None:
     if value:
-        text = f"A datum shift of rotary axis {axis} is not supported."
-        raise state.refuse(column, WRONG_AXIS, text, ("Turn the axis with an L block, or program the plane."))
+        text = Message("A datum shift of rotary axis {axis} is not supported.", axis=axis)
+        raise state.refuse(
+            column,
+            WRONG_AXIS,
+            text,
+            ("Position the rotary axis with an L block, or program the plane with PLANE."),
+        )
 
 
 def transform(state: State, node: Transform) -> None:

@@ -16,6 +16,7 @@ from core.interpreter.klartext.tool_call import radius_of
 from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, WRONG_RPM
 from core.language.klartext.q_parameters import MAX_FEED, TOOL_FEED
+from core.message import Message
 
 _TURN = 360.0
 UNORIENTED = "the spindle of this machine cannot be oriented"
@@ -78,7 +79,7 @@ class CycleTool:
         if found is None:
             found = default
         if found is None:
-            text = f"Cycle {self._number} needs {self.named(q)}."
+            text = Message("Cycle {number} needs {parameter}.", number=self._number, parameter=self.named(q))
             raise self._state.refuse(self._column, CYCLE_MISSING, text, ("Add the parameter to CYCL DEF."))
         return found
 
@@ -92,7 +93,11 @@ class CycleTool:
         if found == TOOL_FEED and self._state.tool_feed is not None:
             return per_minute(self._state, self._state.tool_feed, self._state.tool_feed_per, self._column)
         if found <= 0.0:
-            text = f"{self.named(q)} of cycle {self._number} is not a valid feed rate."
+            text = Message(
+                "{parameter} of cycle {number} is not a valid feed rate.",
+                parameter=self.named(q),
+                number=self._number,
+            )
             raise self._state.refuse(self._column, INPUT_VALUE, text, "Enter a feed rate above 0.")
         return None if found >= MAX_FEED else found
 
@@ -100,7 +105,10 @@ class CycleTool:
         """A feed that cuts, as programmed. Raises ProgramError for a rapid."""
         found = self.feed(q)
         if found is None:
-            raise self.refuse(f"{self.named(q)} is set to rapid, but this move cuts.", "Enter a feed rate.")
+            raise self.refuse(
+                Message("{parameter} is set to rapid, but this is a cutting move.", parameter=self.named(q)),
+                "Enter a feed rate.",
+            )
         return found
 
     def refuse(self, text: str, hint: str) -> ProgramError:
@@ -119,7 +127,7 @@ class CycleTool:
 
     def tell(self, text: str) -> None:
         """Something about this cycle that is done otherwise, once."""
-        said = f"Cycle {self._number}: {text}"
+        said = Message("Cycle {number}: {what}", number=self._number, what=text)
         self._state.tell_once(self._column, Severity.NOTE, "cycle-otherwise", said)
 
     @property
@@ -127,7 +135,10 @@ class CycleTool:
         """Of the tool's point, degrees. Raises ProgramError where the tool table does not tell it."""
         row = self._state.setup.mill_tools.get(self._state.modal.tool)
         if row is None or not 0.0 < row.point < 180.0:
-            text = f"Cycle {self._number} needs the point angle of the tool for a programmed diameter."
+            text = Message(
+                "Cycle {number} needs the point angle of the tool for a programmed diameter.",
+                number=self._number,
+            )
             raise self.refuse(text, ("Enter the point angle in the tool table, or program Q343=+0 and Q201."))
         return row.point
 
@@ -152,7 +163,7 @@ class CycleTool:
         """Speed of the spindle, signed. Raises ProgramError where it stands."""
         found = self.turns
         if not found:
-            text = f"Cycle {self._number} needs a running spindle."
+            text = Message("Cycle {number} needs a running spindle.", number=self._number)
             raise self._state.refuse(
                 self._column, WRONG_RPM, text, ("Start the spindle with M3 before the cycle.")
             )
@@ -166,23 +177,30 @@ class CycleTool:
     def thread_speed(self, pitch: float) -> float:
         """S in the direction of a thread, signed: a pitch under 0 is a left-hand one. Raises ProgramError."""
         if not self.speed:
-            text = f"Cycle {self._number} needs a spindle speed."
+            text = Message("Cycle {number} needs a spindle speed.", number=self._number)
             raise self._state.refuse(self._column, WRONG_RPM, text, "Program S in TOOL CALL.")
         return math.copysign(self.speed, pitch)
 
     def warn_uncoupled(self) -> None:
         """Z follows the spindle by its speed, not by its angle: it stands while the spindle turns round."""
-        text = (
-            f"Cycle {self._number}: Z stops while the spindle reverses because Z is not "
-            "synchronized with the spindle angle."
+        text = Message(
+            (
+                "Cycle {number}: Z is not synchronized with the spindle angle, so Z stops "
+                "while the spindle reverses."
+            ),
+            number=self._number,
         )
         hint = "Use a floating tap holder."
         self._state.tell_once(self._column, Severity.WARNING, "tapping-uncoupled", text, hint)
 
     def warn_unoriented(self) -> None:
         """Nothing stops the spindle of this mill at an angle: the edge may point anywhere."""
-        text = f"Cycle {self._number} moves the cutting edge off the wall, but {UNORIENTED}."
-        hint = "Program Q214=0, or turn the edge by hand when the program stops for it."
+        text = Message(
+            "Cycle {number} moves the cutting edge away from the wall, but {unoriented}.",
+            number=self._number,
+            unoriented=UNORIENTED,
+        )
+        hint = "Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment."
         self._state.tell_once(self._column, Severity.WARNING, "spindle-not-oriented", text, hint)
 
     # --- what it does -------------------------------------------------------------------------------------
@@ -199,9 +217,11 @@ class CycleTool:
         state, rpm = self._state, self._state.modal.rpm
         fastest = state.kinematics.slides[2].vmax
         if (rate := lead * rpm / 60.0) > fastest:
-            text = (
-                f"A lead of {lead:.10g} mm at S{rpm:g} requires a Z feed rate above the maximum of "
-                f"{fastest * 60.0:.10g} mm/min."
+            text = Message(
+                "A lead of {lead} mm at S{rpm} requires a Z feed rate above the maximum of {fastest} mm/min.",
+                lead=f"{lead:.10g}",
+                rpm=f"{rpm:g}",
+                fastest=f"{fastest * 60.0:.10g}",
             )
             raise self.refuse(text, "Lower S.")
         goal = state.machine((*self.here, z))
@@ -253,7 +273,11 @@ class CycleTool:
         if number == 0:
             return []
         if number not in {8, 9}:
-            text = f"Q{q} selects M{number}, which is not a coolant function of this machine."
+            text = Message(
+                "Q{parameter} selects M{number}, which is not a coolant function of this machine.",
+                parameter=q,
+                number=number,
+            )
             raise self.refuse(text, "Enter 8 for coolant on or 9 for coolant off.")
         state.modal = state.modal._replace(coolant=number == 8)
         return [state.action(Coolant(number == 8))]
@@ -274,7 +298,8 @@ class CycleTool:
         angle = self.plain(q, 0.0)
         if not -_TURN <= angle <= _TURN:
             raise self.refuse(
-                f"{self.named(q)} is not a valid spindle angle.", ("Enter an angle from -360 to 360 degrees.")
+                Message("{parameter} is not a valid spindle angle.", parameter=self.named(q)),
+                ("Enter an angle from -360 to 360 degrees."),
             )
         return oriented(self._state, angle)
 

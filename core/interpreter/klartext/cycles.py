@@ -56,6 +56,7 @@ from core.language.klartext.klartext_nodes import (
     Value,
 )
 from core.language.klartext.table_file import Row
+from core.message import Message
 
 _PRESET, _CIRCLE, _ROWS = 247, 220, 221
 _CONTOUR, _CONTOUR_DATA = 14, 20
@@ -116,11 +117,19 @@ class Cycles:
         state = self._state
         known = node.number in _MACHINING.keys() | CONTOURS | _AT_ONCE
         if 300 <= node.number <= 399:
-            text = f"Cycle {node.number} is a machine-builder cycle, and this machine has no such cycles."
-            raise state.refuse(node.column, CYCLE_UNKNOWN, text, "Remove it from the program.")
+            text = Message(
+                "Cycle {number} is a machine-builder cycle, and this machine does not have "
+                "machine-builder cycles.",
+                number=node.number,
+            )
+            raise state.refuse(node.column, CYCLE_UNKNOWN, text, "Remove this text from the program.")
         if not known:
             kind = _ON_CYLINDER.get(node.number)
-            name = f"CYCL DEF {node.number}" + (f" (cylinder surface, {kind})" if kind else "")
+            name = Message(
+                "CYCL DEF {number}{kind}",
+                number=node.number,
+                kind=Message(" (cylinder surface, {kind})", kind=kind) if kind else "",
+            )
             raise unsupported(state.line, node.column, name)
         for each in node.values:
             state.q[each.q] = value(state, each.formula)
@@ -145,7 +154,7 @@ class Cycles:
         state, number = self._state, self._state.q.get(_PRESET_NUMBER, 0.0)
         found = state.setup.presets.get(int(number)) if number == int(number) else None
         if found is None and set(state.setup.presets) - {0}:
-            text = f"Preset {number:g} is not in the preset table."
+            text = Message("Preset {number} is not in the preset table.", number=f"{number:g}")
             raise state.refuse(
                 column, INPUT_VALUE, text, ("Set the preset on the PRESETS page, or correct Q339.")
             )
@@ -154,13 +163,20 @@ class Cycles:
             and state.plane is not None
             and state.kinematics.with_preset(found).basic != state.kinematics.basic
         ):
-            text = f"Preset {number:g} rotates the workpiece while a tilted plane is active."
+            text = Message(
+                (
+                    "Preset {number} rotates the workpiece and cannot be activated while a tilted "
+                    "plane is active."
+                ),
+                number=f"{number:g}",
+            )
             raise state.refuse(column, CONTRADICTION, text, ("Write PLANE RESET STAY before this block."))
         if found is not None:
             state.kinematics = state.kinematics.with_preset(found)
         elif number:
-            text = (
-                f"This machine has no preset table, so preset {number:g} uses the zero from the machine file."
+            text = Message(
+                "This machine has no preset table, so preset {number} uses the zero from the machine file.",
+                number=f"{number:g}",
             )
             hint = "Set the preset on the PRESETS page."
             state.tell_once(column, Severity.WARNING, "preset", text, hint)
@@ -174,7 +190,7 @@ class Cycles:
             if node.part and node.number == self._refused:
                 return  # told at its first line
             self._refused = node.number
-            raise unsupported(self._state.line, node.column, f"CYCL DEF {node.number}")
+            raise unsupported(self._state.line, node.column, Message("CYCL DEF {number}", number=node.number))
         if node.number in _NO_CYCLE:
             yield from self._at_once(node)
             return
@@ -195,7 +211,7 @@ class Cycles:
             return part
         found = self._declared.get(part.declared)
         if found is None:
-            text = f"QC{part.declared} is not declared with DECLARE CONTOUR."
+            text = Message("QC{declared} is not declared with DECLARE CONTOUR.", declared=part.declared)
             raise self._state.refuse(1, CYCLE_MISSING, text, ("Write DECLARE CONTOUR before this block."))
         return found._replace(pocket=part.pocket, declared=part.declared)
 
@@ -247,7 +263,7 @@ class Cycles:
     def _demand_figures(self, figures: Figures, column: int) -> None:
         """Raises ProgramError where no contour has been named."""
         if not figures:
-            text = f"Cycle {self._number} has no contour."
+            text = Message("No contour is defined for cycle {number}.", number=self._number)
             raise self._state.refuse(
                 column, CYCLE_MISSING, text, ("List the contour labels in cycle 14 before this block.")
             )
@@ -264,7 +280,7 @@ class Cycles:
             None,
         )
         if missing is not None:
-            text = f"Line {number}.{missing} of the cycle is missing."
+            text = Message("Line {number}.{missing} of the cycle is missing.", number=number, missing=missing)
             raise self._state.refuse(column, CYCLE_MISSING, text, "Complete the CYCL DEF.")
 
     def _tool(self, number: int, column: int) -> CycleTool:
@@ -283,7 +299,7 @@ class Cycles:
         elif node.number == _TILT and node.part == 1:
             yield from plane(self._state, self._tilted(node))
         elif node.number == _TOLERANCE or (node.number == _ORIENT and not self._orients):
-            self._state.unheeded(f"Cycle {node.number}", node.column)
+            self._state.unheeded(Message("Cycle {number}", number=node.number), node.column)
         elif node.number == _ORIENT and node.part == 1:
             self._state.spindle_angle = self._angle(node)
 
@@ -294,13 +310,13 @@ class Cycles:
     def _angle(self, node: CycleLine) -> float:
         """The angle of cycle 13, to which M19 brings the spindle. Raises ProgramError."""
         if not node.words:
-            text = "Cycle 13 has no angle."
+            text = "No angle is programmed in cycle 13."
             raise self._state.refuse(
                 node.column, CYCLE_MISSING, text, ("Write ANGLE with a value in degrees.")
             )
         angle = value(self._state, node.words[-1].value.formula)
         if not -360.0 <= angle <= 360.0:
-            text = f"{angle:g} is not a valid spindle angle."
+            text = Message("{parameter} is not a valid spindle angle.", parameter=f"{angle:g}")
             raise self._state.refuse(
                 node.words[-1].column, INPUT_VALUE, text, ("Enter an angle from -360 to 360 degrees.")
             )
@@ -319,14 +335,18 @@ class Cycles:
             )
         self._contours += tuple(ContourPart(label, None) for label in labels)
         if len(self._contours) > _MOST_CONTOURS:
-            text = f"Cycle 14 lists {len(self._contours)} contours; the maximum is {_MOST_CONTOURS}."
+            text = Message(
+                "Cycle 14 lists {contours_count} contours; the maximum is {most_contours}.",
+                contours_count=len(self._contours),
+                most_contours=_MOST_CONTOURS,
+            )
             raise self._state.refuse(node.column, INPUT_VALUE, text, "Combine some of the contours.")
 
     def _seconds(self, word: AxisWord) -> float:
         """The time of cycle 9. Raises ProgramError for one under 0."""
         seconds = value(self._state, word.value.formula)
         if seconds < 0.0:
-            text = f"The dwell time of {seconds:g} s is negative."
+            text = Message("The dwell time of {seconds} s is negative.", seconds=f"{seconds:g}")
             raise self._state.refuse(word.column, INPUT_VALUE, text, "Enter a time above 0.")
         return seconds
 
@@ -336,7 +356,7 @@ class Cycles:
             raise syntax(
                 self._state.line,
                 node.column,
-                f"{node.text} is not an axis.",
+                Message("{node} is not an axis.", node=node.text),
                 ("Use only A, B and C in cycle 19."),
             )
         if not node.words:
@@ -391,7 +411,11 @@ class Cycles:
             yield from self.call(node.column)
         tool = self._tool(self._number, node.column)
         if self._number not in _MACHINING:
-            raise unsupported(self._state.line, node.column, (f"CYCL CALL POS with cycle {self._number}"))
+            raise unsupported(
+                self._state.line,
+                node.column,
+                (Message("CYCL CALL POS with cycle {number}", number=self._number)),
+            )
         x, y = tool.here
         for word in node.axes:
             at = word_values.coordinate(self._state, word)
@@ -414,7 +438,7 @@ class Cycles:
         """The cycle told before at every place of a circle (220) or of rows (221)."""
         tool = self._tool(node.number, node.column)
         if self._number not in _MACHINING:
-            text = f"Cycle {node.number} needs a machining cycle before it."
+            text = Message("Cycle {number} needs a preceding machining cycle.", number=node.number)
             raise self._state.refuse(
                 node.column,
                 CYCLE_MISSING,
@@ -464,5 +488,8 @@ def _in_rows(tool: CycleTool) -> list[Point]:
 def _count(tool: CycleTool, q: int) -> int:
     count = int(tool.plain(q))
     if not 1 <= count <= _MOST_PLACES:
-        raise tool.refuse(f"Q{q}={count} is not a valid number of positions.", "Enter a valid number.")
+        raise tool.refuse(
+            Message("Q{parameter}={count} is not a valid number of positions.", parameter=q, count=count),
+            "Enter a valid number.",
+        )
     return count

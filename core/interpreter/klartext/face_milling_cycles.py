@@ -10,6 +10,7 @@ from core.geometry.lines_and_arcs import Point
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext.cycle_moves import CycleTool
 from core.interpreter.klartext.hole_cycles import SMALLEST, infeeds
+from core.message import Message
 
 _MOST_ROWS = 5_000
 _OUTSIDE, _INSIDE, _LINE, _LINE_INSIDE, _SPIRAL = range(5)
@@ -70,7 +71,8 @@ def _rows(tool: CycleTool) -> int:
     count = int(tool.plain(240))
     if not 2 <= count <= _MOST_ROWS:
         raise tool.refuse(
-            f"Q240={count} is not a valid number of cuts.", (f"Enter a number from 2 to {_MOST_ROWS}.")
+            Message("Q240={count} is not a valid number of cuts.", count=count),
+            (Message("Enter a number from 2 to {most_rows}.", most_rows=_MOST_ROWS)),
         )
     return count
 
@@ -158,9 +160,11 @@ def _level(tool: CycleTool, face: _Face, z: float, clear: float, feed: float) ->
     """
     kind, radius = int(tool.plain(389, 0.0)), tool.radius
     if not _OUTSIDE <= kind <= _SPIRAL:
-        raise tool.refuse(f"Q389={kind} is not a valid strategy.", "Enter a number from 0 to 4.")
+        raise tool.refuse(
+            Message("Q389={kind} is not a valid strategy.", kind=kind), "Enter a number from 0 to 4."
+        )
     if kind == _SPIRAL:
-        tool.tell("the face is milled in back-and-forth rows, not in a spiral.")
+        tool.tell("the face is milled in back-and-forth passes, not in a spiral.")
     length, width = abs(face.length), abs(face.width)
     place = tool.cut(253)
     out = radius + tool.length(357, 0.0)
@@ -188,16 +192,19 @@ def _step(tool: CycleTool, width: float) -> float:
     """The width of a row: even, and no more than Q370 tool radii."""
     overlap = tool.plain(370, 1.0)
     if not 0.0 < overlap < 2.0 or tool.radius <= SMALLEST or width <= SMALLEST:
-        text = (
-            f"With path overlap Q370={overlap:g} and tool radius {tool.radius:g} mm, the cycle "
-            "cannot clear the area."
+        text = Message(
+            "With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot clear the area.",
+            overlap=f"{overlap:g}",
+            radius=f"{tool.radius:g}",
         )
         raise tool.refuse(
             text, ("Set Q370 between 0.1 and 1.9999, and enter the tool radius and the side lengths.")
         )
     count = max(1, math.ceil(width / (overlap * tool.radius) - SMALLEST))
     if count > _MOST_ROWS:
-        raise tool.refuse(f"Facing would need {count} rows, which is too many.", "Use a larger tool.")
+        raise tool.refuse(
+            Message("Facing would need {count} passes, which is too many.", count=count), "Use a larger tool."
+        )
     return width / count
 
 

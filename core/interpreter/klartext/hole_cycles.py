@@ -8,14 +8,15 @@ from collections.abc import Callable, Iterator
 from core.geometry.lines_and_arcs import Arc
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext.cycle_moves import HOW_ORIENTED, UNORIENTED, CycleTool
+from core.message import Message
 
 SMALLEST = 1e-6  # mm; less is no depth
 _ASIDE = 0.2  # mm that a boring bar goes aside before it is drawn out
 _EDGE = {
-    (-1.0, 0.0): "TURN EDGE TO X+",
-    (0.0, -1.0): "TURN EDGE TO Y+",
-    (1.0, 0.0): "TURN EDGE TO X-",
-    (0.0, 1.0): "TURN EDGE TO Y-",
+    (-1.0, 0.0): "TURN THE CUTTING EDGE TOWARD X+",
+    (0.0, -1.0): "TURN THE CUTTING EDGE TOWARD Y+",
+    (1.0, 0.0): "TURN THE CUTTING EDGE TOWARD X-",
+    (0.0, 1.0): "TURN THE CUTTING EDGE TOWARD Y-",
 }
 _MOST_PECKS = 10_000
 
@@ -82,7 +83,11 @@ def aside(tool: CycleTool, directions: tuple[int, ...]) -> tuple[float, float]:
     """Q214: which way the tool leaves the wall, along X or Y. Raises ProgramError for another number."""
     number = tool.plain(214, 0.0)
     if number not in directions:
-        text = f"Q214 must be a whole number from {directions[0]} to {directions[-1]}."
+        text = Message(
+            "Q214 must be a whole number from {directions} to {directions2}.",
+            directions=directions[0],
+            directions2=directions[-1],
+        )
         raise tool.refuse(text, "Correct Q214.")
     return {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}[int(number)]
 
@@ -95,13 +100,20 @@ def back_boring(tool: CycleTool) -> Iterator[Block]:
     beside the centre.
     """
     if not tool.orients:
-        text = f"Cycle 204 passes through the hole with the spindle stopped at an angle, but {UNORIENTED}."
-        raise tool.refuse(text, f"Bore from the other side, or {HOW_ORIENTED}.")
+        text = Message(
+            "Cycle 204 moves through the hole with the spindle stopped at an angle, but {unoriented}.",
+            unoriented=UNORIENTED,
+        )
+        raise tool.refuse(
+            text,
+            Message("Bore from the other side of the part, or {how_oriented}.", how_oriented=HOW_ORIENTED),
+        )
     rpm, (along_x, along_y) = tool.rpm, aside(tool, (1, 2, 3, 4))
     surface, depth = tool.length(203, 0.0), tool.length(249)
     if depth < 0.0:
         raise tool.refuse(
-            f"Q249={depth:+.10g} mm would bore away from the part.", ("Enter the depth without a minus sign.")
+            Message("With Q249={depth} mm, the cycle would bore away from the part.", depth=f"{depth:+.10g}"),
+            ("Enter the depth without a minus sign."),
         )
     clear, through, slow = surface + tool.length(200), tool.length(250) + tool.length(252), tool.feed(253)
     lowest, end = surface - through - tool.length(200), surface - through + depth
@@ -241,7 +253,8 @@ def bore_milling(tool: CycleTool) -> Iterator[Block]:
     pitch = tool.length(334)
     if way < 0.0 or pitch <= 0.0 or feed <= 0.0:
         raise tool.refuse(
-            "The tool, infeed or feed rate of cycle 208 does not suit the hole.", ("Correct these entries.")
+            ("The tool, infeed or feed rate of cycle 208 is not valid for the hole."),
+            ("Correct these entries."),
         )
     yield tool.to(clear)
     if way < SMALLEST:
@@ -306,7 +319,8 @@ def heights(tool: CycleTool) -> tuple[float, float, float]:
     surface, depth = tool.length(203, 0.0), tool.length(201)
     if depth > 0.0:
         raise tool.refuse(
-            f"Depth Q201={depth:+.10g} mm is positive (upward).", ("Enter the depth with a minus sign.")
+            Message("Depth Q201={depth} mm is positive (upward).", depth=f"{depth:+.10g}"),
+            ("Enter the depth with a minus sign."),
         )
     return surface, surface + tool.length(200), surface + depth
 
@@ -319,7 +333,9 @@ def infeeds(
         yield whole
         return
     if whole / max(step if not smaller else least or step, SMALLEST) > _MOST_PECKS:
-        raise tool.refuse(f"An infeed of {step:g} mm would need too many pecks.", "Increase Q202.")
+        raise tool.refuse(
+            Message("An infeed of {step} mm would need too many pecks.", step=f"{step:g}"), "Increase Q202."
+        )
     done = 0.0
     while whole - done > SMALLEST:
         done = min(done + step, whole)

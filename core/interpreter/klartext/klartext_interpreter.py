@@ -35,6 +35,7 @@ from core.language.klartext import klartext_nodes as nodes
 from core.language.klartext.canonical_text import name_text
 from core.language.klartext.klartext_faults import CYCLE_MISSING, FILE_MISSING, LABEL, unsupported
 from core.language.klartext.table_file import Row
+from core.message import Message
 
 
 class Interpreter(Interpretation):
@@ -256,18 +257,23 @@ class Interpreter(Interpretation):
             raise self._missing_program(name, column)
         for line in program.lines[: program.end]:
             if line.error is not None:
-                raise self._state.refuse(column, line.error.code, f"{name}: {line.error.message}", "")
+                raise self._state.refuse(
+                    column,
+                    line.error.code,
+                    Message("{name}: {error}", name=name, error=line.error.message),
+                    "",
+                )
             if isinstance(line.node, nodes.ContourDeclare | nodes.ContourFormula):
                 for _ in self._cycles.told(line.node):
                     pass
         if self._cycles.formula is None:
-            text = f"{name} has no contour formula."
+            text = Message("{name} has no contour formula.", name=name)
             raise self._state.refuse(
                 column, CYCLE_MISSING, text, ("Add a contour formula such as QC10 = QC1 | QC2.")
             )
 
     def _missing_program(self, name: str, column: int) -> ProgramError:
-        text = f"Program {name} is not in the same folder as this program."
+        text = Message("Program {name} is not in the same folder as this program.", name=name)
         return self._state.refuse(
             column, FILE_MISSING, text, ("Put the file in the same folder as this program.")
         )
@@ -280,7 +286,7 @@ class Interpreter(Interpretation):
     def _table(self, name: str, column: int) -> dict[int, Row]:
         rows = self._flow.table(name)
         if rows is None:
-            text = f"Table {name} is not in the same folder as this program."
+            text = Message("Table {name} is not in the same folder as this program.", name=name)
             raise self._state.refuse(
                 column, FILE_MISSING, text, ("Put the file in the same folder as this program.")
             )
@@ -376,9 +382,12 @@ class Interpreter(Interpretation):
             if flow is None:
                 raise self._missing_program(part.file, column)
         else:
-            flow, name = self._flow.through_subprogram(part.label), f"LBL {name_text(part.label)}"
+            flow, name = (
+                self._flow.through_subprogram(part.label),
+                Message("LBL {part}", part=name_text(part.label)),
+            )
         if flow is None:
-            text = f"{name} of the contour is not in the program or has no LBL 0."
+            text = Message("{name} of the contour is not in the program or has no LBL 0.", name=name)
             raise self._state.refuse(column, LABEL, text, ("Correct the label number, or add the label."))
         runner, lines = FigureRunner(state), MOST_LINES_WITHOUT_BLOCK
         while (line := flow.next()) is not None:
@@ -387,7 +396,7 @@ class Interpreter(Interpretation):
                 raise ProgramError(self._flow.located(line.error))
             if lines < 0:
                 raise self._state.refuse(
-                    column, LABEL, f"{name} never reaches its end.", ("Correct the value.")
+                    column, LABEL, Message("{name} never reaches its end.", name=name), ("Correct the value.")
                 )
             if not (line.skip and state.setup.block_delete):
                 state.line, state.text = self._flow.shown_line(line.number), flow.program.text(line)
@@ -415,4 +424,4 @@ def _draw(state: State, runner: FigureRunner, flow: Flow, line: nodes.KlartextLi
             reckon(state, node)
         case nodes.Datum() | nodes.Transform() | nodes.Plane() | nodes.Cycle() | nodes.CycleLine():
             what = state.text.split("~")[0].strip()
-            raise unsupported(state.line, 1, f"{what} inside an SL cycle contour")
+            raise unsupported(state.line, 1, Message("{form} inside an SL cycle contour", form=what))

@@ -33,6 +33,7 @@ from core.language.klartext.klartext_nodes import (
 )
 from core.language.klartext.table_file import Row, is_table, table_rows
 from core.language.source import Source
+from core.message import Message
 
 Name = int | str
 
@@ -190,12 +191,16 @@ def _frame(program: Program) -> Iterator[Diagnostic]:
             yield _wrong(index + 1, "BEGIN PGM appears twice.", "Put only one program in a file.")
     behind = next((index for index in with_blocks if index > program.end), None)
     if behind is not None:
-        yield _wrong(behind + 1, "This block is after END PGM.", ("Move the block before END PGM."))
+        yield _wrong(
+            behind + 1, "This block is after END PGM.", ("Move this block to a line before END PGM.")
+        )
     if first.node.inch != last.inch:
         text = "BEGIN PGM and END PGM specify different units."
         yield _wrong(program.end + 1, text, "Write the same unit in BEGIN PGM and END PGM.")
     elif last.name and first.node.name.upper() != last.name.upper():
-        text = f"BEGIN PGM names {first.node.name}, but END PGM names {last.name}."
+        text = Message(
+            "BEGIN PGM names {node}, but END PGM names {last}.", node=first.node.name, last=last.name
+        )
         hint = "Check that the file is complete."
         yield Diagnostic(program.end + 1, 1, Severity.WARNING, "program-name", text, hint)
 
@@ -210,7 +215,11 @@ def _labels(program: Program) -> Iterator[Diagnostic]:
         if not isinstance(node, Label) or node.name == 0:
             continue
         if program.labels.setdefault(node.name, index) != index:
-            text = f"LBL {name_text(node.name)} is also on line {program.labels[node.name] + 1}."
+            text = Message(
+                "LBL {node} is also on line {labels}.",
+                node=name_text(node.name),
+                labels=program.labels[node.name] + 1,
+            )
             yield fault(line.number, node.column, LABEL_TWICE, text, "Use a different number.").diagnostic
 
 
@@ -222,10 +231,13 @@ def _calls(program: Program) -> Iterator[Diagnostic]:
             continue
         name, at = name_text(node.name), program.labels.get(node.name)
         if at is None:
-            text, hint = f"LBL {name} is not in the program.", ("Correct the label number, or add the label.")
+            text, hint = (
+                Message("LBL {name} is not in the program.", name=name),
+                ("Correct the label number, or add the label."),
+            )
             yield fault(line.number, node.column, LABEL, text, hint).diagnostic
         elif isinstance(node, Call) and node.repeat is None and program.subprogram_end(at) is None:
-            text = f"The subprogram LBL {name} has no LBL 0."
+            text = Message("The subprogram LBL {name} has no LBL 0.", name=name)
             yield syntax(line.number, node.column, text, "End the subprogram with LBL 0.").diagnostic
 
 
@@ -320,7 +332,12 @@ class Flow:
         """A finding in a called program: told at its call, with file and line in its text."""
         if len(self._running) == 1:
             return found
-        message = f"{self.program.source.name} line {found.line}: {found.message}"
+        message = Message(
+            "{source} line {line}: {value}",
+            source=self.program.source.name,
+            line=found.line,
+            value=found.message,
+        )
         return replace(found, line=self._running[1].place, column=0, message=message)
 
     def call(self, line: int, node: Call, times: int) -> None:
@@ -333,7 +350,11 @@ class Flow:
             self._repeat(line, target, times)
             return
         if len(running.levels) > DEEPEST_CALL:
-            text = f"Calls are nested more than {DEEPEST_CALL} levels deep at LBL {name_text(node.name)}."
+            text = Message(
+                "Calls are nested more than {deepest_call} levels deep at LBL {node}.",
+                deepest_call=DEEPEST_CALL,
+                node=name_text(node.name),
+            )
             hint = "A subprogram must not call itself."
             raise fault(line, node.column, NESTING, text, hint)
         running.levels.append(_Level(back=running.at))
@@ -380,7 +401,11 @@ class Flow:
         if called is None:
             return None
         if len(self._running) > DEEPEST_CALL:
-            text = f"Program calls are nested more than {DEEPEST_CALL} levels deep at {name}."
+            text = Message(
+                "Program calls are nested more than {deepest_call} levels deep at {name}.",
+                deepest_call=DEEPEST_CALL,
+                name=name,
+            )
             raise fault(line, 1, NESTING, text, "A program must not call itself.")
         self._running.append(_Running(called, place=self.shown_line(line), levels=[_Level(back=called.end)]))
         return called

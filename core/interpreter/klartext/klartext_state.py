@@ -20,6 +20,7 @@ from core.interpreter.working_plane import Angles, Corners, PlaneSystem, Swivel
 from core.language.diagnostics import AT_THE_STOP, Diagnostic, ProgramError, Severity, resting_on
 from core.language.klartext.klartext_faults import fault
 from core.language.klartext.table_file import Row
+from core.message import Message
 
 ORIGIN: Vector = (0.0, 0.0, 0.0)
 
@@ -213,7 +214,9 @@ class State:
 
     def unheeded(self, what: str, column: int) -> None:
         """Tell that something steers nothing here."""
-        self.tell_once(column, Severity.NOTE, "unheeded", f"{what} has no effect here.")
+        self.tell_once(
+            column, Severity.NOTE, "unheeded", Message(("{what} has no effect on this control."), what=what)
+        )
 
     # --- blocks -------------------------------------------------------------------------------------------
 

@@ -23,6 +23,7 @@ from core.language.klartext.klartext_faults import (
     unsupported,
 )
 from core.language.klartext.klartext_nodes import MCode
+from core.message import Message
 
 M19, M89, M91, M92, M99 = 19, 89, 91, 92, 99
 FEEDS = frozenset({103, 136, 137})  # of ``feed_rates``: they count as soon as they are read
@@ -64,36 +65,44 @@ def check(state: State, codes: Sequence[MCode]) -> None:
         if code.number in {M91, M92}:
             _check_datum(state, code, codes)
         if code.number == M19 and not limits.spindle_oriented:
-            text = f"M19 stops the spindle at an angle, but {UNORIENTED}."
-            raise state.refuse(code.column, M_UNDEFINED, text, f"{HOW_ORIENTED.capitalize()}, or remove M19.")
+            text: str = Message("M19 stops the spindle at an angle, but {unoriented}.", unoriented=UNORIENTED)
+            raise state.refuse(
+                code.column,
+                M_UNDEFINED,
+                text,
+                Message("{how_oriented}, or remove M19.", how_oriented=HOW_ORIENTED.capitalize()),
+            )
         if code.number in _NOT_BUILT - known:
             raise unsupported(state.line, code.column, f"M{code.number}")
         if code.number not in known:
-            text = f"M{code.number} is not defined in the machine file."
+            text = Message("M{number} is not defined in the machine file.", number=code.number)
             raise state.refuse(code.column, M_UNDEFINED, text, _ADVICE.get(code.number, _OWN))
         if code.number in UNHEEDED | limits.m_ignored:
             state.unheeded(f"M{code.number}", code.column)
         if code.number == SISTER_TOOL:
-            text = "M101 does not change to a replacement tool here: the called tool remains in use."
+            text = (
+                "On this control, M101 does not change to a replacement tool, so the called "
+                "tool remains in use."
+            )
             hint = "Check the tool life before you start the program."
             state.tell_once(code.column, Severity.WARNING, "no-replacement-tool", text, hint)
         if any(other.number == code.number for other in codes[:position]):
-            text = f"M{code.number} is programmed twice in the block."
-            raise syntax(state.line, code.column, text, "Remove one of them.")
+            text = Message("M{number} is programmed twice in the block.", number=code.number)
+            raise syntax(state.line, code.column, text, "Remove one of the two.")
     turning = [code for code in codes if code.number in {*_TURNS, 5, M19}]
     if len(turning) > 1:
         text = "More than one M function in the block controls the spindle."
-        raise state.refuse(turning[1].column, CONTRADICTION, text, "Remove one of them.")
+        raise state.refuse(turning[1].column, CONTRADICTION, text, "Remove one of the two.")
 
 
 def _check_datum(state: State, code: MCode, codes: Sequence[MCode]) -> None:
     """M91 and M92: not while M128 is on, and one of both."""
     if state.m128:
-        text = f"M{code.number} is not allowed while M128 is active."
+        text: str = Message("M{number} is not allowed while M128 is active.", number=code.number)
         raise state.refuse(code.column, NOT_WITH_M128, text, ("Switch M128 off with M129 before this block."))
     if {M91, M92} <= {other.number for other in codes}:
-        text = "M91 and M92 measure from different datums."
-        raise state.refuse(code.column, CONTRADICTION, text, "Remove one of them.")
+        text = "M91 and M92 cannot be in the same block because they measure from different datums."
+        raise state.refuse(code.column, CONTRADICTION, text, "Remove one of the two.")
 
 
 def datum(state: State, codes: Sequence[MCode]) -> Mapping[str, float] | None:
@@ -140,7 +149,9 @@ def behind(state: State, codes: Sequence[MCode], comment: str) -> Iterator[Block
             yield state.action(actions.ProgramStop(optional=code.number == 1, message=comment))
         if code.number == 6:
             yield state.action(
-                actions.ProgramStop(optional=False, message=f"TOOL {tool_text(state.modal.tool)}")
+                actions.ProgramStop(
+                    optional=False, message=Message("TOOL {tool}", tool=tool_text(state.modal.tool))
+                )
             )
         if code.number in {2, 30}:
             yield end(state)
@@ -159,7 +170,7 @@ def end(state: State) -> Block:
 
 def _start(state: State, code: MCode) -> Block:
     if not state.modal.rpm:
-        why = f"M{code.number} starts the spindle, but no TOOL CALL sets S."
+        why = Message("M{number} starts the spindle, but no TOOL CALL sets S.", number=code.number)
         raise state.refuse(code.column, WRONG_RPM, why, "Program S in TOOL CALL.")
     state.modal = state.modal._replace(spindle=_TURNS[code.number], oriented=None)
     return state.action(actions.SpindleRun(state.modal.rpm * state.modal.spindle))

@@ -18,6 +18,7 @@ from core.interpreter.klartext.klartext_state import ORIGIN, SLIDES, State
 from core.interpreter.klartext.path_functions import PathRunner
 from core.interpreter.klartext.tool_call import measure_again
 from core.language.klartext.klartext_nodes import KlartextLine
+from core.message import Message
 
 
 class Parts(NamedTuple):
@@ -93,7 +94,7 @@ def _lines(state: State) -> Iterator[StateLine]:
     yield StateLine("plane", _plane(state))
     turned = f"ROT{figure.rotation:+g}" if figure.rotation else ""
     scaled = f"SCL{figure.factor:g}" if figure.factor != 1.0 else ""
-    mirrored = f"MIRROR {figure.mirrored}" if figure.mirrored else ""
+    mirrored = Message("MIRROR {mirrored}", mirrored=figure.mirrored) if figure.mirrored else ""
     yield StateLine("transform", "  ".join(each for each in (mirrored, turned, scaled) if each))
     yield StateLine("tcpm", "M128" if state.m128 else "M129")
     yield StateLine("coolant", "M8" if modal.coolant else "M9")

@@ -32,7 +32,7 @@ def _rough(state: State, tool: CycleTool, lines: Lines, area: Area, column: int)
     values = _heights(tool, told) | {3: told.number(2, at=1), 10: -abs(told.number(2)), 11: plunge}
     values |= {12: told.cutting_feed(3), 19: plunge, 208: 99999.0}
     if told.number(3):
-        tool.tell("the pocket is cleared in rings, not along parallel paths.")
+        tool.tell("the pocket is cleared in concentric passes, not along parallel paths.")
     yield from rough_out(tool.seen(values), area)
 
 
@@ -42,7 +42,8 @@ def _pilot(state: State, tool: CycleTool, lines: Lines, area: Area, column: int)
     values = _heights(tool, told) | {3: told.number(2, at=1), 10: -abs(told.number(2))}
     values |= {11: told.cutting_feed(2), 13: float(state.modal.tool)}
     tool.tell(
-        "holes are drilled where this tool would plunge; cycle 6 plunges along a ramp and needs no holes."
+        "the cycle drills holes where this tool would plunge; cycle 6 plunges along a ramp "
+        "and does not need these holes."
     )
     yield from pilot_drilling(tool.seen(values), area)
 

@@ -16,6 +16,7 @@ from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.q_functions import value
 from core.language.klartext.klartext_faults import CYCLE_MISSING
 from core.language.klartext.klartext_nodes import AxisWord, CycleLine
+from core.message import Message
 
 Lines = Mapping[int, CycleLine]
 _SMALLEST = 1e-6  # mm
@@ -41,7 +42,12 @@ class Told:
         word: AxisWord | None = found[at] if at < len(found) else None
         if word is None:
             number = next(iter(self._lines.values())).number if self._lines else 0
-            text = f"Line {number}.{part} of the cycle has no {axis or 'number'}."
+            text = Message(
+                "Line {number}.{part} of the cycle has no {axis}.",
+                number=number,
+                part=part,
+                axis=axis or "number",
+            )
             raise self._state.refuse(self._column, CYCLE_MISSING, text, "Complete the CYCL DEF.")
         return value(self._state, word.value.formula)
 
@@ -218,7 +224,12 @@ def _levels(tool: CycleTool, depth: float, step: float) -> Iterator[float]:
     count = math.ceil(depth / step - 1e-9)
     if count > _MOST_LEVELS:
         raise tool.refuse(
-            f"An infeed of {step:g} mm would need {count} passes, which is too many.", "Increase the infeed."
+            Message(
+                "An infeed of {step} mm would need {count} passes, which is too many.",
+                step=f"{step:g}",
+                count=count,
+            ),
+            "Increase the infeed.",
         )
     yield from (min(step * at, depth) for at in range(1, count + 1))
 

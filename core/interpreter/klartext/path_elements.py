@@ -25,6 +25,7 @@ from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
 from core.language.klartext.klartext_faults import ARC_END, DIRECTION, NO_POLE, PREVIOUS
 from core.language.klartext.klartext_nodes import AxisWord, Move, Pole
+from core.message import Message
 
 ON_CIRCLE = 0.016  # mm by which the end of an arc may miss the circle through its start: the control's own
 _PARALLEL = 1e-9
@@ -184,7 +185,11 @@ def _by_radius(state: State, node: Move, start: Point, end: Point, _: Point | No
     radius = word_values.coordinate(state, word)
     chord = math.dist(start, end)
     if chord < SAME_POINT or chord / 2.0 > abs(radius) + ON_CIRCLE:
-        text = f"An arc with R {abs(radius):.10g} mm cannot connect two points {chord:.10g} mm apart."
+        text = Message(
+            "An arc with R {radius} mm cannot connect two points {chord} mm apart.",
+            radius=f"{abs(radius):.10g}",
+            chord=f"{chord:.10g}",
+        )
         hint = (
             "Program a full circle as two arcs or with C."
             if chord < SAME_POINT
@@ -201,13 +206,15 @@ def _by_radius(state: State, node: Move, start: Point, end: Point, _: Point | No
 def _tangential(state: State, node: Move, start: Point, end: Point, before: Point | None) -> Arc | None:
     """CT and CTP: goes on in the direction of the element before; straight on it is a line."""
     if before is None:
-        text = f"No move precedes {node.form}, so its starting direction is not defined."
+        text = Message("No move precedes {form}, so its starting direction is not defined.", form=node.form)
         raise state.refuse(node.column, PREVIOUS, text, "Program a move before this block.")
     dx, dy = end[0] - start[0], end[1] - start[1]
     aside = -before[1] * dx + before[0] * dy  # of the end to the left of the way
     if abs(aside) < _PARALLEL * max(1.0, math.hypot(dx, dy)):
         if before[0] * dx + before[1] * dy <= 0.0:
-            text = f"{node.form} would have to reverse its direction to reach its end point."
+            text = Message(
+                "{form} would have to reverse its direction to reach its end point.", form=node.form
+            )
             raise state.refuse(node.column, ARC_END, text, "Correct the end point.")
         return None
     radius = (dx * dx + dy * dy) / (2.0 * aside)  # positive where the centre is on the left
@@ -230,8 +237,13 @@ def _round_the_pole(state: State, node: Move, made: PathElement) -> Iterator[Pat
     sweep = _sweep(state, node, first)
     turns = math.ceil(abs(sweep) / 360.0 - 1e-9)
     if turns > _MOST_TURNS:
-        text = f"CP makes {turns} turns, which is too many."
-        raise state.refuse(node.column, ARC_END, text, f"Program at most {_MOST_TURNS} turns.")
+        text = Message("CP makes {revolutions} revolutions, which is too many.", revolutions=turns)
+        raise state.refuse(
+            node.column,
+            ARC_END,
+            text,
+            Message(("Program at most {most_turns} revolutions."), most_turns=_MOST_TURNS),
+        )
     z1 = _along(state, node.word("XYZ"[order[2]]), start[2])
     here = start
     for turn in range(1, turns + 1):
@@ -257,9 +269,9 @@ def _sweep(state: State, node: Move, first: float) -> float:
         return (turned or 360.0) if node.turn == "+" else turned - 360.0
     if value == 0.0 or (value > 0.0) != (node.turn == "+"):
         text = (
-            f"IPA{value:+g} and DR{node.turn} have opposite directions."
+            Message("IPA{value} and DR{turn} have opposite directions.", value=f"{value:+g}", turn=node.turn)
             if value
-            else ("IPA+0 produces no motion.")
+            else ("IPA+0 does not produce any motion.")
         )
         raise state.refuse(word.column, DIRECTION, text, "Use the same sign for IPA and DR.")
     return value
@@ -268,17 +280,19 @@ def _sweep(state: State, node: Move, first: float) -> float:
 def _demand_radius(state: State, node: Move, radius: float) -> None:
     if radius < SAME_POINT:
         text = "The tool is on the pole, so no circle is possible."
-        raise state.refuse(node.column, ARC_END, text, "Move to the circle before this block.")
+        raise state.refuse(node.column, ARC_END, text, "Move to a point on the circle before this block.")
 
 
 def _demand_on_circle(state: State, node: Move, first: float, last: float) -> None:
     if abs(first - last) > ON_CIRCLE:
-        text = (
-            f"The end point is {last:.10g} mm from the pole, but the start point is {first:.10g} mm from it."
+        text = Message(
+            "The end point is {last} mm from the pole, but the start point is {first} mm from the pole.",
+            last=f"{last:.10g}",
+            first=f"{first:.10g}",
         )
         raise state.refuse(node.column, ARC_END, text, "Correct the end point or CC.")
 
 
 def _no_turn(state: State, node: Move) -> Arc:
-    text = f"{node.form} needs DR+ or DR-."
+    text = Message("{form} needs DR+ or DR-.", form=node.form)
     raise state.refuse(node.column, DIRECTION, text, "Write DR+ for counterclockwise.")

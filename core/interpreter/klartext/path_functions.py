@@ -31,6 +31,7 @@ from core.language.klartext.klartext_faults import (
     unsupported,
 )
 from core.language.klartext.klartext_nodes import AxisWord, Corner, Move, Pole
+from core.message import Message
 
 AT_TARGET = 0.001  # degrees by which a table may miss its target before a cut is warned of
 
@@ -99,7 +100,7 @@ class PathRunner:
         """RND or CHF behind an element that waits for it. Raises ProgramError where there is none."""
         last = next((each for each in reversed(self._waiting) if isinstance(each, PathElement)), None)
         if last is None or last.flat is None or self._corner is not None:
-            text = f"{node.form} must follow a path in the working plane."
+            text = Message("{form} must follow a path in the working plane.", form=node.form)
             raise self._state.refuse(node.column, ROUNDING, text, _BETWEEN)
         self._corner, self._corner_line = node, self._state.line
 
@@ -113,7 +114,7 @@ class PathRunner:
     def finish(self, column: int, what: str) -> Iterator[Block]:
         """Everything that waits, before ``what``, which radius compensation does not let through."""
         if self._side:
-            text = f"{what} is not allowed while radius compensation is active."
+            text = Message("{what} is not allowed while radius compensation is active.", what=what)
             raise self._state.refuse(
                 column, COMPENSATION, text, ("End the contour with R0 or DEP before this block.")
             )
@@ -165,7 +166,7 @@ class PathRunner:
             _warn(state, node)
         rotary = _rotary(state, node, state.kinematics.zero)
         if rotary and self._side:
-            text = "A rotary axis moves while radius compensation is active."
+            text = "A rotary axis cannot move while radius compensation is active."
             raise state.refuse(
                 node.column, COMPENSATION, text, ("End the contour with R0 before this block.")
             )
@@ -176,7 +177,7 @@ class PathRunner:
             return
         made = list(elements(state, node, self.here, self._direction, feed, rotary))
         if made[0].upright and (self._side or node.compensation in {"L", "R"}):
-            text = "Radius compensation works only in X and Y, but this arc is vertical."
+            text = "Radius compensation is possible only in X and Y, but this arc is vertical."
             raise state.refuse(
                 node.column, COMPENSATION, text, ("End the contour with R0 before this block.")
             )
@@ -217,7 +218,9 @@ class PathRunner:
             yield from self._close(node)
             return
         if self._direction is None:
-            text = f"No move precedes {node.form}, so its starting direction is not defined."
+            text = Message(
+                "No move precedes {form}, so its starting direction is not defined.", form=node.form
+            )
             raise self._state.refuse(node.column, PREVIOUS, text, "Program a move before this block.")
         here, direction = self.here, self._direction
         yield from self._release()
@@ -235,12 +238,20 @@ class PathRunner:
 
     def _demand_same_side(self, node: Move) -> None:
         if node.compensation in {"+", "-"} and self._side:
-            text = f"R{node.compensation} is not allowed while R{self._side} is active."
+            text = Message(
+                "R{compensation} is not allowed while R{side} is active.",
+                compensation=node.compensation,
+                side=self._side,
+            )
             raise self._state.refuse(node.column, COMPENSATION, text, "Write R0 before this block.")
         if node.compensation in {"L", "R"} and self._side and node.compensation != self._side:
-            text = f"R{node.compensation} is not allowed while R{self._side} is active."
+            text = Message(
+                "R{compensation} is not allowed while R{side} is active.",
+                compensation=node.compensation,
+                side=self._side,
+            )
             raise self._state.refuse(
-                node.column, COMPENSATION, text, ("Write R0 before you change the side.")
+                node.column, COMPENSATION, text, ("Write R0 before you change the compensation side.")
             )
 
     def _switched(self, node: Move) -> Iterator[Block]:
@@ -261,14 +272,16 @@ class PathRunner:
         size = word_values.number(self._state, corner.size, corner.form, word_values.MOST_COORDINATE, 0.0)
         size *= self._state.scale
         if first is None or last is None:
-            text = f"{corner.form} must be followed by a path in the working plane."
+            text = Message("{form} must be followed by a path in the working plane.", form=corner.form)
             raise self._no_corner(corner, text, _BETWEEN)
         if size <= SAME_POINT:
             return after
         try:
             cut = rounding(first, last, size) if corner.form == "RND" else chamfer(first, last, size)
         except CornerError as problem:
-            text = f"{corner.form} {size:g} mm: {problem}."
+            text = Message(
+                "{form} {size} mm: {problem}.", form=corner.form, size=f"{size:g}", problem=problem
+            )
             raise self._no_corner(corner, text, "Use a smaller chamfer or radius.") from None
         feed = before.feed if corner.feed is None else self._feed_of(corner)
         z = before.end[2]
@@ -298,7 +311,7 @@ class PathRunner:
         """Raises ProgramError where a corner still waits for the element behind it."""
         corner, self._corner = self._corner, None
         if corner is not None:
-            text = f"{corner.form} must be followed by a path in the working plane."
+            text = Message("{form} must be followed by a path in the working plane.", form=corner.form)
             raise self._no_corner(corner, text, _BETWEEN)
 
     def _no_corner(self, corner: Corner, text: str, hint: str) -> ProgramError:
@@ -404,7 +417,7 @@ class PathRunner:
     def _demand_axes(self, node: Move) -> None:
         for word in node.axes:
             if word.axis not in self._state.at:
-                text = f"This machine has no {word.axis} axis."
+                text = Message("This machine has no {axis} axis.", axis=word.axis)
                 raise self._state.refuse(word.column, WRONG_AXIS, text, "Remove the word.")
 
     def _take_feed(self, node: Move) -> float | None:
@@ -462,7 +475,7 @@ def _warn(state: State, node: Move) -> None:
         return
     if not state.modal.spindle and "spindle" not in state.reported:
         state.reported.add("spindle")
-        text, hint = "This feed move runs with the spindle stopped.", ("Start the spindle with M3 or M4.")
+        text, hint = "The spindle is stopped during this feed move.", ("Start the spindle with M3 or M4.")
         state.log.warn(state.line, 0, "spindle-stopped", text, hint)
     plane = state.plane
     if plane is None or ("table", plane.line) in state.reported:
@@ -474,7 +487,11 @@ def _warn(state: State, node: Move) -> None:
     ]
     if off:
         state.reported.add(("table", plane.line))
-        text = f"The position of {' and '.join(off)} does not match the plane of line {plane.line}."
+        text = Message(
+            "The position of {off} does not match the plane of line {line}.",
+            off=" and ".join(off),
+            line=plane.line,
+        )
         hint = (
             "Position the rotary axes before the cut with L A+Q120 C+Q122 R0 FMAX, or write TURN "
             "in the PLANE block."

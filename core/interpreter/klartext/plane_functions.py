@@ -48,6 +48,7 @@ from core.language.klartext.klartext_faults import (
     WRONG_AXIS,
 )
 from core.language.klartext.klartext_nodes import AxisWord, Plane, Retract
+from core.message import Message
 
 # --- from the words of a PLANE block to its frame and angles; nothing moves here
 
@@ -64,8 +65,10 @@ def working_plane(state: State, node: Plane) -> WorkingPlane:
     table_rot = node.positioning.rotation == "TABLE ROT"
     found = choose(state.kinematics, frame, state.rotary, side, table_rot=table_rot)
     if found is None:
-        asked = f" with {side}" if side else ""
-        text = f"The rotary axes cannot reach this plane within their ranges{asked}."
+        asked = Message(" with {side}", side=side) if side else ""
+        text = Message(
+            "The rotary axes cannot reach this plane within their ranges{requested}.", requested=asked
+        )
         raise state.refuse(node.column, ANGLE, text, "Check the points, angles and SYM.")
     if side is None and not state.table_known:
         _tell_of_two_ways(state, node, frame)
@@ -75,7 +78,10 @@ def working_plane(state: State, node: Plane) -> WorkingPlane:
 def _tell_of_two_ways(state: State, node: Plane, frame: Matrix) -> None:
     """Which way the table swivels hangs on where it stands at the start, which no proof knows."""
     if len(fitting(state.kinematics, frame, state.rotary)) > 1:
-        text = "The position of the table at the start decides in which of two directions it swivels."
+        text = (
+            "There are two possible swivel directions; the start position of the table "
+            "determines which direction is used."
+        )
         hint = "Write SYM+ or SYM-, or position the table before this block."
         state.log.add(Diagnostic(state.line, node.column, Severity.NOTE, "two-ways", text, hint))
 
@@ -86,15 +92,20 @@ def _axial(state: State, node: Plane) -> WorkingPlane:
     for word in node.words:
         axis = state.kinematics.rotary(word.axis)
         if axis is None:
-            text = f"This machine has no rotary axis {word.axis}."
-            hint = f"Remove the word, or select a machine with axis {word.axis}."
+            text = Message("This machine has no rotary axis {axis}.", axis=word.axis)
+            hint = Message("Remove the word, or select a machine with axis {axis}.", axis=word.axis)
             raise state.refuse(word.column, WRONG_AXIS, text, hint)
         value = word_values.number(state, word.value, word.axis, word_values.MOST_ANGLE)
         zero = state.kinematics.zero[axis.name]
         angle = angles[axis.name] + value if word.incremental else value + zero
         if not axis.inside(angle):
-            ends = f"{axis.low - zero:g} and {axis.high - zero:g}"
-            text = f"{axis.name} {angle - zero:+.7g} is not between {ends}."
+            ends = Message("{low} and {high}", low=f"{axis.low - zero:g}", high=f"{axis.high - zero:g}")
+            text = Message(
+                "{axis} {angle} is not between {ends}.",
+                axis=axis.name,
+                angle=f"{angle - zero:+.7g}",
+                ends=ends,
+            )
             raise state.refuse(word.column, ANGLE, text, "Correct the angle.")
         angles[axis.name] = axis.displayed(angle)
     return WorkingPlane(state.kinematics.frame(angles), angles, state.line)
@@ -119,7 +130,7 @@ def _made(state: State, node: Plane, frame: Callable[[], Matrix]) -> Matrix:
     try:
         return frame()
     except NoFrameError as problem:
-        text = f"{str(problem).capitalize()}."
+        text = Message("{what}.", what=str(problem).capitalize())
         raise state.refuse(
             node.column, PLANE_WRONG, text, "Correct the points, vectors or angles."
         ) from problem
@@ -161,7 +172,7 @@ def _as_figured(state: State, node: Plane, frame: Matrix) -> Matrix:
     figure = state.figure
     if figure.plain:
         return frame
-    text = f"MIRROR, ROTATION or SCALE is active and also applies to PLANE {node.form}."
+    text = Message("MIRROR, ROTATION or SCALE is active and also applies to PLANE {form}.", form=node.form)
     hint = "Check the axis angles, write PLANE before MIRROR, ROTATION and SCALE, or use PLANE AXIAL."
     state.log.warn(state.line, node.column, "plane-figure", text, hint)
     columns = [figure.plane(applied(frame, figure.program(unit))) for unit in IDENTITY]
@@ -233,7 +244,7 @@ def retract_way(state: State, asked: Retract | None) -> float:
             ways.append(((slide.high if share > 0.0 else slide.low) - at) / share)
     up = min(ways, default=math.inf)
     if math.isinf(up):
-        text = "MB MAX needs a software limit, but this machine has none along the tool axis."
+        text = "MB MAX needs a software limit, but this machine does not have one along the tool axis."
         raise state.refuse(asked.column, INPUT_VALUE, text, "Write MB with a length.")
     return max(up - SHORT_OF_LIMIT, 0.0)
 
@@ -285,7 +296,9 @@ def _warn_of_shift(state: State, made: WorkingPlane | None) -> None:
     """A datum that was shifted in a tilted system, and another plane straight behind it: the classic trap."""
     if made is None or state.plane is None or state.shift == ORIGIN:
         return
-    text = f"The datum was shifted in the tilted coordinate system of line {state.plane.line}."
+    text = Message(
+        "The datum was shifted in the tilted coordinate system of line {line}.", line=state.plane.line
+    )
     hint = (
         "If the shift is meant for the workpiece coordinate system, write PLANE RESET STAY "
         "before TRANS DATUM."

@@ -14,6 +14,7 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext.cycle_moves import CycleTool
 from core.interpreter.klartext.hole_cycles import SMALLEST, heights, infeeds, out
 from core.interpreter.klartext.milled_rings import Ring, Seat
+from core.message import Message
 
 _RAMP = math.tan(math.radians(3.0))
 _MOST_OVERLAP = 1.9999
@@ -32,9 +33,11 @@ class _Milling:
         self.scope = int(tool.plain(215, float(_ROUGH)))
         overlap = tool.plain(370, 1.0)
         if not 0.0 < overlap <= _MOST_OVERLAP or tool.radius <= SMALLEST:
-            text = (
-                f"With path overlap Q370={overlap:g} and tool radius {tool.radius:g} mm, the cycle "
-                "cannot clear the area."
+            text = Message(
+                "With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot "
+                "clear the area.",
+                overlap=f"{overlap:g}",
+                radius=f"{tool.radius:g}",
             )
             raise tool.refuse(text, "Set Q370 between 0.1 and 1.9999, and enter the tool radius.")
         self.step = overlap * tool.radius

@@ -18,6 +18,7 @@ from core.language.klartext.klartext_faults import (
 )
 from core.language.klartext.klartext_nodes import Assign, ErrorMessage, GlobalDef, Jump
 from core.language.klartext.q_parameters import WHETHER
+from core.message import Message
 
 MOST_Q = 999_999_999.999999
 SMALLEST = 1e-9  # a result nearer to 0 is what rounding has left of 0
@@ -54,7 +55,9 @@ def _has_value(state: State, kind: str, number: int) -> bool:
 def _predefined(state: State, number: int, column: int) -> float:
     """What GLOBAL DEF has told for a parameter of cycles. Raises ProgramError where none has."""
     if number not in state.q_global:
-        text = f"Q{number}=PREDEF, but no GLOBAL DEF defines Q{number}."
+        text = Message(
+            "Q{number}=PREDEF, but no GLOBAL DEF defines Q{number2}.", number=number, number2=number
+        )
         raise state.refuse(
             column, CYCLE_MISSING, text, ("Write GLOBAL DEF before this block, or enter a number.")
         )
@@ -81,10 +84,14 @@ def value(state: State, formula: Formula) -> float:
     try:
         found = worth(formula, parameter)
     except NoValueError as problem:
-        error = state.refuse(problem.column, ARITHMETIC, f"{problem}.", "Correct the formula.")
+        error = state.refuse(
+            problem.column, ARITHMETIC, Message("{what}.", what=problem), "Correct the formula."
+        )
         raise state.of_the_place(error) from None
     if abs(found) > MOST_Q:
-        text = f"The result {found:g} exceeds the limit of {MOST_Q:.15g}."
+        text = Message(
+            "The result {value} exceeds the limit of {most_q}.", value=f"{found:g}", most_q=f"{MOST_Q:.15g}"
+        )
         raise state.refuse(1, INPUT_VALUE, text, "Correct the formula.")
     return 0.0 if abs(found) < SMALLEST else found
 
@@ -109,5 +116,7 @@ def jumps(state: State, node: Jump) -> bool:
 
 def own_error(state: State, node: ErrorMessage) -> ProgramError:
     """FN 14: the fault that the program itself tells, and stops at."""
-    text = f"The program reports its own error {node.number} and stops."
-    return state.refuse(node.column, OWN_ERROR, text, "Check the conditions before this block.")
+    text = Message("The program reports its own error {number} and stops.", number=node.number)
+    return state.refuse(
+        node.column, OWN_ERROR, text, ("Check the conditions under which the program reaches this block.")
+    )

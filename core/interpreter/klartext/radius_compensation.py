@@ -18,6 +18,7 @@ from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.path_elements import PathElement, goal
 from core.language.klartext.klartext_faults import INPUT_VALUE, RADIUS_TOO_LARGE, fault
 from core.language.klartext.klartext_nodes import Move
+from core.message import Message
 
 _MOST_CCA = 360.0
 
@@ -51,7 +52,11 @@ class Contour:
             found += offset.close()
         except GougeError as problem:
             at = self._flats[min(problem.index, len(self._flats) - 1)]
-            text = f"The tool radius of {radius:.10g} mm does not fit here: {problem.why}."
+            text = Message(
+                "A tool radius of {radius} mm does not fit the contour: {why}.",
+                radius=f"{radius:.10g}",
+                why=problem.why,
+            )
             hint = "Use a smaller tool, or change the contour."
             raise fault(at.line, at.column, RADIUS_TOO_LARGE, text, hint) from None
         for piece in found:
@@ -162,9 +167,11 @@ def _radius(state: State, entry: Entry) -> tuple[float, float]:
     turn = -1.0 if (entry.side == "R") != (value < 0.0) else 1.0
     size = value - entry.radius if value > 0.0 else entry.radius - value
     if value == 0.0 or size < SAME_POINT:
-        text = (
-            f"R {value:.10g} mm of {entry.node.form} must be larger than the tool radius of "
-            f"{entry.radius:.10g} mm."
+        text = Message(
+            "R {value} mm of {form} must be larger than the tool radius of {radius} mm.",
+            value=f"{value:.10g}",
+            form=entry.node.form,
+            radius=f"{entry.radius:.10g}",
         )
         raise state.refuse(word.column, RADIUS_TOO_LARGE, text, "Increase R.")
     return size, turn
@@ -175,8 +182,13 @@ def _touching(state: State, entry: Entry, centre: Point, size: float, *, clockwi
     dx, dy = entry.start[0] - centre[0], entry.start[1] - centre[1]
     away = math.hypot(dx, dy)
     if away < size:
-        text = f"{entry.node.form} has no possible path because the tool is inside its arc."
-        raise state.refuse(entry.node.column, INPUT_VALUE, text, "Start farther away, or reduce R.")
+        text = Message(
+            ("No path is possible for {form} because the tool is inside the arc of this move."),
+            form=entry.node.form,
+        )
+        raise state.refuse(
+            entry.node.column, INPUT_VALUE, text, "Start farther from the contour, or reduce R."
+        )
     half = math.acos(min(1.0, size / away))
     # Counter-clockwise the circle is met half an angle further on, seen from its centre.
     angle = math.atan2(dy, dx) + (-half if clockwise else half)

@@ -16,6 +16,7 @@ from core.interpreter.klartext.q_functions import OF_THE_CONTROL, keep, value
 from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext.klartext_faults import TOOL_UNKNOWN, unsupported
 from core.language.klartext.klartext_nodes import SystemRead, SystemWrite
+from core.message import Message
 
 _TOOL_TABLE = 50
 _AXES = {1: "X", 2: "Y", 3: "Z", 4: "A", 5: "B", 6: "C"}
@@ -72,10 +73,19 @@ def write_system(state: State, node: SystemWrite) -> None:
             raise unsupported(
                 state.line,
                 node.column,
-                f"FN 17 for {name} of tool {tool} in the tool table (enter the value there)",
+                Message(
+                    (
+                        "Writing {name} of tool {tool} to the tool table with FN 17 (enter the value "
+                        "in the tool table instead)"
+                    ),
+                    name=name,
+                    tool=tool,
+                ),
             )
     state.tool_cells[tool, number] = content
-    state.unheeded(f"FN 17 SYSWRITE ID50 NR{number} {name}".rstrip(), node.column)
+    state.unheeded(
+        Message("FN 17 SYSWRITE ID50 NR{number} {name}", number=number, name=name).rstrip(), node.column
+    )
 
 
 def _cell(state: State, column: int, number: int, index: int) -> float:
@@ -85,14 +95,18 @@ def _cell(state: State, column: int, number: int, index: int) -> float:
         return state.tool_cells[tool, number]
     row = _row(state, tool)
     if row is None:
-        text = f"Tool {tool} is not in the tool table."
+        text = Message("Tool {tool} is not in the tool table.", tool=tool)
         raise state.refuse(column, TOOL_UNKNOWN, text, ("Add the tool to the tool table."))
     if number in _COLUMNS:
         return _COLUMNS[number][1](row) / (state.scale if number in _LENGTHS else 1.0)
     if number not in _EMPTY:
         raise _not_here(state, column, 18, _TOOL_TABLE, number, index)
     found = _AS_THE_RADIUS if number == _OFFSET_IN_PLANE else 0.0
-    text = f"The tool table has no column {_EMPTY[number]}, so FN 18 reads {found:.9g} as for an empty cell."
+    text = Message(
+        "The tool table has no column {empty}, so FN 18 returns {value} as it does for an empty cell.",
+        empty=_EMPTY[number],
+        value=f"{found:.9g}",
+    )
     state.tell_once(column, Severity.WARNING, "tool-table-column", text)
     return found
 
@@ -132,7 +146,17 @@ def _figure(state: State, column: int, group: int, number: int, index: int) -> f
 
 
 def _not_here(state: State, column: int, function: int, group: int, number: int, index: int) -> ProgramError:
-    return unsupported(state.line, column, f"FN {function} with ID{group} NR{number} IDX{index}")
+    return unsupported(
+        state.line,
+        column,
+        Message(
+            "FN {function} with ID{word} NR{number} IDX{index}",
+            function=function,
+            word=group,
+            number=number,
+            index=index,
+        ),
+    )
 
 
 def _feed(state: State, column: int) -> float:

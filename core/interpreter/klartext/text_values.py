@@ -22,6 +22,7 @@ from core.language.klartext.klartext_nodes import (
     TextRead,
 )
 from core.language.klartext.table_file import Row
+from core.message import Message
 
 MOST_SIGNS = 255
 _MOST_DECIMALS = 9
@@ -35,12 +36,24 @@ def assign_text(state: State, node: TextAssign) -> None:
         unknown = next((part.kind for part, text in zip(parts, made, strict=True) if text is None), "")
         if unknown:
             state.texts[number] = None
-            state.unheeded(f"{unknown} of QS{number}", node.column)
+            state.unheeded(
+                Message(("{unknown} in string parameter QS{number}"), unknown=unknown, number=number),
+                node.column,
+            )
             continue
         text = "".join(filter(None, made))
         if len(text) > MOST_SIGNS:
-            message = f"QS{number} would have {len(text)} characters, which is too many."
-            raise state.refuse(node.column, INPUT_VALUE, message, f"The maximum is {MOST_SIGNS}.")
+            message = Message(
+                "QS{number} would have {text_count} characters, which is too many.",
+                number=number,
+                text_count=len(text),
+            )
+            raise state.refuse(
+                node.column,
+                INPUT_VALUE,
+                message,
+                Message("The maximum is {most_points} points.", most_points=MOST_SIGNS),
+            )
         state.texts[number] = text
 
 
@@ -49,7 +62,9 @@ def text_of(state: State, name: TextName) -> str:
     found = _kept(state, name.number, name.column)
     if found is None:
         raise unsupported(
-            state.line, name.column, (f"A function that uses QS{name.number}, a text from the control,")
+            state.line,
+            name.column,
+            (Message("A function that uses text supplied by the control in QS{number}", number=name.number)),
         )
     return found
 
@@ -78,7 +93,11 @@ def _number_as_text(state: State, part: TextPart) -> str:
     assert part.first is not None
     decimals = 0 if part.second is None else int(value(state, part.second))
     if not 0 <= decimals <= _MOST_DECIMALS:
-        text = f"DECIMALS{decimals} is not between 0 and {_MOST_DECIMALS}."
+        text = Message(
+            "DECIMALS{decimals} is not between 0 and {most_decimals}.",
+            decimals=decimals,
+            most_decimals=_MOST_DECIMALS,
+        )
         raise state.refuse(part.column, INPUT_VALUE, text, "Correct the value.")
     return f"{value(state, part.first):.{decimals}f}"
 
@@ -120,7 +139,7 @@ def _as_number(state: State, node: TextRead, text: str) -> float:
     try:
         return float(text.strip().replace(",", "."))
     except ValueError:
-        message = f'QS{node.source}, "{text}", is not a number.'
+        message = Message('QS{source}, "{text}", is not a number.', source=node.source, text=text)
         raise state.refuse(
             node.column, INPUT_VALUE, message, ("Check the content of the QS parameter.")
         ) from None
@@ -146,7 +165,9 @@ def texts_agree(state: State, node: Jump) -> bool:
     for part in node.texts:
         text = _of(state, part)
         if text is None:
-            raise unsupported(state.line, part.column, ("A jump that depends on a text from the control"))
+            raise unsupported(
+                state.line, part.column, ("A jump that depends on text supplied by the control")
+            )
         known.append(text)
     return (known[0] == known[1]) == (value(state, node.condition) != 0.0)
 
@@ -159,7 +180,7 @@ def read_cells(state: State, node: TableRead) -> None:
     row = _row(state, node)
     for offset, column in enumerate(node.columns):
         if column not in row:
-            text = f"The row has no number in column {column}."
+            text = Message("The row does not contain a number in column {column}.", column=column)
             raise state.refuse(node.column, INPUT_VALUE, text, ("Correct the column, or fill in the cell."))
         keep(state, node.kind, node.q + offset, row[column])
 
@@ -169,7 +190,7 @@ def write_cells(state: State, node: TableWrite) -> None:
     row = _row(state, node)
     for offset, column in enumerate(node.columns):
         row[column] = content(state, node.kind, node.q + offset, node.column)
-    state.unheeded("FN 27 TABWRITE to the file", node.column)
+    state.unheeded("Writing to the file with FN 27: TABWRITE", node.column)
 
 
 def _row(state: State, node: TableRead | TableWrite) -> Row:
@@ -179,9 +200,9 @@ def _row(state: State, node: TableRead | TableWrite) -> Row:
             node.column, FILE_MISSING, text, ("Open the file with FN 26: TABOPEN before this block.")
         )
     if node.kind == "QS":
-        raise unsupported(state.line, node.column, "A text in a freely definable table")
+        raise unsupported(state.line, node.column, "Text in a freely definable table")
     number = int(value(state, node.row))
     if number not in state.free_table:
-        text = f"The table has no row {number}."
+        text = Message("The table has no row {number}.", number=number)
         raise state.refuse(node.column, INPUT_VALUE, text, "Correct the row number.")
     return state.free_table[number]

@@ -14,6 +14,7 @@ from core.geometry.lines_and_arcs import Arc, Point
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext.cycle_moves import CycleTool
 from core.interpreter.klartext.hole_cycles import SMALLEST, heights, infeeds, out
+from core.message import Message
 
 _MOST_TURNS = 10_000
 
@@ -30,8 +31,10 @@ class _Thread:
         if self.pitch == 0.0:
             raise tool.refuse("Pitch Q239 must not be 0.", "Enter the thread pitch.")
         if self.ring < SMALLEST or tool.radius <= SMALLEST:
-            text = (
-                f"A tool with R {tool.radius:.10g} mm cannot mill a thread of diameter {2 * nominal:.10g} mm."
+            text = Message(
+                "A tool with R {radius} mm cannot mill a thread of diameter {nominal} mm.",
+                radius=f"{tool.radius:.10g}",
+                nominal=f"{2 * nominal:.10g}",
             )
             raise tool.refuse(text, "Use another tool, or correct Q335.")
         self.feed = tool.cut(207) * self.ring / nominal
@@ -51,7 +54,7 @@ class _Thread:
         turns = math.ceil(depth / (rise * per_step) - SMALLEST)
         if turns > _MOST_TURNS:
             raise self.tool.refuse(
-                f"The thread would need {turns} turns, which is too many.",
+                Message("The thread would need {revolutions} turns, which is too many.", revolutions=turns),
                 ("Correct the pitch and the depth."),
             )
         if per_step == 1:
@@ -145,7 +148,8 @@ def outside_thread(tool: CycleTool) -> Iterator[Block]:
 def _milled(thread: _Thread, per_step: int) -> Iterator[Block]:
     if per_step < 0:
         raise thread.tool.refuse(
-            f"Q355={per_step} is not a valid number of threads.", ("Enter 0, 1 or a larger number.")
+            Message("Q355={per_step} is not a valid number of threads.", per_step=per_step),
+            ("Enter 0, 1 or a larger number."),
         )
     ccw = thread.counter_clockwise
     upwards = (thread.pitch > 0.0) == ccw

@@ -15,6 +15,7 @@ from core.interpreter.klartext.text_values import text_of
 from core.language.klartext.klartext_faults import NOT_WITH_M128, TOOL_UNKNOWN, WRONG_RPM, unsupported
 from core.language.klartext.klartext_nodes import TextName, ToolCall, ToolDef, Value
 from core.language.klartext.structure_blocks import MOST_TOOL
+from core.message import Message
 from core.tool_edges import NAMED_TOOLS, NamedTool
 
 
@@ -28,7 +29,9 @@ def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
         why = "TOOL CALL with a tool or an oversize is not allowed while M128 is active."
         raise state.refuse(1, NOT_WITH_M128, why, "Switch M128 off with M129 before this block.")
     if node.tool_axis not in {"", "Z"}:
-        raise unsupported(state.line, node.column, f"The tool axis {node.tool_axis}")
+        raise unsupported(
+            state.line, node.column, Message("The tool axis {tool_axis}", tool_axis=node.tool_axis)
+        )
     number = _number(state, node.tool, node.column)
     rpm = _speed(state, node, number)
     feed = _feed(state, node)
@@ -71,7 +74,7 @@ def _number(state: State, tool: int | str | Value | TextName | None, column: int
         return NamedTool(NAMED_TOOLS + names.index(tool), tool)
     if (found := state.setup.tool_names.get(tool.upper())) is not None:
         return found
-    text = f'No tool is named "{tool}".'
+    text = Message('No tool is named "{tool}".', tool=tool)
     hint = "Give this name to a tool in the tool table, or call the tool by its number."
     raise state.refuse(column, TOOL_UNKNOWN, text, hint)
 
@@ -92,7 +95,7 @@ def _change(
     _measure(state, tool, longer, thicker, use, column)
     yield state.action(ToolChange(tool))
     if tool and before not in {0, tool}:
-        yield state.action(ProgramStop(optional=False, message=f"TOOL {tool_text(tool)}"))
+        yield state.action(ProgramStop(optional=False, message=Message("TOOL {tool}", tool=tool_text(tool))))
 
 
 def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUse, column: int) -> None:
@@ -104,7 +107,9 @@ def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUs
     if 0 < tool < NAMED_TOOLS:
         use.call(tool)
     if _defined(state, tool) is None and tool and use.offset(tool, state.setup.tools) is None:
-        text = f"Tool {tool_text(tool)} has no offset, so 0 is used and the machine will not start."
+        text = Message(
+            "Tool {tool} has no offset, so 0 is used and the machine will not start.", tool=tool_text(tool)
+        )
         state.log.warn(state.line, column, "tool-offset-missing", text, "Set the tool offset.")
     measure_again(state)
 
@@ -148,9 +153,12 @@ def _by_cutting_speed(state: State, node: ToolCall, number: int | None) -> float
     speed = word_values.number(state, node.cutting_speed, "VC", word_values.MOST_SPEED, 0.0)
     radius = radius_of(state, state.modal.tool if number is None else number) or 0.0
     if radius <= 0.0:
-        text = "A cutting speed needs the tool radius, but the tool has none."
+        text = "A cutting speed needs the tool radius, but the radius of the tool is not defined."
         raise state.refuse(
-            node.cutting_speed.column, WRONG_RPM, text, ("Enter R in the tool table, or program S.")
+            node.cutting_speed.column,
+            WRONG_RPM,
+            text,
+            ("Enter the tool radius R in the tool table, or program S."),
         )
     return speed * 1000.0 / (2.0 * math.pi * radius)
 
@@ -163,7 +171,9 @@ def _speed(state: State, node: ToolCall, number: int | None) -> float | None:
     rpm = word_values.number(state, node.speed, "S", word_values.MOST_SPEED, 0.0)
     highest = state.setup.limits.max_rpm
     if rpm > highest:
-        text = f"S{rpm:g} is above the spindle maximum of {highest:g} rpm."
+        text = Message(
+            "S{rpm} is above the spindle maximum of {highest} rpm.", rpm=f"{rpm:g}", highest=f"{highest:g}"
+        )
         raise state.refuse(node.speed.column, WRONG_RPM, text, "Lower S.")
     return rpm
 

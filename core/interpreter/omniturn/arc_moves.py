@@ -12,6 +12,7 @@ from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import check_tool, go, on_step, warn_of_title_rapid
+from core.message import Message
 
 _TOLERANCE = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)
 _SAME = 1e-9  # mm
@@ -46,7 +47,7 @@ def arc_move(state: State, statement: Statement) -> Block:
 def _warn_of_long_way(state: State, statement: Statement, sweep: float) -> None:
     """More than half a circle by I and K: an insert can hardly cut it; the code is that of the other way."""
     if pi + _ROUNDED < sweep < 2.0 * pi - _ROUNDED:
-        text = f"The arc spans {degrees(sweep):.0f} degrees."
+        text = Message("The arc spans {sweep} degrees.", sweep=f"{degrees(sweep):.0f}")
         hint = "Check G02 and G03, and the signs of I and K."
         state.log.warn(statement.line, statement.code_column, "arc-over-half", text, hint)
 
@@ -55,11 +56,15 @@ def _centre_by_radius(state: State, statement: Statement, start: Point, *, clock
     radius = checked(state, statement, "R", on_step(state, statement, "R")) or 0.0
     chord = dist(start, (state.x, state.z))
     if chord <= _SAME:
-        text = "The arc with R ends at its start point."
+        text = "The arc programmed with R ends at its start point."
         raise statement.refuse("R", "arc-no-chord", text, ("Program a full circle with I and K."))
     if chord > 2 * radius + _TOLERANCE:
         shown, half = state.modal.length_text(radius), state.modal.length_text(chord / 2)
-        text = f"R is {shown}; an arc between these points needs a radius of {half} or more."
+        text = Message(
+            "R is {value}; an arc between these points needs a radius of {half} or more.",
+            value=shown,
+            half=half,
+        )
         hint = "Correct R or the end point."
         halved = dist((start[0] / 2, start[1]), (state.x / 2, state.z))
         if not state.modal.diameter and halved <= 2 * radius + _TOLERANCE:
@@ -76,8 +81,11 @@ def _centre_by_words(state: State, statement: Statement, start: Point) -> Point:
     if i is None or k is None:
         letter = "I" if i is None else "K"
         given = "K" if i is None else "I"
-        text = f"{letter} is missing; under G90 and G73, I and K are the coordinates of the arc center."
-        raise statement.refuse(given, "arc-coordinate-missing", text, f"Add {letter}.")
+        text = Message(
+            "{letter} is missing; with G90 and G73 active, I and K are the coordinates of the arc center.",
+            letter=letter,
+        )
+        raise statement.refuse(given, "arc-coordinate-missing", text, Message("Add {letter}.", letter=letter))
     return i + state.dx, k + state.dz
 
 
@@ -87,12 +95,13 @@ def _check_radii(state: State, statement: Statement, first: float, last: float) 
         raise statement.refuse("", "arc-no-radius", text, "Correct I and K.")
     if abs(first - last) <= _TOLERANCE:
         return
-    text = (
-        f"The arc's radius is {state.modal.length_text(first)} at its start"
-        f" and {state.modal.length_text(last)} at its end."
+    text = Message(
+        "The arc's radius is {first} at its start and {last} at its end.",
+        first=state.modal.length_text(first),
+        last=state.modal.length_text(last),
     )
     if state.modal.diameter or not state.absolute:
-        hint = "I and K are distances from the start point of the arc here."
+        hint = "Here, I and K are distances from the start point of the arc."
     else:
-        hint = "I and K are the coordinates of the arc center here."
+        hint = "Here, I and K are the coordinates of the arc center."
     raise statement.refuse("", "arc-radius", text, hint)

@@ -16,6 +16,7 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import check_tool, go, on_step, warn_of_title_rapid
 from core.language.omniturn import Word
+from core.message import Message
 
 C_WORDS = ("C", "CA", "CI")
 _TURN = 360.0
@@ -125,7 +126,12 @@ def _goal(state: State, statement: Statement, word: Word) -> float:
     step, value = state.setup.limits.c_step, word.value or 0.0
     count = round(value / step)
     if abs(value / step - count) > 1e-6:
-        text = f"{word.text} is finer than the resolution of {step:g} degrees; {count * step:g} is used."
+        text = Message(
+            "{word} is finer than the resolution of {step} degrees; {count} is used.",
+            word=word.text,
+            step=f"{step:g}",
+            count=f"{count * step:g}",
+        )
         state.log.warn(statement.line, word.column, "finer-than-step", text, "Round the number.")
         value = count * step
     absolute = word.letter == "CA" or (word.letter == "C" and state.absolute)
@@ -137,16 +143,25 @@ def _check_turns(state: State, statement: Statement, word: Word, way: float, tur
     modal, limits = state.modal, state.setup.limits
     feed = modal.feed or 0.0
     if modal.c_rpm is None:
-        text = "The feed is per revolution of C, but no S sets the speed of C."
+        text = "The feed is per revolution of C, but the speed of C is not programmed with S."
         raise statement.refuse(word, "speed-missing", text, "Write S on this line.")
     needed = way / feed * _TURN
     if turn < needed * (1.0 - 1e-9):
-        text = f"C turns {turn:g} degrees, but the move at this feed needs {round(needed, 4):g} degrees."
+        text = Message(
+            "C turns {turn} degrees, but the move at this feed needs {needed} degrees.",
+            turn=f"{turn:g}",
+            needed=f"{round(needed, 4):g}",
+        )
         hint = "Turn C farther, or raise F; otherwise the axes stop before the end point."
         raise statement.refuse(word, "c-too-little", text, hint)
     speed = feed * modal.c_rpm / 60.0
     if speed > limits.max_feed * (1.0 + 1e-9):
         shown = modal.feed_text(speed, per_rev=False)
         most = modal.feed_text(limits.max_feed, per_rev=False)
-        text = f"At a C speed of {modal.c_rpm:g} rpm this feed is {shown}; the maximum is {most}."
+        text = Message(
+            "At a C speed of {c_rpm} rpm this feed is {value}; the maximum is {maximum}.",
+            c_rpm=f"{modal.c_rpm:g}",
+            value=shown,
+            maximum=most,
+        )
         raise statement.refuse(0, "feed-over-speed", text, "Lower F or S.")

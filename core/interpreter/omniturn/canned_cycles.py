@@ -15,6 +15,7 @@ from core.interpreter.omniturn.feeds import check_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
+from core.message import Message
 
 LIFT = 0.02 * units.MM_PER_INCH
 """How far a tool is drawn off the cut before it goes back, mm."""
@@ -41,9 +42,18 @@ def length(state: State, statement: Statement, letter: str) -> float:
 def check_count(statement: Statement, letter: str, count: int, what: str) -> None:
     """Refuse a cycle of more passes than anyone means."""
     if count > MOST_PASSES:
-        text = f"{name(statement)} would make {count:,} {what}; the maximum is {MOST_PASSES:,}."
+        text = Message(
+            "{text} would make {count} {what}; the maximum is {most_passes}.",
+            text=name(statement),
+            count=f"{count:,}",
+            what=what,
+            most_passes=f"{MOST_PASSES:,}",
+        )
         raise statement.refuse(
-            letter, "cycle-passes", text, (f"Look for a missing decimal point in {letter}.")
+            letter,
+            "cycle-passes",
+            text,
+            (Message("Look for a missing decimal point in {letter}.", letter=letter)),
         )
 
 

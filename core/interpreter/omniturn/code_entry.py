@@ -55,11 +55,13 @@ class SWord(Enum):
 class Limit(Enum):
     """A bound that the machine file sets, or what is in force; its value is what the page calls it."""
 
-    FEED = "the machine's greatest feed"
-    FEED_IN_FORCE = "the machine's greatest feed under G94, under G95 .2 in, 1 after G35, 2 after G35F2"
-    LEAD = ".2 in, 1 after G35, 2 after G35F2"
-    RPM = "the greatest speed of the spindle"
-    C_RPM = "the greatest speed of C"
+    FEED = "the machine's maximum feed"
+    FEED_IN_FORCE = (
+        "the machine's maximum feed under G94; under G95 .2 in/rev (1 in/rev after G35, 2 in/rev after G35F2)"
+    )
+    LEAD = ".2 in per revolution (1 in after G35, 2 in after G35F2)"
+    RPM = "the maximum spindle speed"
+    C_RPM = "the maximum speed of the C axis"
     SURFACE = "6000 m/min"  # ten times what any tool stands
 
 
@@ -70,26 +72,31 @@ MOST_PER_REV = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.0))
 class When(Enum):
     """What may be so when a code comes; its value is what the page calls it."""
 
-    WITH_OTHERS = "anything else stands on its line"
-    WITH_FEED = "F, G94 or G95 stands on its line, the first of the program apart"
-    WITH_M = "an M code stands on its line"
-    NOSE_COMPENSATION = "G41 or G42 is on"
-    COARSE = "G35 is in force"
-    NOT_COARSE = "no G35 is in force"
-    INCREMENTAL_DIAMETERS = "G72 and G91 are in force"
-    SURFACE_SPEED = "G96 is in force"
-    PER_REV = "G95 is in force"
-    NO_FEED = "it has no F and no feed for cutting is in force"
-    NO_CUT_FEED = "there has been no feed for cutting to go back to"
-    TOOL_NOT_MOVED = "X and Z of the first move after a T are still to come"
-    NO_SPEED = "no S has said how fast"
-    STANDING = "the spindle stands"
-    TURNING = "the spindle turns, and the machine file does not allow it"
-    COLLET_OPEN = "the collet is open, and the machine file does not allow it"
-    C_LOCKED = "the spindle is locked as C"
-    C_FREE = "the spindle is not locked as C"
-    NO_C = "the machine file switches C off"
-    NO_STRAIGHT_MOVE = "no straight move of X or Z stands on its line"
+    WITH_OTHERS = "the line contains other words"
+    WITH_FEED = "the line contains F, G94 or G95 and is not the first line of the program"
+    WITH_M = "the line contains an M code"
+    NOSE_COMPENSATION = "G41 or G42 is active"
+    COARSE = "G35 is active"
+    NOT_COARSE = "G35 is not active"
+    INCREMENTAL_DIAMETERS = "G72 and G91 are active"
+    SURFACE_SPEED = "G96 is active"
+    PER_REV = "G95 is active"
+    NO_FEED = "the line has no F and no cutting feed is active"
+    NO_CUT_FEED = "no previous cutting feed is available"
+    TOOL_NOT_MOVED = "the T word has not yet been followed by a move to X and Z"
+    NO_SPEED = "no spindle speed has been set with S"
+    STANDING = "the spindle is stopped"
+    TURNING = (
+        "the spindle is turning, and the machine file does not allow the collet to "
+        "open while the spindle turns"
+    )
+    COLLET_OPEN = (
+        "the collet is open, and the machine file does not allow the spindle to start with the collet open"
+    )
+    C_LOCKED = "the spindle is locked as the C axis"
+    C_FREE = "the spindle is not locked as the C axis"
+    NO_C = "the C axis is disabled in the machine file"
+    NO_STRAIGHT_MOVE = "the line does not contain a straight move in X or Z"
 
 
 class CodeEntryError(CodedError, ValueError):

@@ -14,6 +14,7 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.units import METRES_PER_MINUTE
 from core.language.diagnostics import ProgramError
 from core.language.omniturn import Word
+from core.message import Message
 
 _ROUNDING = 1 + 1e-9
 
@@ -33,8 +34,8 @@ def refused(
     return statement.refuse(
         refusal.at if at is None else at,
         refusal.code,
-        refusal.text.format(**told),
-        refusal.hint.format(**told),
+        Message(refusal.text, **told),
+        Message(refusal.hint, **told),
     )
 
 

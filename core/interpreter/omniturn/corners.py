@@ -26,6 +26,7 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
 from core.language.diagnostics import ProgramError, program_error
 from core.language.omniturn import Word
+from core.message import Message
 
 STRAIGHT = frozenset({Kind.RAPID, Kind.FEED})
 _PARTS = ProgramEnd | ToolChange | Preset | AskInput
@@ -104,7 +105,11 @@ class Corners:
             held.between.append(item)
         elif item.action is not None:
             if isinstance(item.action, _PARTS):
-                raise _refused(held, "corner-next", f"no move comes before {item.text}")
+                raise _refused(
+                    held,
+                    "corner-next",
+                    Message("no move is programmed between the corner and {item}", item=item.text),
+                )
             held.between.append(item)
         else:
             self._held = None
@@ -114,14 +119,18 @@ class Corners:
         """Refuse a line that begins with no plain move while one waits. Raises ProgramError."""
         held = self._held
         if held is not None and statement.one_shot is not None and not statement.entry.before_corner:
-            what = statement.code.text if statement.code is not None else "another motion"
-            raise _refused(held, "corner-next", (f"{what} on line {statement.line} is not a straight move"))
+            what = statement.code.text if statement.code is not None else "the motion"
+            raise _refused(
+                held,
+                "corner-next",
+                (Message("{what} on line {line} is not a straight move", what=what, line=statement.line)),
+            )
 
     def end(self) -> None:
         """No block comes any more. Raises ProgramError where a corner is left."""
         held, self._held = self._held, None
         if held is not None:
-            raise _refused(held, "corner-next", "no move follows")
+            raise _refused(held, "corner-next", "no move follows the corner")
 
     def _pass_on(self, item: Item, corner: Corner | None) -> Iterator[Item]:
         if corner is not None and isinstance(item, Block) and item.moves:
@@ -132,16 +141,22 @@ class Corners:
     def _cut(self, held: _Held, after: Block, corner: Corner | None) -> Iterator[Item]:
         if after.kind not in STRAIGHT or after.c != after.c0:
             what = "an arc" if after.kind is Kind.ARC else "not a straight line"
-            raise _refused(held, "corner-next", f"the next move, on line {after.line}, is {what}")
+            raise _refused(
+                held,
+                "corner-next",
+                Message("the next move, on line {line}, is {what}", line=after.line, what=what),
+            )
         block, point = held.block, (held.block.x, held.block.z)
         first, last = Line((block.x0, block.z0), point), Line(point, (after.x, after.z))
         try:
             make = chamfer if held.corner.letter == "C" else rounding
             cut, between, rest = make(first, last, held.corner.size)
         except NoCornerError:
-            text = (
-                f"Lines {block.line} and {after.line} run in the same direction, so they do not form "
-                "a corner."
+            text = Message(
+                "The moves on lines {line} and {line2} are in the same direction, so they do not "
+                "form a corner.",
+                line=block.line,
+                line2=after.line,
             )
             self._log.warn(*held.place, "corner-straight", text, "Remove C or R.")
             yield from (block, *held.between)
@@ -150,7 +165,9 @@ class Corners:
         except CornerTooLargeError as problem:
             raise self._too_large(held, after, problem) from None
         except CornerError as problem:
-            raise _refused(held, "corner-next", f"{problem} (line {after.line})") from None
+            raise _refused(
+                held, "corner-next", Message("{problem} (line {line})", problem=problem, line=after.line)
+            ) from None
         yield moved_along(block, cut, self._max_rpm)
         yield inserted_after(block, between, self._max_rpm)
         for item in held.between:
@@ -165,12 +182,19 @@ class Corners:
         of = held.block if problem.first else after
         left = held.block.modal.length_text(Line((of.x0, of.z0), (of.x, of.z)).length)
         if not problem.needed:
-            return _refused(held, "corner-too-large", f"the move on line {of.line} has zero length")
+            return _refused(
+                held, "corner-too-large", Message("the move on line {line} has zero length", line=of.line)
+            )
         needed = held.block.modal.length_text(problem.needed)
         return _refused(
             held,
             "corner-too-large",
-            f"it needs {needed} of the move on line {of.line}, which has only {left} left",
+            Message(
+                "the corner needs {needed} of the move on line {line}, but only {left} remains",
+                needed=needed,
+                line=of.line,
+                left=left,
+            ),
         )
 
 
@@ -184,7 +208,9 @@ def _impossible(line: int, column: int, letter: str, code: str, why: str) -> Pro
         if code == "corner-too-large"
         else "A corner needs two straight moves in a row."
     )
-    return program_error(line, column, code, f"Corner {letter} is not possible: {why}.", hint)
+    return program_error(
+        line, column, code, Message("Corner {letter} is not possible: {why}.", letter=letter, why=why), hint
+    )
 
 
 # --- corners of a contour that a cycle reads: see ``cycle_contour``
@@ -225,14 +251,19 @@ def _corner(asked: ContourPiece, before: Element, after: Element, log: Log) -> S
     try:
         return make(before, after, asked.size)
     except NoCornerError:
-        text = "The two moves run in the same direction, so they do not form a corner."
+        text = "The two moves are in the same direction, so they do not form a corner."
         log.warn(asked.line, _column(asked), "corner-straight", text, "Remove C or R.")
         return before, after
     except CornerTooLargeError as problem:
         needed = units.length(problem.needed, metric=asked.metric)
         left = units.length((before if problem.first else after).length, metric=asked.metric)
         which = "this move" if problem.first else "the next move"
-        why = f"it needs {needed} of {which}, which has only {left} left"
+        why = Message(
+            "the corner needs {needed} of {which}, but only {left} remains",
+            needed=needed,
+            which=which,
+            left=left,
+        )
         raise _refused_in_contour(asked, "corner-too-large", why) from None
     except CornerError as problem:
         raise _refused_in_contour(asked, "corner-next", str(problem)) from None

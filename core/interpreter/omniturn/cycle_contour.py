@@ -18,6 +18,7 @@ from core.interpreter.omniturn.straight_moves import geometry_modes, go, on_step
 from core.interpreter.omniturn.tools_and_offsets import preset
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Word
+from core.message import Message
 
 _SAME = 1e-6  # mm
 _MODES = "absolute", "metric", "diameter", "preset_x", "preset_z"
@@ -37,7 +38,9 @@ def read_contour(state: State, statement: Statement, lines: Sequence[Statement])
             reader.take(each)
     elements = reader.finish()
     if not elements:
-        text = f"The contour of G{statement.one_shot} has no line or arc."
+        text = Message(
+            "The contour of G{one_shot} does not contain a line or an arc.", one_shot=statement.one_shot
+        )
         raise statement.refuse("", "cycle-contour-empty", text, "Write the points of the contour.")
     return elements
 
@@ -61,12 +64,17 @@ class _Reader:
             raise _refused(line, 1, "This line of the contour cannot be read", "Correct the line.")
         idle_corner = not line.moves and not _CORNERS.isdisjoint(line.words)
         if line.flow or idle_corner or not _TURNS.isdisjoint(line.words):
-            what = f"{line.text} is not allowed in a contour"
-            raise _refused(line, 1, what, ("Write only moves, arcs and corners in a contour, line by line."))
+            what: str = Message("{line} is not allowed in a contour", line=line.text)
+            raise _refused(
+                line, 1, what, ("Write the contour line by line, with only moves, arcs and corners.")
+            )
         if line.one_shot is not None and not line.entry.in_contour:
             column = line.code.column if line.code else 1
             raise _refused(
-                line, column, f"G{line.one_shot} is not allowed in a contour", ("Remove it from the program.")
+                line,
+                column,
+                Message("G{one_shot} is not allowed in a contour", one_shot=line.one_shot),
+                ("Remove this text from the program."),
             )
         if not _NOSE.isdisjoint(line.modal):
             what = "Nose compensation cannot be turned on or off in a contour"
@@ -83,7 +91,8 @@ class _Reader:
         for mode in _MODES:
             if getattr(self._own.modal, mode) != getattr(self._state.modal, mode):
                 text = (
-                    "The contour changes modes or coordinates; the previous ones apply again after the cycle."
+                    "The contour changes modes or coordinates; their previous values are restored after "
+                    "the cycle."
                 )
                 self._state.log.warn(self._made.line, self._made.code_column, "cycle-modes", text)
                 break
@@ -95,7 +104,12 @@ class _Reader:
         words += [line.code] if line.code and line.one_shot in {4, 10} else []
         if words and not self._reported:
             self._reported = True
-            text = f"{words[0].text} and similar words are ignored in the contour of G{self._made.one_shot}."
+            text = Message(
+                "{words} and other words that do not belong to a contour are ignored in the contour "
+                "of G{one_shot}.",
+                words=words[0].text,
+                one_shot=self._made.one_shot,
+            )
             found = Diagnostic(line.line, words[0].column, Severity.NOTE, "cycle-ignored", text)
             self._state.log.add(found)
 
@@ -117,7 +131,7 @@ class _Reader:
         """The first line is the way from the start point to the first point of the contour."""
         if line.entry.acts is Acts.ARC or corner is not None:
             column = corner.column if corner else 1
-            what = "The first line of a contour is its first point and cannot have an arc or a corner"
+            what = "The first line of a contour defines its start point and cannot contain an arc or a corner"
             raise _refused(line, column, what, "Write only X and Z of the first point.")
         self._line(line)
         self._begun = True
@@ -146,4 +160,4 @@ class _Reader:
 def _refused(
     line: Statement, column: int, what: str, hint: str, code: str = "cycle-contour-line"
 ) -> ProgramError:
-    return line.refuse(column, code, f"{what}.", hint)
+    return line.refuse(column, code, Message("{what}.", what=what), hint)

@@ -11,6 +11,7 @@ from core.interpreter.omniturn.code_rules import number
 from core.interpreter.omniturn.code_table import G_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
+from core.message import Message
 
 _SHORTEST = G_CODES[4].rules["F"].least  # s
 _LONG = 60.0  # s with a tool in force: warm-up programs have none
@@ -21,13 +22,13 @@ def dwell(state: State, statement: Statement) -> Iterator[Block]:
     """The block of G04. Raises ProgramError where F is missing or out of range."""
     seconds = number(state, statement, "F") or 0.0
     if seconds > _LONG and state.modal.tool:
-        text = f"The dwell takes {seconds / 60.0:.1f} minutes."
+        text = Message("The dwell lasts {seconds} minutes.", seconds=f"{seconds / 60.0:.1f}")
         state.log.warn(
             statement.line,
             statement.words["F"].column,
             "dwell-long",
             text,
-            ("Check F; with G04 it is in seconds."),
+            ("Check F; with G04, F is in seconds."),
         )
     _shorten_arrival(state, seconds)
     yield state.action(statement.line, statement.part("move"), Dwell(seconds))
@@ -51,13 +52,19 @@ def warn_of_short_dwell(state: State) -> None:
     (line, column, left), state.turning = state.turning, None
     if left > _DONE:
         needed = max(ceil(left * 100.0 - 1e-6) / 100.0, _SHORTEST)
-        text = f"The C drive does not report when C is in position, which takes {needed:.2f} s from here."
+        text = Message(
+            (
+                "The C drive does not signal when C is in position; at this point, C needs "
+                "another {needed} s to finish its move."
+            ),
+            needed=f"{needed:.2f}",
+        )
         state.log.warn(
             line,
             column,
             "dwell-too-short",
             text,
-            (f"Write G04F{needed:.2f}, or a longer dwell, after this line."),
+            (Message("Program a dwell of at least G04F{needed} after this line.", needed=f"{needed:.2f}")),
         )
 
 

@@ -14,6 +14,7 @@ from core.interpreter.omniturn.omniturn_state import HIGH_FEED, State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
 from core.language.diagnostics import program_error
 from core.language.omniturn import Word
+from core.message import Message
 
 _LEAST = LETTERS["F"].rules["F"].least * units.MM_PER_INCH  # per minute or per revolution
 _SLOW_MOVE = 30.0  # s; a single move that takes longer was hardly meant
@@ -117,7 +118,7 @@ def out_of_range(modal: Modal, feed: float, least: float, most: float) -> tuple[
         if modal.per_rev
         else refusal.hint
     )
-    return refusal.code, refusal.text.format(value=shown, least=low, most=high), hint
+    return refusal.code, Message(refusal.text, value=shown, least=low, most=high), hint
 
 
 def warn_of_crash_feed(state: State, statement: Statement, ahead: Sequence[ReadyLine]) -> None:
@@ -129,7 +130,13 @@ def warn_of_crash_feed(state: State, statement: Statement, ahead: Sequence[Ready
         return
     shown = modal.feed_text(modal.feed, per_rev=True)
     hint = "Look for a missing decimal point."
-    state.log.warn(statement.line, word.column, "feed-high", f"Feed {shown} is very high for cutting.", hint)
+    state.log.warn(
+        statement.line,
+        word.column,
+        "feed-high",
+        Message("Feed {value} is very high for cutting.", value=shown),
+        hint,
+    )
 
 
 def _taps(spindle: int, ahead: Sequence[ReadyLine]) -> bool:
@@ -151,22 +158,26 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
         return
     if modal.feed is None:
         _once(
-            state, line, "feed-missing", "The move has no feed.", ("Write F on this line or an earlier line.")
+            state,
+            line,
+            "feed-missing",
+            "No feed is programmed for this move.",
+            ("Write F on this line or an earlier line."),
         )
         return
     if not (modal.per_rev or (modal.css and state.cut)):
         _warn_slow(state, line, length, modal.feed)
         return
     if modal.css and modal.spindle and not modal.surface_speed:
-        text = "G96 is active, but no S sets a surface speed."
-        _once(state, line, "surface-speed-missing", text, "Write S next to G96.")
+        text = "G96 is active, but no surface speed is programmed with S."
+        _once(state, line, "surface-speed-missing", text, "Program S together with G96.")
         return
     rpm = max(abs(state.rpm_at(x0)), abs(state.rpm_at(x)))
     if x0 * x < 0:  # over the centre
         rpm = max(rpm, abs(state.rpm_at(0.0)))
     if not rpm:
         why = "a feed per revolution" if modal.per_rev else "constant surface speed"
-        text = f"The spindle is stopped, but the move uses {why}."
+        text = Message("The spindle is stopped, but the move uses {why}.", why=why)
         _once(state, line, "spindle-stopped", text, "Start the spindle with M03 or M04, or use G94.")
         return
     speed = modal.feed * rpm / 60 if modal.per_rev else modal.feed
@@ -176,12 +187,16 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
         if modal.per_rev:
             shown = modal.feed_text(modal.feed, per_rev=True)
             most_per_rev = modal.feed_text(most * 60 / rpm, per_rev=True)
-            message = (
-                f"Feed {shown} is over the maximum of {most_per_rev} at {rpm:.0f} rpm, which equals {limit}."
+            message = Message(
+                "Feed {value} exceeds the maximum of {most_per_rev} at {rpm} rpm ({limit}).",
+                value=shown,
+                most_per_rev=most_per_rev,
+                rpm=f"{rpm:.0f}",
+                limit=limit,
             )
         else:
             shown = modal.feed_text(speed, per_rev=False)
-            message = f"Feed {shown} is over the maximum of {limit}."
+            message = Message("Feed {value} exceeds the maximum of {limit}.", value=shown, limit=limit)
         raise program_error(line, 0, "feed-over-speed", message, "Lower F or S.")
     _warn_slow(state, line, length, speed)
 
@@ -199,5 +214,5 @@ def _warn_slow(state: State, line: int, length: float, speed: float) -> None:
         seconds = length / speed
         modal = state.modal
         shown = modal.feed_text(modal.feed or 0.0, per_rev=modal.per_rev)
-        text = f"This move takes {seconds:.0f} s at {shown}."
+        text = Message("This move takes {seconds} s at {value}.", seconds=f"{seconds:.0f}", value=shown)
         state.log.warn(line, 0, "feed-low", text, "Check F and G94/G95.")

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from core.language.diagnostics import Diagnostic, refusal
+from core.message import Message
 
 _CENTER = re.compile(r"\s*((?:[IKR][-+]?[\d.]+\s*)+)(?:\(.*)?$")  # the rest of an arc, on a line of its own
 _BARE_ARC = re.compile(r"[^(IKR]*(?P<arc>G0[23])[^(IKR]*(?:\(.*)?$")
@@ -29,6 +30,6 @@ def _divided_arc(found: Diagnostic, lines: Sequence[str]) -> Diagnostic | None:
     arc, center = _BARE_ARC.match(lines[found.line - 2]), _CENTER.match(lines[found.line - 1])
     if arc is None or center is None:
         return None
-    text = "The arc's center is on the next line."
-    hint = f"Write {center.group(1).strip()} on the line of the arc."
+    text = "The arc center is programmed on the next line."
+    hint = Message("Write {word} on the same line as the arc.", word=center.group(1).strip())
     return refusal(found.line - 1, arc.start("arc") + 1, "arc-centre-missing", text, hint)

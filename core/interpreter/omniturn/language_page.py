@@ -5,38 +5,51 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from math import inf
 
 from core.interpreter.omniturn.code_entry import HEAD, TAIL, Code, Limit, WordRule
 from core.interpreter.omniturn.code_table import CHAPTERS
 from core.language.omniturn.omniturn_words import COUNTING, RANGES
+from core.page_contents import contents
 
 _TOP = """\
-# The language, code by code
+# OmniTurn, code by code
 
-Written from the table that the tests prove, `core/interpreter/omniturn/code_table.py`.
-Do not edit it by hand.
-Every example stands between these lines, with every tool on part zero:
+This page is the reference of all OmniTurn codes. For the language by subject, see
+[programming/omniturn.md](programming/omniturn.md).
+
+{contents}
+It is written from `core/interpreter/omniturn/code_table.py`, which the tests use. Do not edit it.
+Every example goes between these lines, with every tool offset at part zero. What follows `…` goes
+after M30:
 
 ```
 {head}…
 {tail}```
 
-M codes that are not here belong to the machine file. Behind a code stands what its words must be and when it
-is refused, with the code of the diagnostic; the sentence itself says line, column and what to do.
+M codes that are not listed here belong to the machine file. The list after each code gives the
+limits of its words and the conditions that reject it, with the code of the finding. The finding
+itself gives line, column and remedy.
 
 ## Numbers
 
-In any unit a number lies between these; beside a code it may have to be nearer.
+A number must be within these limits, in any unit. Some codes have narrower limits, which are listed
+with the code.
 
 {numbers}"""
 
 
 def page() -> str:
     """The text of ``docs/language.md``."""
-    chapters = "".join(f"\n## {title}\n\n" + "".join(map(_entry, codes)) for title, codes in CHAPTERS)
-    return _TOP.format(head=HEAD, tail=TAIL, numbers=_numbers()) + chapters
+    anchors: set[str] = set()
+    chapters = "".join(
+        f"\n## {title}\n\n" + "".join(_anchor(code, anchors) + _entry(code) for code in codes)
+        for title, codes in CHAPTERS
+    )
+    titles = contents(["Numbers", *(title for title, _ in CHAPTERS)])
+    return _TOP.format(head=HEAD, tail=TAIL, numbers=_numbers(), contents=titles) + chapters
 
 
 def _numbers() -> str:
@@ -48,7 +61,16 @@ def _numbers() -> str:
         f"{', whole' if whole else ''} |\n"
         for (least, most, whole), those in letters.items()
     ]
-    return "| word | least | most |\n|---|---|---|\n" + "".join(rows)
+    return "| word | minimum | maximum |\n|---|---|---|\n" + "".join(rows)
+
+
+def _anchor(entry: Code, anchors: set[str]) -> str:
+    """Return the anchor ``#g75`` before the first entry of a code, and nothing before its other entries."""
+    name = re.sub(r"[^a-z0-9]", "", entry.name.lower())
+    if not name or name in anchors:
+        return ""
+    anchors.add(name)
+    return f'<a id="{name}"></a>\n\n'
 
 
 def _entry(entry: Code) -> str:
@@ -66,9 +88,11 @@ def _rules(entry: Code) -> list[str]:
     rules = [f"`{letter}` {_rule(rule)}" for letter, rule in entry.rules.items()]
     if entry.one_of is not None:
         letters, refusal = entry.one_of
-        rules.append(f"one of {_letters(letters)} stands there: `{refusal.code}`")
-    rules += [f"not {_letters(letters)} together: `{refusal.code}`" for letters, refusal in entry.apart]
-    rules += [f"not when {when.value}: `{refusal.code}`" for when, refusal in entry.not_when.items()]
+        rules.append(f"one of {_letters(letters)} is required: `{refusal.code}`")
+    rules += [
+        f"{_letters(letters)} must not be used together: `{refusal.code}`" for letters, refusal in entry.apart
+    ]
+    rules += [f"not allowed when {when.value}: `{refusal.code}`" for when, refusal in entry.not_when.items()]
     if entry.further:
         rules.append("also " + ", ".join(f"`{code}`" for code in sorted(entry.further)))
     return rules
@@ -77,11 +101,11 @@ def _rules(entry: Code) -> list[str]:
 def _rule(rule: WordRule) -> str:
     said = [rule.what]
     if rule.missing is not None:
-        said.append("needed")
+        said.append("required")
     if rule.numbered is not None:
-        said.append("without a number")
+        said.append("written without a number")
     if rule.bare is not None:
-        said.append(f"alone {_shown(rule.bare)}")
+        said.append(f"without a number {_shown(rule.bare)}")
     if rule.nonzero:
         said.append("not 0")
     if rule.least > -inf:

@@ -12,6 +12,7 @@ from core.interpreter.interpretation import DEEPEST_CALL
 from core.interpreter.omniturn.code_table import FLOW_CODES
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
 from core.language.diagnostics import Diagnostic, refusal
+from core.message import Message
 
 _CONTOUR_CYCLE = re.compile(r"G7[58](?![0-9])", re.IGNORECASE)
 
@@ -70,7 +71,7 @@ class _Finder:
                 self._refuse(
                     statement,
                     "rf-alone",
-                    "RF does not end a contour here.",
+                    "RF has no matching G75 or G78.",
                     ("Add G75 or G78, or remove RF."),
                 )
             elif self._contour is not None:
@@ -89,7 +90,7 @@ class _Finder:
     def _open_contour(self) -> None:
         statement, self._contour = self._contour, None
         if statement is not None:
-            text = f"The contour of G{statement.one_shot} has no RF."
+            text = Message("The contour of G{one_shot} has no RF.", one_shot=statement.one_shot)
             hint = "Write RF alone on the line after the contour, or P with a subroutine number."
             self._refuse(statement, "contour-open", text, hint)
 
@@ -101,7 +102,10 @@ class _Finder:
     def _open_subroutine(self, statement: Statement) -> None:
         if self._inside is not None and not self._closed_by_job_end(self._inside):
             self._refuse(
-                statement, "subroutine-open", f"}}{self._inside} has no M99 before this line.", "Add M99."
+                statement,
+                "subroutine-open",
+                Message("Subroutine }}{inside} has no M99 before this line.", inside=self._inside),
+                "Add M99.",
             )
         elif not self._ended:
             self._no_end(statement.line - 1)
@@ -110,7 +114,7 @@ class _Finder:
         number = int(statement.value("}") or 0)
         if number in self.found.subroutines:
             first = self.found.subroutines[number] + 1
-            text = f"Subroutine {number} already begins on line {first}."
+            text = Message("Subroutine {number} already begins on line {first}.", number=number, first=first)
             self._refuse(statement, "subroutine-twice", text, "Use a different number.")
         else:
             self.found.subroutines[number] = statement.line - 1
@@ -119,7 +123,7 @@ class _Finder:
     def _close_subroutine(self, statement: Statement) -> None:
         if self._inside is None:
             hint = "Write M30 at the end of the program, or delete the line."
-            self._refuse(statement, "m99-outside", "M99 does not end a subroutine here.", hint)
+            self._refuse(statement, "m99-outside", "M99 is not in a subroutine.", hint)
             return
         self._unclosed_loops()
         self.found.subroutine_ends.setdefault(self._inside, statement.line - 1)
@@ -135,7 +139,7 @@ class _Finder:
     def _close_loop(self, statement: Statement) -> None:
         if not self._loops:
             self._refuse(
-                statement, "loop-unopened", "LF does not end any loop.", "Add LS with a count, or remove LF."
+                statement, "loop-unopened", "LF has no matching LS.", "Add LS with a count, or remove LF."
             )
             return
         start = self._loops.pop().line - 1
@@ -147,7 +151,10 @@ class _Finder:
             if statement.flow == UNREADABLE:
                 continue  # told already
             self._refuse(
-                statement, "loop-open", f"{statement.text} has no LF.", "Add LF where the loop ends."
+                statement,
+                "loop-open",
+                Message("{text} has no matching LF.", text=statement.text),
+                "Add LF where the loop ends.",
             )
         self._loops.clear()
 
@@ -155,9 +162,9 @@ class _Finder:
         late_end = statement.ends_program and any(each.code == "no-end" for each in self.problems)
         if not self._stray and not late_end:
             self._stray = True
-            text = "This line is after the end of the program and not in a subroutine."
+            text = "This line is after the end of the program but not in a subroutine."
             self._refuse(
-                statement, "after-end", text, ("Move the line before M30, or start a subroutine with }n.")
+                statement, "after-end", text, ("Move this line before M30, or start a subroutine with }n.")
             )
 
     def _no_end(self, line: int) -> None:
@@ -174,7 +181,7 @@ class _Finder:
         if not self._ended:
             self._no_end(length)
         elif self._inside is not None and not self._closed_by_job_end(self._inside):
-            text = f"Subroutine {self._inside} has no M99."
+            text = Message("Subroutine {inside} has no M99.", inside=self._inside)
             line = self.found.subroutines[self._inside] + 1
             self.problems.append(
                 refusal(line, 1, "subroutine-open", text, ("Add M99 at the end of the subroutine."))
@@ -210,7 +217,9 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Struct
         number = call_target(statement)
         if number not in finder.found.subroutines:
             column, hint = statement.column("P") or 1, "Write the subroutine after M30."
-            text = f"Subroutine {number} is called, but no }}{number} starts it."
+            text = Message(
+                "Subroutine {number} is called, but }}{number2} is missing.", number=number, number2=number
+            )
             finder.problems.append(refusal(statement.line, column, "subroutine-missing", text, hint))
     return finder.found, finder.problems
 
@@ -328,7 +337,9 @@ class Flow:
         if number not in self._structure.subroutines:
             return  # told when the program was read
         if len(self._calls) >= DEEPEST_CALL:
-            text = f"Subroutine calls are nested more than {DEEPEST_CALL} deep."
+            text = Message(
+                "Subroutine calls are nested more than {deepest_call} levels deep.", deepest_call=DEEPEST_CALL
+            )
             raise statement.refuse("P", "recursion", text, "A subroutine must not call itself.")
         self._calls.append((statement.line, self._run_end, self._loops))
         self._loops = []

@@ -15,6 +15,7 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import Diagnostic, ProgramError, Severity, refusal
 from core.language.omniturn import other_controls
+from core.message import Message
 
 
 def before_motion(state: State, statement: Statement) -> Iterator[Block]:
@@ -83,7 +84,10 @@ def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
     for statement in lines:
         if statement.m in state.setup.limits.m_ignored:
             column = statement.m_word.column if statement.m_word else 0
-            text = f"M{statement.m:02d} has no effect here: the machine file defines it as ignored."
+            text = Message(
+                "M{code} has no effect because the machine file defines this code as ignored.",
+                code=f"{statement.m:02d}",
+            )
             state.log.add(Diagnostic(statement.line, column, Severity.NOTE, "no-effect", text))
         elif statement.m not in state.setup.limits.m_outputs:
             state.log.add(_unknown(state, statement))
@@ -92,14 +96,14 @@ def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
 def _unknown(state: State, statement: Statement) -> Diagnostic:
     column, name = statement.m_word.column if statement.m_word else 0, f"M{statement.m:02d}"
     if statement.m in state.setup.limits.m_disabled:
-        text = f"{name} is defined but not enabled in the machine file."
-        hint = f"Set enabled = true for {statement.m} under [m_codes]."
+        text: str = Message("{name} is defined but not enabled in the machine file.", name=name)
+        hint: str = Message("Set enabled = true for {code} under [m_codes].", code=statement.m)
         return refusal(statement.line, column, "m-disabled", text, hint)
     habit, hint = other_controls.meaning_here(name) or (
         "",
         ("Assign an output to the code in the machine file."),
     )
-    text = f"{name} is not a code of this machine. {habit}".rstrip()
+    text = Message("{name} is not a valid code on this machine. {habit}", name=name, habit=habit).rstrip()
     return refusal(statement.line, column, "m-unknown", text, hint)
 
 

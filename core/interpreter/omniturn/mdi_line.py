@@ -9,6 +9,7 @@ from core.interpreter.omniturn.omniturn_statement import PLANE, UNREADABLE, Stat
 from core.interpreter.omniturn.plain_moves import Columns, ReadyLines
 from core.language.diagnostics import Diagnostic, ProgramError, refusal
 from core.language.source import Source
+from core.message import Message
 
 _HINT = "Use this command in a program."
 
@@ -44,30 +45,39 @@ def _alone(statement: Statement) -> Diagnostic | None:
     if statement.flow and statement.flow != UNREADABLE:
         return _refuse(statement, 1, _steers(statement))
     if statement.block_delete:
-        return _refuse(statement, 1, "/ skips a line of a program and has no meaning in MDI")
+        return _refuse(statement, 1, "/ skips a program line and has no meaning in MDI")
     for code in statement.modal:
         if G_CODES[code].not_in_mdi:
-            return _refuse(statement, 1, f"G{code} {G_CODES[code].not_in_mdi}")
+            return _refuse(
+                statement, 1, Message("G{code} {not_in_mdi}", code=code, not_in_mdi=G_CODES[code].not_in_mdi)
+            )
     if statement.code is not None and statement.entry.not_in_mdi:
         return _refuse(
-            statement, statement.code.column, f"{statement.code.text} {statement.entry.not_in_mdi}"
+            statement,
+            statement.code.column,
+            Message("{code} {not_in_mdi}", code=statement.code.text, not_in_mdi=statement.entry.not_in_mdi),
         )
     radius = statement.words.get("R")
     if radius is not None and statement.moves and statement.one_shot is None:
         return _refuse(
             statement,
             radius.column,
-            (f"{radius.text} rounds the corner with the next move, and MDI runs only one line"),
+            (
+                Message(
+                    "{radius} rounds the corner with the next move, but MDI runs only one line",
+                    radius=radius.text,
+                )
+            ),
         )
     return None
 
 
 def _steers(statement: Statement) -> str:
     if statement.flow == PLANE:
-        return f"{statement.text} {FLOW_CODES['~PLXC'].not_in_mdi}"
+        return Message("{text} {not_in_mdi}", text=statement.text, not_in_mdi=FLOW_CODES["~PLXC"].not_in_mdi)
     word = statement.m_word.text if statement.m_word else statement.flow
-    return f"{word} {FLOW_CODES[statement.flow].not_in_mdi}"
+    return Message("{word} {not_in_mdi}", word=word, not_in_mdi=FLOW_CODES[statement.flow].not_in_mdi)
 
 
 def _refuse(statement: Statement, column: int, what: str) -> Diagnostic:
-    return refusal(statement.line, column, "not-alone-mdi", f"{what}.", _HINT)
+    return refusal(statement.line, column, "not-alone-mdi", Message("{what}.", what=what), _HINT)

@@ -22,6 +22,7 @@ from core.interpreter.omniturn.corners import STRAIGHT
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Item, State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import ProgramError, program_error
+from core.message import Message
 
 # --- approach and departure: far enough from the part, and clear of it
 
@@ -54,24 +55,44 @@ def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: L
     nose = lead.block.modal.length_text(radius)
     if dist(free, corner) < radius - SAME_POINT:
         length = lead.block.modal.length_text(dist(free, corner))
-        text = f"The {lead.name} is {length} long, less than the nose radius {nose}."
+        text = Message(
+            "The {lead} is {length} long, which is less than the nose radius of {nose}.",
+            lead=lead.name,
+            length=length,
+            nose=nose,
+        )
         raise lead.refused("-short", text, "Move farther away from the part.")
     off = min(distance(element, free) for element in lead.contour)
     shown = lead.block.modal.length_text(off)
-    text = f"The {lead.name} {'ends' if lead.departs else 'starts'} {shown} off the part"
-    hint = "Stay at least twice the nose radius away from the part."
+    text = Message(
+        "The {lead} {choice} {value} from the part",
+        lead=lead.name,
+        choice="ends" if lead.departs else "starts",
+        value=shown,
+    )
+    hint = "Start the approach, or end the departure, at least twice the nose radius away from the part."
     if off < radius - SAME_POINT:
-        raise lead.refused("-near", f"{text}, less than the nose radius {nose}.", hint)
+        raise lead.refused(
+            "-near",
+            Message("{what}, which is less than the nose radius of {nose}.", what=text, nose=nose),
+            hint,
+        )
     if off < 2 * radius - SAME_POINT:
-        text = f"{text}, less than twice the nose radius {nose}."
+        text = Message("{what}, which is less than twice the nose radius of {nose}.", what=text, nose=nose)
         log.warn(lead.block.line, 0, f"comp-{lead.name}-near", text, hint)
 
 
 def check_clear(lead: ApproachOrDeparture, way: Line) -> None:
     """The nose on its way must not cut the part. Raises ProgramError."""
     if cuts_in(way, lead.contour, lead.radius):
-        text = f"With G{lead.code}, the tool nose cuts into the part during the {lead.name}."
-        hint = f"Choose a different path for the {lead.name}, or the other side."
+        text = Message(
+            "With G{code}, the tool nose cuts into the part during the {lead}.",
+            code=lead.code,
+            lead=lead.name,
+        )
+        hint = Message(
+            "Choose a different path for the {lead}, or switch between G41 and G42.", lead=lead.name
+        )
         raise program_error(lead.block.line, 0, "comp-gouge", text, hint)
 
 
@@ -146,7 +167,7 @@ class Compensation:
             raise _refused(
                 block,
                 "comp-with",
-                f"{self._name} cannot compensate this move.",
+                Message("{name} cannot compensate this move.", name=self._name),
                 ("Write G40 before this line."),
             )
         move = _Move(block)
@@ -214,7 +235,9 @@ class Compensation:
             self.drop()
             return
         if last is None or not self._count:
-            text = f"{self._name} has no contour move between its approach and its departure."
+            text = Message(
+                "{name} has no contour move between its approach and its departure.", name=self._name
+            )
             raise _refused(
                 (last or approach).block,
                 "comp-empty",
@@ -249,7 +272,12 @@ class Compensation:
     def _gouge(self, problem: GougeError) -> ProgramError:
         block = self._moves[problem.index].block
         nose = block.modal.length_text(self.radius)
-        text = f"{self._name} with a nose radius of {nose} cannot compensate this move: {problem.why}."
+        text = Message(
+            "{name} with a nose radius of {nose} cannot compensate this move: {why}.",
+            name=self._name,
+            nose=nose,
+            why=problem.why,
+        )
         return _refused(block, "comp-gouge", text, ("Use a smaller nose radius, or change the contour."))
 
     @property
@@ -287,7 +315,7 @@ def switch(state: State, statement: Statement, code: int, *, called: bool) -> Co
         return None
     check_when(state, statement, G_CODES[code])
     if called:
-        text = f"G{code} is not allowed in a subroutine."
+        text = Message("G{code} is not allowed in a subroutine.", code=code)
         raise statement.refuse(
             1, "comp-subroutine", text, "Write the compensated contour in the main program."
         )
@@ -303,7 +331,7 @@ def check_under_nose(state: State, statement: Statement) -> None:
     if on == 40:
         return
     if statement.ends_program:
-        text = f"The program ends while G{on} is active."
+        text = Message("The program ends while G{state} is active.", state=on)
         raise statement.refuse(
             1, "comp-open", text, ("Move off the part, and write G40 before the end of the program.")
         )
@@ -311,11 +339,11 @@ def check_under_nose(state: State, statement: Statement) -> None:
         raise statement.refuse(
             1,
             "comp-with",
-            f"Plane switching is not allowed while G{on} is active.",
+            Message("Plane switching is not allowed while G{state} is active.", state=on),
             ("Write G40 before this line."),
         )
     if statement.calls:
-        text = f"A subroutine is called while G{on} is active."
+        text = Message("A subroutine cannot be called while G{state} is active.", state=on)
         raise statement.refuse(
             1, "comp-subroutine", text, "Write the compensated contour in the main program."
         )
@@ -324,11 +352,14 @@ def check_under_nose(state: State, statement: Statement) -> None:
         word = statement.code or statement.m_word
         what = word.text if word is not None else "C"
         raise statement.refuse(
-            1, "comp-with", f"{what} is not allowed while G{on} is active.", ("Write G40 before this line.")
+            1,
+            "comp-with",
+            Message("{what} is not allowed while G{state} is active.", what=what, state=on),
+            ("Write G40 before this line."),
         )
     other = statement.value("D") not in {None, state.modal.secondary}
     if other and "T" not in statement.words and not state.contour.approach:
-        text = f"D changes while G{on} is active."
+        text = Message("D cannot change while G{state} is active.", state=on)
         hint = "Write D only on the first move after G41 or G42."
         raise statement.refuse("D", "comp-d", text, hint)
 
@@ -340,10 +371,12 @@ def check_approach(state: State, block: Block) -> None:
         return
     on = state.modal.nose_comp
     if block.kind not in STRAIGHT:
-        text = f"The first move after G{on} on line {line} is not a straight line."
+        text = Message(
+            "The first move after G{state} on line {line} is not a straight line.", state=on, line=line
+        )
         raise _refused(block, "comp-approach", text, ("Program the approach as a straight line with D."))
     if state.contour.d_line != block.line or not state.modal.secondary:
-        text = f"The first move after G{on} on line {line} has no D."
+        text = Message("The first move after G{state} on line {line} has no D.", state=on, line=line)
         raise _refused(
             block,
             "comp-approach",
@@ -352,12 +385,16 @@ def check_approach(state: State, block: Block) -> None:
         )
     radius = state.setup.secondary[state.modal.secondary].r if _known(state) else 0.0
     if radius < 0:
-        text = f"R of D{state.modal.secondary} is negative."
+        text = Message("R of D{secondary} is negative.", secondary=state.modal.secondary)
         raise _refused(
             block, "comp-radius", text, ("Enter the nose radius without a sign; G41 and G42 set the side.")
         )
     if not radius:
-        text = f"R of D{state.modal.secondary} is 0, so G{on} does not compensate."
+        text = Message(
+            "R of D{secondary} is 0, so G{state} does not compensate.",
+            secondary=state.modal.secondary,
+            state=on,
+        )
         state.log.warn(block.line, 0, "comp-no-radius", text, ("Enter the nose radius in the offset table."))
 
 

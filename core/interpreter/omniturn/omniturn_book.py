@@ -14,8 +14,8 @@ _PLAIN = {
     "Z": "the Z coordinate",
     "F": "the feed",
     "S": "rpm",
-    "P": "the number of the subroutine",
-    "A": "taper: travel of X over the length of the thread",
+    "P": "the subroutine number",
+    "A": "taper: X travel over the thread length",
     "G02.I": "the arc center in X",
     "G02.K": "the arc center in Z",
     "G03.I": "the arc center in X",
@@ -24,7 +24,7 @@ _PLAIN = {
     "G10.Z": "the shift in Z",
     "G94.F": "the feed per minute",
     "G95.F": "the feed per revolution",
-    "G83.R": "Z to which the drill retracts",
+    "G83.R": "the Z position to which the drill retracts",
 }
 """Words for whose numbers no entry has a rule."""
 

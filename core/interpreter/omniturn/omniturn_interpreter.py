@@ -50,7 +50,7 @@ def check_opening(state: State, program: Program) -> tuple[int, bool]:
     if large is not None:
         log.add(large)
     if state.setup.metric and not program.names_units and first:
-        text = "The program has neither G70 nor G71, so it runs in millimeters, the unit of the control."
+        text = "The program has neither G70 nor G71, so it runs in the control's unit, millimeters."
         log.warn(first, 0, "units-unnamed", text, "Write G70 or G71 on the first line.")
     return first, large is not None
 

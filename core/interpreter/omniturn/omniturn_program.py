@@ -30,6 +30,7 @@ from core.language.omniturn.plane_switching_lines import (
     plane_entry,
 )
 from core.language.source import Source
+from core.message import Message
 
 # --- habits of shops: one note a kind for the file, or an error each when strict
 
@@ -37,13 +38,16 @@ from core.language.source import Source
 _ODD_IN_COMMENT = frozenset("!@#$%^&*\"'?><,/\\|=-.")
 
 _KINDS = {
-    "blank-line": ("The line is blank.", "Delete the line for use on the original control."),
-    "title-line": ("A comment is alone on its line.", ("Put the comment on a line with a command.")),
+    "blank-line": (
+        "The line is blank.",
+        ("Delete the line if the program must run on the original control."),
+    ),
+    "title-line": ("The line contains only a comment.", ("Put the comment on a line with a command.")),
     "comment-character": (
         "The comment contains characters other than letters, digits and spaces.",
         ("Use only letters, digits and spaces."),
     ),
-    "tool-zero": ("The tool number has a leading zero.", "Write T1 for T01."),
+    "tool-zero": ("The tool number has a leading zero.", "Write T1 instead of T01."),
     "subroutine-comment": (
         "A comment is on the line that starts a subroutine.",
         ("Move the comment to the next line."),
@@ -176,12 +180,16 @@ class _Reader:
         lacks = lacks_sign(text, following) if "(" in text else None
         if lacks is not None:
             name = text.strip().upper()
-            message = (
-                f"{name} is a comment because its ~ is missing, and so are the lines up to (END): "
-                "nothing is milled."
+            message = Message(
+                "The ~ is missing, so {name} and the lines up to (END) are comments and nothing is milled.",
+                name=name,
             )
             weight = Severity.ERROR if lacks else Severity.WARNING
-            self.problems.append(Diagnostic(number, 1, weight, "plane-sign", message, f"Write (~{name[1:]}."))
+            self.problems.append(
+                Diagnostic(
+                    number, 1, weight, "plane-sign", message, Message("Write (~{name}.", name=name[1:])
+                )
+            )
 
     def _in_plane(self, number: int, text: str, entry: PlaneLine | None) -> Statement:
         """A line from the entry to (END), both included."""
@@ -197,7 +205,7 @@ class _Reader:
         return statement
 
     def _plane_open(self, number: int) -> None:
-        text = f"Plane switching on line {self._plane} has no (END)."
+        text = Message("Plane switching on line {plane} has no (END).", plane=self._plane)
         self.problems.append(refusal(number, 1, "plane-open", text, "Write (END) alone on a line."))
         self._plane = 0
 
@@ -277,8 +285,8 @@ def _beyond_the_end(ready: ReadyLines, structure: Structure) -> list[Diagnostic]
     for at in range(structure.main_end, len(ready)):
         inside = (inside or at in starts) and at not in ends
         if not inside and isinstance(ready[at], tuple):
-            text = "This line is after the end of the program and not in a subroutine."
-            hint = "Move the line before M30, or start a subroutine with }n."
+            text = "This line is after the end of the program but not in a subroutine."
+            hint = "Move this line before M30, or start a subroutine with }n."
             return [refusal(at + 1, 1, "after-end", text, hint)]
     return []
 

@@ -9,6 +9,7 @@ from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES, M_CODES, P
 from core.language.diagnostics import ProgramError, program_error
 from core.language.omniturn import Line, Word, other_controls
 from core.language.omniturn.plane_switching_lines import PlaneLine
+from core.message import Message
 
 PlainMove = tuple[float | None, float | None, float | None, int, bool]
 """A line of G00 or G01, X, Z and F and no more: X, Z, F as written, 0 or 1 for the code (-1: none), and
@@ -111,7 +112,9 @@ def statement_of(line: Line) -> Statement:
     statement = Statement(line.number, line.text, comment=line.comment, block_delete=line.block_delete)
     if line.comment is not None and line.comment.lstrip().startswith("~"):
         what = f"({line.comment.strip()})"
-        message = f"{what} looks like plane switching; (~PLXC) and (~PLZC) must be alone on a line."
+        message = Message(
+            "{what} looks like plane switching; (~PLXC) and (~PLZC) must be alone on a line.", what=what
+        )
         raise program_error(
             line.number,
             line.comment_column,
@@ -157,7 +160,13 @@ def _sort(statement: Statement, line: Line) -> None:
             statement.m, statement.m_word = int(word.value or 0), word
             statement.m_code = M_CODES.get(statement.m)
         elif letter in words:
-            raise _refused(line, word, "word-twice", f"contains {letter} twice", "Remove one of them.")
+            raise _refused(
+                line,
+                word,
+                "word-twice",
+                Message("contains {letter} twice", letter=letter),
+                "Remove one of the two.",
+            )
         else:
             words[letter] = word
     if modal:
@@ -169,8 +178,8 @@ def _check_groups(statement: Statement, line: Line, modal: list[Word]) -> None:
     groups: dict[str, int] = {}
     for word, code in zip(modal, statement.modal, strict=True):
         if groups.setdefault(G_CODES[code].group, code) != code:
-            what = f"contains two codes of the same group ({G_CODES[code].group})"
-            raise _refused(line, word, "modal-conflict", what, "Keep only one of them.")
+            what = Message("contains two codes of the same group ({word})", word=G_CODES[code].group)
+            raise _refused(line, word, "modal-conflict", what, "Keep only one of these words.")
 
 
 def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
@@ -178,12 +187,16 @@ def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
     entry = G_CODES.get(code)
     if entry is None:
         habit, hint = other_controls.meaning_here(word.text.upper()) or ("", other_controls.LOOK_UP)
-        message = f"{word.text} is not a code of this control. {habit}".rstrip()
+        message = Message(
+            "{word} is not a valid code on this control. {habit}", word=word.text, habit=habit
+        ).rstrip()
         raise statement.refuse(word, "g-unknown", message, hint)
     if entry.acts is _MODE:
         modal.append(word)
     elif statement.code is not None:
-        message = f"{statement.code.text} and {word.text} cannot be on the same line."
+        message = Message(
+            "{code} and {word} cannot be on the same line.", code=statement.code.text, word=word.text
+        )
         raise statement.refuse(word, "two-one-shots", message, "Split the line.")
     else:
         statement.one_shot, statement.code, statement.entry = code, word, entry
@@ -224,9 +237,9 @@ def _check_words(statement: Statement, line: Line) -> None:
         if letter not in allowed:
             habit = other_controls.meaning_here(letter)
             if habit is not None:
-                message = f"{word.text} has no meaning here. {habit[0]}"
+                message = Message("{word} has no meaning here. {habit}", word=word.text, habit=habit[0])
                 raise statement.refuse(word, "word-unused", message, habit[1])
-            what = f"contains {word.text}, which no code on the line uses"
+            what = Message("contains {word}, which no code on the line uses", word=word.text)
             raise _refused(
                 line, word, "word-unused", what, ("Remove the word, or add the code that uses it.")
             )
@@ -236,20 +249,33 @@ def _check_flow(statement: Statement, line: Line) -> None:
     allowed = FLOW_CODES[statement.flow].words
     for word in line.words:
         if word.letter not in allowed:
-            what = f"contains {word.text} in addition to {statement.flow}, which must be alone"
+            what = Message(
+                "contains {word}, but {flow} must be alone on a line",
+                word=word.text,
+                flow=statement.flow,
+            )
             raise _refused(line, word, "not-alone", what, "Put each command on a separate line.")
     if line.block_delete and not FLOW_CODES[statement.flow].deletable:
-        what = f"has '/' before {statement.flow}, which the rest of the program needs"
+        what = Message(
+            "has '/' before {flow}, which cannot be skipped because the rest of the program needs it",
+            flow=statement.flow,
+        )
         raise _refused(line, line.words[0], "block-delete-flow", what, "Remove '/'.")
     for letter in sorted(allowed - {"M", "LF", "RF"}):
         if statement.value(letter) is None:
-            what = f"contains {statement.flow} without {letter}"
-            raise _refused(line, line.words[0], "word-missing", what, f"Add {letter} with its number.")
+            what = Message("contains {flow} without {letter}", flow=statement.flow, letter=letter)
+            raise _refused(
+                line,
+                line.words[0],
+                "word-missing",
+                what,
+                Message("Add {letter} with its number.", letter=letter),
+            )
     for letter, rule in FLOW_CODES[statement.flow].rules.items():
         word = statement.words[letter]
         refusal = rule.refusal_of(word.value or 0.0)
         if refusal is not None:
-            raise statement.refuse(word, refusal.code, refusal.text.format(word=word.text), refusal.hint)
+            raise statement.refuse(word, refusal.code, Message(refusal.text, word=word.text), refusal.hint)
 
 
 def _name_parts(statement: Statement, line: Line) -> None:
@@ -282,4 +308,4 @@ def _group(statement: Statement, word: Word) -> str:
 
 
 def _refused(line: Line, word: Word, code: str, what: str, hint: str) -> ProgramError:
-    return program_error(line.number, word.column, code, f"The line {what}.", hint)
+    return program_error(line.number, word.column, code, Message("This line {what}.", what=what), hint)

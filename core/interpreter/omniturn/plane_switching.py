@@ -22,6 +22,7 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import mill_step
 from core.interpreter.turn_at_axis import turns_at_axis
 from core.language.diagnostics import ProgramError
+from core.message import Message
 
 # --- moves of the virtual mill, through the axis too
 
@@ -45,7 +46,7 @@ def plane_move(state: State, statement: Statement, mill: Mill) -> Iterator[Block
             raise plane_refusal(
                 statement,
                 "feed-missing",
-                "The move has no feed.",
+                "No feed is programmed for this move.",
                 ("Write F on this line or an earlier line."),
             )
         return
@@ -59,8 +60,9 @@ def _target(state: State, statement: Statement, mill: Mill) -> Spot:
     x, y = plane_length(state, statement, "X", mill.x), plane_length(state, statement, "Y", mill.y)
     z = plane_length(state, statement, "Z", mill.z * 2 if side else mill.z)
     if side and z < 0.0:
-        text = (
-            f"Z{state.modal.length_text(z)} is past the center: Z is the diameter that the tool tip touches."
+        text = Message(
+            "Z{z} is past the center; Z is the diameter at the tool tip.",
+            z=state.modal.length_text(z),
         )
         raise plane_refusal(statement, "plane-side", text, "Correct Z.", "Z")
     return x, y, z / 2 if side else z
@@ -72,7 +74,9 @@ def _arc(state: State, statement: Statement, line: PlaneMove) -> PlaneMove:
     first, last = dist(line.start[:2], centre), dist(line.end[:2], centre)
     if first <= _SAME_PLANE_MOVES or abs(first - last) > _TOLERANCE:
         begin, end = state.modal.length_text(first), state.modal.length_text(last)
-        text = f"The arc's radius is {begin} at its start and {end} at its end."
+        text = Message(
+            "The arc's radius is {first} at its start and {last} at its end.", first=begin, last=end
+        )
         hint = "I and J are the coordinates of the arc center."
         raise plane_refusal(statement, "arc-radius", text, hint, "G")
     return replace(line, centre=centre, clockwise=statement.plane.arc == 2)
@@ -86,12 +90,16 @@ def _legs(state: State, statement: Statement, whole: PlaneMove) -> list[PlaneMov
     rho, h = whole.rho(share), abs(whole.frame.h)
     if rho < h - _SAME_PLANE_MOVES:
         near, least = state.modal.length_text(rho), state.modal.length_text(h)
-        text = (
-            f"The path comes within {near} of the axis, but with this H the tool reaches no "
-            f"closer than {least}."
+        text = Message(
+            (
+                "The path comes within {nearest} of the spindle centerline, but with this H "
+                "the tool cannot come closer than {minimum}."
+            ),
+            nearest=near,
+            minimum=least,
         )
         raise plane_refusal(
-            statement, "plane-reach", text, "The tool centerline is offset from the axis by H."
+            statement, "plane-reach", text, "The tool centerline is offset from the spindle centerline by H."
         )
     return whole.parts()
 
@@ -162,8 +170,10 @@ def _enter(state: State, statement: Statement, name: str) -> None:
     modal = state.modal
     check_when(state, statement, FLOW_CODES[f"~{name}"])
     if state.px > -_SAME:
-        text = (
-            f"(~{name}) needs the tool on the negative X side, but X is {state.modal.length_text(state.px)}."
+        text = Message(
+            "(~{name}) needs the tool on the negative X side, but X is {pixels}.",
+            name=name,
+            pixels=state.modal.length_text(state.px),
         )
         raise plane_refusal(statement, "plane-side", text, "Move to negative X before this line.")
     if name == "PLXC":
@@ -177,13 +187,17 @@ def _enter(state: State, statement: Statement, name: str) -> None:
 def _height(state: State, statement: Statement, mill: Mill) -> None:
     if isinstance(mill.frame, Side):
         raise plane_refusal(
-            statement, "plane-word", "H is allowed only with (~PLXC).", ("Remove it from the program."), "H"
+            statement,
+            "plane-word",
+            "H is allowed only with (~PLXC).",
+            ("Remove this text from the program."),
+            "H",
         )
     if not mill.fresh:
         raise plane_refusal(
             statement,
             "plane-h-late",
-            "H follows a move or F, but must come first.",
+            "H is programmed after a move or F, but must come first.",
             ("Write H before all moves and F."),
             "H",
         )
@@ -195,11 +209,17 @@ def _height(state: State, statement: Statement, mill: Mill) -> None:
 def _diameter(state: State, statement: Statement, mill: Mill) -> None:
     if isinstance(mill.frame, Face):
         raise plane_refusal(
-            statement, "plane-word", "D is allowed only with (~PLZC).", ("Remove it from the program."), "D"
+            statement,
+            "plane-word",
+            "D is allowed only with (~PLZC).",
+            ("Remove this text from the program."),
+            "D",
         )
     if abs(mill.y) > _SAME:
-        text = f"D is programmed where Y is {state.modal.length_text(mill.y)}, so it would move Y."
-        raise plane_refusal(statement, "plane-d-late", text, "Write D where Y is 0.", "D")
+        text = Message(
+            ("D is programmed while Y is {y}, so D would move Y."), y=state.modal.length_text(mill.y)
+        )
+        raise plane_refusal(statement, "plane-d-late", text, "Move to Y0 before you program D.", "D")
     diameter = plane_length(state, statement, "D", 0.0)
     if diameter <= 0.0:
         raise plane_refusal(

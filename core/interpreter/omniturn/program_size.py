@@ -12,6 +12,7 @@ from core.interpreter.omniturn.loops_and_subroutines import call_target, takes_c
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import Diagnostic, refusal
+from core.message import Message
 
 
 class Count(NamedTuple):
@@ -36,10 +37,18 @@ def refuse_too_large(program: Program, inputs: Callable[[str], bool]) -> Diagnos
 def _refusal(count: Count) -> Diagnostic | None:
     hint = "Reduce the loop counts."
     if count.blocks > MOST_BLOCKS:
-        text = f"The program makes {_written(count.blocks)} blocks; the maximum is {MOST_BLOCKS:,}."
+        text = Message(
+            "The program generates {blocks} blocks; the maximum is {most_blocks}.",
+            blocks=_written(count.blocks),
+            most_blocks=f"{MOST_BLOCKS:,}",
+        )
         return refusal(count.worst or 1, 0, "too-many-blocks", text, hint)
     if count.lines > MOST_LINES:
-        text = f"The program executes {_written(count.lines)} lines; the maximum is {MOST_LINES:,}."
+        text = Message(
+            "The program executes {lines} lines; the maximum is {most_lines}.",
+            lines=_written(count.lines),
+            most_lines=f"{MOST_LINES:,}",
+        )
         return refusal(count.worst or 1, 0, "too-many-lines", text, hint)
     return None
 
@@ -47,7 +56,7 @@ def _refusal(count: Count) -> Diagnostic | None:
 def _written(count: int) -> str:
     """The count in full up to 10^24; deep nests of loops make numbers that no line and no reader holds."""
     tens = int(math.log10(count))
-    return f"{count:,}" if tens < 24 else f"about 10^{tens}"
+    return f"{count:,}" if tens < 24 else Message("about 10^{tens}", tens=tens)
 
 
 class _Counter:

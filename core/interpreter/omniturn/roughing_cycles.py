@@ -14,6 +14,7 @@ from core.interpreter.omniturn.code_rules import number
 from core.interpreter.omniturn.cycle_contour import read_contour
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
+from core.message import Message
 
 _WHOLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
 _SAME = 1e-6  # mm
@@ -31,7 +32,11 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
     left = length(state, statement, "U")
     contour = read_contour(state, statement, lines)
     if len(contour) > _MOST_ELEMENTS:
-        text = f"The contour has {len(contour):,} lines and arcs; the maximum is {_MOST_ELEMENTS:,}."
+        text: str = Message(
+            "The contour has {contour_count} lines and arcs; the maximum is {most_elements}.",
+            contour_count=f"{len(contour):,}",
+            most_elements=f"{_MOST_ELEMENTS:,}",
+        )
         raise statement.refuse(
             "G", "cycle-contour-long", text, ("Program the contour with fewer, longer moves.")
         )
@@ -39,9 +44,12 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
     try:
         area = Area(view.from_start(contour), left)
     except TrimError:
-        text = f"{name(statement)} finds no continuous path along the contour at the distance U."
+        text = Message(
+            "{text} cannot find a continuous path along the contour at distance U.",
+            text=name(statement),
+        )
         raise statement.refuse(
-            "U", "cycle-no-way", text, ("Lower U, or widen the narrow part of the contour.")
+            "U", "cycle-no-way", text, ("Reduce U, or widen the narrow part of the contour.")
         ) from None
     rougher = Rougher(area, state.modal.rapid_rate, LIFT)
     if cut is not None:
@@ -51,18 +59,19 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
     except StartNearError:
         text = (
             "On the path from the start point to the contour and back, the tool comes closer to "
-            "the contour than U."
+            "the contour than the distance U."
         )
         hint = "Move the start point away from the contour."
         if _falls_at_once(view.from_start(contour)[0]):
             hint = (
-                "The contour falls from its first point; start it with a move up the face from its lowest X."
+                "The contour goes deeper right after its first point; begin the contour with a "
+                "move up the face from the lowest X."
             )
         raise statement.refuse("G", "cycle-start-near", text, hint) from None
     if area.turns_back:
         text = (
-            "The contour runs back along Z, so the pass along the contour cuts all the material "
-            "in this undercut."
+            "The contour reverses along Z. The roughing passes do not reach this undercut, "
+            "so the pass along the contour cuts all of its material."
         )
         state.log.warn(
             statement.line,
@@ -84,14 +93,18 @@ def _passes(
     state: State, statement: Statement, rougher: Rougher, area: Area, cut: float, elements: int
 ) -> None:
     if area.deepest <= 0:
-        text = "The contour leaves no material to cut between itself and the start point."
+        text = "No material remains to be cut between the contour and the start point."
         raise statement.refuse("G", "cycle-nothing", text, "Start farther from the contour in X.")
     count = ceil(area.deepest / cut - _WHOLE)
     check_count(statement, "I", count, "passes")
     if count * elements > _MOST_LOOKS:
-        text = f"{count:,} passes along a contour of {elements:,} lines and arcs are too many to calculate."
+        text = Message(
+            "{count} passes along a contour of {elements} lines and arcs are too many to calculate.",
+            count=f"{count:,}",
+            elements=f"{elements:,}",
+        )
         raise statement.refuse(
-            "I", "cycle-passes", text, ("Raise I, or program the contour with fewer moves.")
+            "I", "cycle-passes", text, ("Increase I, or program the contour with fewer moves.")
         )
     for k in range(1, count + 1):
         rougher.cut(area.deepest * k / count)
@@ -112,14 +125,19 @@ def _view(state: State, statement: Statement, contour: list[Element]) -> Contour
     for axis, letter in ((0, "X"), (1, "Z")):
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
         if to_first * to_last < 0:
-            text = f"The start point is between the ends of the contour in {letter}, not outside both."
+            text = Message(
+                "In {letter}, the start point is between the ends of the contour instead of beyond "
+                "both ends.",
+                letter=letter,
+            )
             raise statement.refuse(
                 "G", "cycle-quadrant", text, ("Move the start point beyond both ends of the contour.")
             )
         if to_first == to_last == 0:
-            text = (
-                f"Both ends of the contour have the same {letter} as the start point, so the contour "
-                "encloses no area to cut."
+            text = Message(
+                "Both ends of the contour have the same {letter} as the start point, so the contour "
+                "does not enclose an area to cut.",
+                letter=letter,
             )
             raise statement.refuse("G", "cycle-nothing", text, "Move the start point away from the contour.")
     return view_from(start, first, last)
@@ -136,7 +154,9 @@ def box_moves(state: State, statement: Statement) -> list[Move]:
     towards = 1.0 if x > state.x else -1.0
     depth = abs(x - state.x) - left
     if depth <= 0:
-        text = f"{statement.words['U'].text} leaves no material in the box to cut."
+        text = Message(
+            "With {text}, no material remains to be cut in the box.", text=statement.words["U"].text
+        )
         raise statement.refuse(
             "U", "cycle-nothing", text, ("U must be less than the distance from the start point to X.")
         )
@@ -155,6 +175,10 @@ def _corner(state: State, statement: Statement, letter: str, start: float, offse
     """X or Z of the corner opposite to the start."""
     end = length(state, statement, letter) + (offset if state.absolute else start)
     if end == start:
-        text = f"The box has no size along {letter}: its corner is at the start point."
-        raise statement.refuse(letter, "cycle-nothing", text, f"Correct {letter} or the start point.")
+        text = Message(
+            "The box has zero size along {letter} because its corner is at the start point.", letter=letter
+        )
+        raise statement.refuse(
+            letter, "cycle-nothing", text, Message("Correct {letter} or the start point.", letter=letter)
+        )
     return end

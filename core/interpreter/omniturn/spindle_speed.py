@@ -11,6 +11,7 @@ from core.interpreter.omniturn.code_table import G_CODES, LETTERS, M_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.units import FEET_PER_MINUTE, METRES_PER_MINUTE
+from core.message import Message
 
 
 def spindle_modes(state: State, statement: Statement) -> None:
@@ -30,7 +31,11 @@ def spindle_modes(state: State, statement: Statement) -> None:
         state.adopt(state.modal._replace(css_max=_limit(state, statement, 77)))
     modal = state.modal
     if modal.css_max is not None and modal.css_min > modal.css_max:
-        message = f"G76 ({modal.css_min:g} rpm) is higher than G77 ({modal.css_max:g} rpm)."
+        message = Message(
+            "G76 ({css_min} rpm) is higher than G77 ({css_max} rpm).",
+            css_min=f"{modal.css_min:g}",
+            css_max=f"{modal.css_max:g}",
+        )
         state.adopt(state.modal._replace(css_min=modal.css_max))
         raise statement.refuse("S", "speed-limits", message, "Correct G76 or G77.")
 

@@ -11,6 +11,7 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import PlainMove, Statement
 from core.language.diagnostics import program_error
 from core.language.omniturn import Word, lex_line
+from core.message import Message
 
 _COARSE = (0.00005, 0.00025, 0.0005)  # inches of radius, by G36, G35, G35F2
 _DIAMETERS = frozenset({"X"})  # words whose number is a diameter under G72
@@ -102,8 +103,10 @@ def check_tool(state: State, line: int, x: float | None, z: float | None) -> Non
     """The first motion after a T must say both coordinates. Raises ProgramError (tool-first-move)."""
     tool_line, state.tool_line = state.tool_line, 0
     if tool_line and (x is None or z is None):
-        where = f"the T on line {tool_line}" if tool_line > 0 else "the T"
-        text = f"The first move after {where} has no {('X' if x is None else 'Z')}."
+        where = Message("the T word on line {tool_line}", tool_line=tool_line) if tool_line > 0 else "the T"
+        text = Message(
+            "The first move after {place} has no {ending}.", place=where, ending="X" if x is None else "Z"
+        )
         raise program_error(
             line, 0, "tool-first-move", text, ("Write both X and Z, or write G92 before this move.")
         )
@@ -112,7 +115,10 @@ def check_tool(state: State, line: int, x: float | None, z: float | None) -> Non
 def warn_of_title_rapid(state: State, line: int) -> None:
     """``G00 (TITLE)`` switched the rapid on, and here a move follows that would have cut."""
     if state.title_rapid and state.modal.rapid:
-        text = f"This move is a rapid because of the G00 next to the comment on line {state.title_rapid}."
+        text = Message(
+            "This move is a rapid because of the G00 next to the comment on line {title_rapid}.",
+            title_rapid=state.title_rapid,
+        )
         state.log.warn(line, 0, "title-rapid", text, ("Write G01 if the move is meant to cut."))
     state.title_rapid = 0
 
@@ -133,7 +139,9 @@ def mill_step(state: State, line: int, word: Word) -> float:
     step = units.METRIC_STEP if state.modal.metric else _COARSE[state.modal.coarse]
     value, finer = _nearest(step, word.value or 0.0)
     if finer:
-        text = f"{word.text} is finer than the resolution; {value:.5f} is used."
+        text = Message(
+            "{word} is finer than the resolution; {value} is used.", word=word.text, value=f"{value:.5f}"
+        )
         state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
     return value * state.scale_z
 
@@ -178,7 +186,13 @@ def _nearest(step: float, value: float) -> tuple[float, bool]:
 def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
     name = "mm" if state.modal.metric else "in"
     step = f"{step_of(state, word.letter):.5f}".rstrip("0")
-    text = f"{word.text} is finer than the resolution of {step} {name}; {value:.5f} is used."
+    text = Message(
+        "{word} is finer than the resolution of {step} {name}; {value} is used.",
+        word=word.text,
+        step=step,
+        name=name,
+        value=f"{value:.5f}",
+    )
     state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
 
 

@@ -1,6 +1,6 @@
 """G33 and G34: a threading cycle → its passes, and the rapids between them.
 
-All lengths mm, X a radius. The formulas: docs/decisions/0009-threads.md.
+All lengths mm, X a radius. The formulas: docs/decisions/0004-contours-and-cycles-calculated-first.md.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from core.interpreter.omniturn.code_rules import check_when, checked, number
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import check_tool, on_step
+from core.message import Message
 
 # --- words, and what has to be right before a thread may be cut
 
@@ -80,7 +81,7 @@ def read_thread(state: State, statement: Statement) -> Thread:
         pulls_out="P" in statement.words,
     )
     if along * (z1 - state.z) <= depth * tan(angle) + _NEAR:
-        text = "The flank angle moves the start of the last pass beyond its end."
+        text = "Because of the flank angle, the last pass would start beyond its end point in Z."
         raise statement.refuse("C", "thread-angle", text, "Start farther away from the end point Z.")
     return thread
 
@@ -88,13 +89,17 @@ def read_thread(state: State, statement: Statement) -> Thread:
 def _lead(state: State, statement: Statement) -> float:
     lead, feed = statement.value("K"), statement.words.get("F")
     if lead is None and feed is not None:
-        text = f"K is missing, but the line has {feed.text}."
-        raise statement.refuse("F", "thread-lead-missing", text, f"Did you mean K{feed.text[1:]}?")
+        text = Message("K is missing, but the line has {feed}.", feed=feed.text)
+        raise statement.refuse(
+            "F", "thread-lead-missing", text, Message("Did you mean K{feed}?", feed=feed.text[1:])
+        )
     coarser = ("Use G35 for a larger lead.", "Use G35F2 for a larger lead.", "Correct K.")[state.modal.coarse]
     value = checked(state, statement, "K", lead and lead * state.scale_z, more=coarser) or 0.0
     if value < _LEAST_LEAD:
         least = state.modal.feed_text(_LEAST_LEAD, per_rev=True)
-        text = f"{statement.words['K'].text}: the minimum lead is {least}."
+        text = Message(
+            "{text}: the minimum lead is {minimum}.", text=statement.words["K"].text, minimum=least
+        )
         raise statement.refuse("K", "thread-lead-range", text, "Correct K.")
     return value
 
@@ -106,7 +111,12 @@ def _check_spindle(state: State, statement: Statement, lead: float) -> None:
     if speed > most * _ROUNDING:
         shown = modal.feed_text(speed, per_rev=False)
         limit = modal.feed_text(most, per_rev=False)
-        text = f"At {rpm:.0f} rpm this lead needs a feed of {shown}; the maximum is {limit}."
+        text = Message(
+            "At {rpm} rpm this lead needs a feed of {value}; the maximum is {limit}.",
+            rpm=f"{rpm:.0f}",
+            value=shown,
+            limit=limit,
+        )
         raise statement.refuse("K", "feed-over-speed", text, "Lower S.")
 
 
@@ -116,7 +126,7 @@ def _way(state: State, statement: Statement) -> tuple[float, float]:
     z1 = (z if state.absolute else state.pz + z) + state.dz
     if abs(z1 - state.z) <= _NEAR:
         text = "The thread ends at the same Z where it starts."
-        raise statement.refuse("Z", "thread-length", text, "Correct Z, or move away before G33.")
+        raise statement.refuse("Z", "thread-length", text, "Correct Z, or move the tool away before G33.")
     return copysign(1.0, z1 - state.z), z1
 
 
@@ -124,24 +134,42 @@ def _depth(state: State, statement: Statement) -> tuple[float, float]:
     """Depth of the last pass below S, and the sign of X away from the work."""
     x = checked(state, statement, "X", on_step(state, statement, "X")) or 0.0
     x1 = (x if state.absolute else state.px + x) + state.dx
-    here = f"the tool is at radius {state.modal.length_text(state.x)}"
+    here = Message("the tool is at radius {x}", x=state.modal.length_text(state.x))
     if abs(x1 - state.x) <= _NEAR:
-        text = f"{statement.words['X'].text} leaves no material to cut: {here}."
-        raise statement.refuse("X", "thread-side", text, "Start at the depth of the first pass.")
+        text = Message(
+            "{text} leaves no material to cut because {position}.",
+            text=statement.words["X"].text,
+            position=here,
+        )
+        raise statement.refuse(
+            "X", "thread-side", text, ("Position the tool at the depth of the first pass before this line.")
+        )
     if x1 * state.x < 0:
-        text = f"{statement.words['X'].text} is on the other side of the spindle axis: {here}."
-        raise statement.refuse("X", "thread-side", text, "Check the sign of X and where the tool starts.")
+        text = Message(
+            "{text} is on the other side of the spindle centerline: {position}.",
+            text=statement.words["X"].text,
+            position=here,
+        )
+        raise statement.refuse(
+            "X", "thread-side", text, "Check the sign of X and the start position of the tool."
+        )
     return abs(x1 - state.x), copysign(1.0, state.x - x1)
 
 
 def _count(statement: Statement, depth: float, first: float, lead: float) -> int:
     """Return the number of passes. Raises ProgramError for an I that does not fit the lead."""
     if first > lead:
-        text = f"{statement.words['I'].text}: the first pass would be deeper than the lead."
+        text = Message(
+            "{text}: the first pass would be deeper than the lead.", text=statement.words["I"].text
+        )
         raise statement.refuse("I", "thread-depth", text, "Correct I, the depth of the first pass, or K.")
     count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
     if count > MOST_PASSES:
-        text = f"The thread would take {count:,} passes; the maximum is {MOST_PASSES:,}."
+        text = Message(
+            "The thread would take {count} passes; the maximum is {most_passes}.",
+            count=f"{count:,}",
+            most_passes=f"{MOST_PASSES:,}",
+        )
         raise statement.refuse("I", "thread-passes", text, "Correct I.")
     return count
 
@@ -228,19 +256,24 @@ class _Cutter:
 
 def _warn(state: State, statement: Statement, thread: Thread) -> None:
     if thread.passes > MANY_PASSES:
-        text = f"The thread takes {thread.passes} passes."
-        hint = "Check I (a larger I takes fewer passes) and the X where the tool starts."
+        text = Message("The thread takes {passes} passes.", passes=thread.passes)
+        hint = "Check I (a larger I gives fewer passes) and the X start position of the tool."
         state.log.warn(statement.line, statement.code_column, "thread-passes", text, hint)
     speed = thread.lead * abs(state.rpm_at(state.x)) / 60
     needed = speed**2 / (2 * state.setup.limits.slide_accel)
     run_up = _run_up(thread)
     if run_up < needed:
-        text = (
-            f"The run-up is {state.modal.length_text(max(run_up, 0.0))}, but the Z axis needs "
-            f"{state.modal.length_text(needed)} to reach the speed for the lead."
+        text = Message(
+            "The run-up is {run_up}, but the Z axis needs {needed} to reach the speed for the lead.",
+            run_up=state.modal.length_text(max(run_up, 0.0)),
+            needed=state.modal.length_text(needed),
         )
         state.log.warn(
-            statement.line, statement.code_column, "thread-run-up", text, "Start farther away, or lower S."
+            statement.line,
+            statement.code_column,
+            "thread-run-up",
+            text,
+            ("Start farther from the thread, or reduce S."),
         )
 
 

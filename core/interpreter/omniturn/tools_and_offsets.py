@@ -14,6 +14,7 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.omniturn import Word
+from core.message import Message
 
 
 def _offset(state: State, line: int, word: Word, use: ToolUse) -> ToolOffset:
@@ -28,10 +29,12 @@ def _offset(state: State, line: int, word: Word, use: ToolUse) -> ToolOffset:
 def missing_offset(tools: Sequence[int], line: int, column: int) -> Diagnostic:
     """The warning for tools whose offset nobody has set."""
     names, hint = ", ".join(f"T{number}" for number in tools), "Set the tool offsets."
-    text = f"{names} have no offset; 0 is used, and the machine will not start."
+    text = Message("{names} have no offset, so 0 is used and the machine will not start.", names=names)
     if len(tools) == 1:
         hint = "Set the tool offset."
-        text = f"Tool {tools[0]} has no offset, so 0 is used and the machine will not start."
+        text = Message(
+            "Tool {tool} has no offset, so 0 is used and the machine will not start.", tool=tools[0]
+        )
     return Diagnostic(line, column, Severity.WARNING, "tool-offset-missing", text, hint)
 
 
@@ -40,7 +43,7 @@ def tool_change(state: State, statement: Statement, word: Word, use: ToolUse) ->
     modal = state.modal
     number = int(word.value or 0)
     if modal.css and number:
-        text = "G96 is active at a tool change, so the spindle drive must follow every jump of X."
+        text = "G96 is active at a tool change, so the spindle drive must follow every sudden change in X."
         state.log.warn(statement.line, word.column, "tool-under-css", text, "Write G97 before T.")
     offset = _offset(state, statement.line, word, use)
     if number:
@@ -102,4 +105,4 @@ def warn_of_idle_shifts(state: State) -> None:
     for line, taken in state.pending_shift.items():
         if not taken:
             text = "No T follows this G10, so its work shift never takes effect."
-            state.log.warn(line, 0, "shift-without-tool", text, "Move G10 before a T.")
+            state.log.warn(line, 0, "shift-without-tool", text, "Write G10 before a T.")

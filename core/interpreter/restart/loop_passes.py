@@ -14,6 +14,7 @@ from core.interpreter.omniturn.omniturn_interpreter import PassToLine
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.restart.restart_point import Called, LineVisit, LoopPass
+from core.message import Message
 
 MOST = 20_000
 """Visits that are told apart; more are made by nobody who wants to go on in one of them."""
@@ -36,12 +37,21 @@ class Visits:
     def why_not(self, line: int, number: int) -> str:
         """Why there is no such visit; empty when there is."""
         if not self.blocks:
-            return f"The program never reaches line {line}."
+            return Message("The program never reaches line {line}.", line=line)
         if len(self.blocks) > MOST:
-            return f"Line {line} runs more than {MOST:,} times; choose the line that begins the loop."
+            return Message(
+                "Line {line} is executed more than {maximum} times; choose the line that begins the loop.",
+                line=line,
+                maximum=f"{MOST:,}",
+            )
         if 1 <= number <= len(self.blocks):
             return ""
-        return f"Line {line} runs {len(self.blocks)} times, so pass {number} does not exist."
+        return Message(
+            "Line {line} is executed only {blocks_count} times, so pass {number} does not exist.",
+            line=line,
+            blocks_count=len(self.blocks),
+            number=number,
+        )
 
     def anchor(self, number: int) -> tuple[int, int]:
         """The line of the main program, outside of all loops, in which the visit comes; its number there."""

@@ -16,6 +16,7 @@ from core.interpreter.actions import ProgramStop, SpindleStop, ToolChange
 from core.interpreter.checkpoint import ApproachStep, AxesLeg, Begin, FunctionStep
 from core.interpreter.restart.restart_approach import Choices, MachineNow, starting, stopping
 from core.interpreter.restart.restart_point import RestartPoint
+from core.message import Message
 
 SHORT_OF_LIMIT = 0.01  # mm that the way stays away from the software limits
 _SLOWLY_OUT = 50.0  # mm along the tool that a tool may stand in the work
@@ -91,8 +92,10 @@ def _steps(
     yield from _out(way, choices)
     yield from way.to({name: at for name, at in goal.items() if name not in _SLIDES}, None)
     if change:
-        yield FunctionStep(ToolChange(wanted.tool), f"TOOL CALL {wanted.tool}")
-        yield FunctionStep(ProgramStop(optional=False, message=f"TOOL {wanted.tool}"), "STOP")
+        yield FunctionStep(ToolChange(wanted.tool), Message("TOOL CALL {tool}", tool=wanted.tool))
+        yield FunctionStep(
+            ProgramStop(optional=False, message=Message("TOOL {tool}", tool=wanted.tool)), "STOP"
+        )
     place: Vector = goal["X"], goal["Y"], goal["Z"]
     room = max(way.room(place), 0.0)
     over = way.along(place, room)

@@ -22,6 +22,7 @@ from core.interpreter.restart.cut_record import CutRecord, record_cuts
 from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
 from core.interpreter.restart.restart_retract import Retract, ToolPlace
 from core.interpreter.restart.state_rebuild import found_on_lathe
+from core.message import Message
 
 Watch = Callable[[float], None]
 
@@ -117,31 +118,42 @@ class ProgramSearch:
     def _search(self, line: int, visit: int, broken: Interruption | None) -> RestartPoint | str:
         lines = self._reading.source.lines
         if not 1 <= line <= len(lines):
-            return f"Line {line} does not exist; the last line of the program is {len(lines)}."
+            return Message(
+                "Line {line} does not exist; the last line of the program is {lines_count}.",
+                line=line,
+                lines_count=len(lines),
+            )
         visits = self._run.visits.get(line, [])
         if not visits:
             return self._why_never(line)
         number = visit or max(1, sum(made < broken.block for made in visits) if broken is not None else 1)
         if number > len(visits):
-            return f"The program reaches line {line} only {len(visits)} times."
+            return Message(
+                "The program reaches line {line} only {visits_count} times.",
+                line=line,
+                visits_count=len(visits),
+            )
         here = self._to(line, number, 0.0, broken)
         other = self._to(line, number, _ASIDE, None)
         if here.failed or here.point is None:
-            return (
-                f"The program cannot resume at line {line}: "
-                f"{here.waits or 'the program has errors before this line'}."
+            return Message(
+                "The program cannot resume at line {line}: {waits}.",
+                line=line,
+                waits=here.waits or "the program has errors before this line",
             )
         at = self._places(here.point, other.point)
         if isinstance(at, str):
-            return f"The program cannot resume at line {line}: {at}"
+            return Message("The program cannot resume at line {line}: {position}", line=line, position=at)
         return self._good(line, here, at, LineVisit(number, len(visits)), broken)
 
     def _why_never(self, line: int) -> str:
         ended = self._run.ended
         if ended and line > ended:
-            return f"The program ends on line {ended}, before line {line}."
-        return (
-            f"Line {line} is empty, a comment or part of the previous block, or the program never reaches it."
+            return Message("The program ends on line {ended}, before line {line}.", ended=ended, line=line)
+        return Message(
+            "Line {line} is empty, is a comment, is part of the previous block, or is never "
+            "reached by the program.",
+            line=line,
         )
 
     def _places(self, here: Checkpoint, other: Checkpoint | None) -> tuple[float | None, ...] | str:
@@ -157,7 +169,9 @@ class ProgramSearch:
                 found.append(None)
             else:
                 axis = self._axes[place]
-                return f"the position of {axis} at this line depends on its position at Cycle Start."
+                return Message(
+                    "the position of {axis} at this line depends on its position at Cycle Start.", axis=axis
+                )
         if all(each is None for each in found):
             return "no axis has moved before this line; start the program from its first line."
         return tuple(found)
@@ -180,18 +194,30 @@ class ProgramSearch:
         if self._setup.kinematics is None:
             free = (place for place, each in zip("xzc", at, strict=True) if each is None and place != "c")
             if lost := next(free, ""):
-                return (
-                    f"The program cannot resume at line {line}: {lost.upper()} is not positioned before it."
+                return Message(
+                    "The program cannot resume at line {line} because {lost} is not positioned before "
+                    "that line.",
+                    line=line,
+                    lost=lost.upper(),
                 )
             own_c = at[2] is not None and not self._setup.limits.spindle_is_c
             turned = point._replace(at=_at(point)) if own_c else point
             return found_on_lathe(line, turned, self.cut, visit, broken)
+        skipped = here.left_out or (0, 0)
+        first, last = min(skipped), max(skipped)  # a loop can end on an earlier line
         if here.left_out and not here.above(point):
-            first, last = here.left_out
-            which = f"line {first}" if first == last else f"lines {first} to {last}"
-            return f"Line {line} begins in material that {which} should have cut."
+            which = (
+                Message("line {line}", line=first)
+                if first == last
+                else Message("lines {first} to {last}", first=first, last=last)
+            )
+            return Message(
+                "At the start of line {line}, the tool is in material that {which} should have cut.",
+                line=line,
+                which=which,
+            )
         clear = Retract(ToolPlace.CLEAR)
-        return RestartPoint(line, point, clear, None, visit, left_out=here.left_out or (0, 0), axes=at)
+        return RestartPoint(line, point, clear, None, visit, left_out=(first, last), axes=at)
 
     def _nearest(self, line: int, way: int, broken: Interruption | None) -> int:
         """The nearest line that is good, of those to which the run comes and that wait for no other.

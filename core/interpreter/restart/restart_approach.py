@@ -26,6 +26,7 @@ from core.interpreter.restart.restart_retract import (
     off_row,
     retract,
 )
+from core.message import Message
 
 _SAME = 1e-6  # mm
 _TURN = 360.0
@@ -179,7 +180,7 @@ def stopping(wanted: Modal, now: Modal) -> Iterator[ApproachStep]:
     if now.coolant and not wanted.coolant:
         yield FunctionStep(Coolant(False), "M09")
     for name in sorted(now.outputs - wanted.outputs):
-        yield FunctionStep(Output(name, False), f"{name.upper()} OFF")
+        yield FunctionStep(Output(name, False), Message("{name} OFF", name=name.upper()))
 
 
 def _starts(found: RestartPoint, now: MachineNow, choices: Choices) -> Iterator[ApproachStep]:
@@ -196,7 +197,7 @@ def _starts(found: RestartPoint, now: MachineNow, choices: Choices) -> Iterator[
         text = f"{'M03' if wanted.spindle > 0 else 'M04'}"
         yield FunctionStep(SpindleRun(wanted.spindle * wanted.rpm, surface), text)
     for name in sorted(wanted.outputs - now.modal.outputs):
-        yield FunctionStep(Output(name, True), f"{name.upper()} ON")
+        yield FunctionStep(Output(name, True), Message("{name} ON", name=name.upper()))
     if wanted.coolant and choices.coolant:
         yield FunctionStep(Coolant(True), "M08")
 

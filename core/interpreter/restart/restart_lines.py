@@ -10,6 +10,7 @@ from core.interpreter.omniturn.loops_and_subroutines import call_target
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import PLANE, Statement
 from core.interpreter.omniturn.plain_moves import ReadyLines
+from core.message import Message
 
 _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
 
@@ -37,11 +38,15 @@ class RestartLines:
     def why_not(self, line: int) -> str:
         """Why no program can go on from this line; empty when its text has nothing against it."""
         if not 1 <= line <= self.count:
-            return f"Line {line} does not exist; the last line of the program is {self.count}."
+            return Message(
+                "Line {line} does not exist; the last line of the program is {lines_count}.",
+                line=line,
+                lines_count=self.count,
+            )
         for lines in self.ranges:
             if lines.first <= line <= lines.last:
-                return f"Line {line} {lines.why}"
-        return "" if self._steps[line - 1] is not None else f"Line {line} is empty."
+                return Message("Line {line} {why}", line=line, why=lines.why)
+        return "" if self._steps[line - 1] is not None else Message("Line {line} is empty.", line=line)
 
     def repeats(self, line: int) -> bool:
         """Whether the run may come to it more than once, or never: within a loop or a subroutine."""
@@ -92,7 +97,11 @@ def _structured(program: Program) -> Iterator[LineRange]:
     """Contours, and what no call can reach: their first lines are good, what is inside is not."""
     structure = program.structure
     for start, end in structure.contours.items():
-        yield LineRange(start + 2, end + 1, f"belongs to the contour of line {start + 1}.")
+        yield LineRange(
+            start + 2,
+            end + 1,
+            Message(("is part of the contour that begins on line {start}."), start=start + 1),
+        )
     spans = sorted(_subroutines(program))
     at = structure.main_end + 1
     for start, end, _number in (*spans, (len(program.ready) + 1, 0, 0)):
@@ -104,9 +113,13 @@ def _structured(program: Program) -> Iterator[LineRange]:
 def _repeated(program: Program) -> Iterator[LineRange]:
     """Loops behind their LS, and subroutines."""
     for start, end in program.structure.loop_ends.items():
-        yield LineRange(start + 2, end + 1, (f"is inside the loop from line {start + 1} to line {end + 1}."))
+        yield LineRange(
+            start + 2,
+            end + 1,
+            (Message("is inside the loop from line {start} to line {end}.", start=start + 1, end=end + 1)),
+        )
     for start, end, number in _subroutines(program):
-        yield LineRange(start, end, f"is in subroutine {number}.")
+        yield LineRange(start, end, Message("is in subroutine {number}.", number=number))
 
 
 def _subroutines(program: Program) -> Iterator[tuple[int, int, int]]:
@@ -133,11 +146,15 @@ def _open(steps: ReadyLines) -> Iterator[LineRange]:
         if step.flow == PLANE:
             plane, done = _plane(step, number, plane)
             if done:
-                yield LineRange(done + 1, number, f"is in the plane switching that begins on line {done}.")
+                yield LineRange(
+                    done + 1,
+                    number,
+                    Message("is in the plane switching section that begins on line {done}.", done=done),
+                )
         if not nose and _NOSE_ON.intersection(step.modal):
             nose = number
         elif nose and (_NOSE_OFF in step.modal or "T" in step.words):
-            why = f"uses the nose compensation that begins on line {nose}."
+            why = Message("uses the nose compensation that begins on line {nose}.", nose=nose)
             yield LineRange(nose + 1, number, why)
             nose = 0
 
@@ -151,4 +168,6 @@ def _plane(step: Statement, number: int, begun: int) -> tuple[int, int]:
 
 
 def _corner(begun: int, ends: int) -> LineRange:
-    return LineRange(begun + 1, ends, f"is part of the corner of line {begun}.")
+    return LineRange(
+        begun + 1, ends, Message(("is part of the corner that begins on line {begun}."), begun=begun)
+    )

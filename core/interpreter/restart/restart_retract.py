@@ -2,7 +2,7 @@
 
 Known to be free is where this tool has been since the collet was last opened, and what lies over the largest
 radius that the program cuts or before its face. Beyond that a leg is sure only where the program itself takes
-the tool off so. The rules, and what was taken from nobody's guess: docs/decisions/0036-way-out.md.
+the tool off so. The rules, and what was taken from nobody's guess: docs/decisions/0021-restart.md.
 """
 
 from __future__ import annotations

@@ -22,6 +22,7 @@ from core.interpreter.restart.restart_lines import RestartLines
 from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
 from core.interpreter.restart.restart_retract import Place, Retract, ToolPlace, retract
 from core.language.source import Source
+from core.message import Message
 
 Watch = Callable[[float], None]
 
@@ -81,7 +82,9 @@ class StateRebuild:
         anchor, nth = visits.anchor(number) if not why else (0, 0)
         why = why or self._pass_to_line(anchor, position_known=False)
         if why:
-            return why.replace(f"line {anchor}", f"line {line}").replace(f"Line {anchor}", f"Line {line}")
+            return why.replace(
+                Message("line {line}", line=anchor), Message("line {line}", line=line)
+            ).replace(Message("Line {line}", line=anchor), Message("Line {line}", line=line))
         found = self._within(line, anchor, nth, visits.line_visit(number), broken)
         if isinstance(found, RestartPoint) and broken is not None:
             return replace(found, was=visits.line_visit(visits.at(broken.block)))
@@ -103,7 +106,9 @@ class StateRebuild:
         for walk in walks:
             lost, has_moved = self._to_visit(walk, line, nth)
             if lost:
-                return f"The program cannot resume at line {line}: {lost}"
+                return Message(
+                    "The program cannot resume at line {line}: {position}", line=line, position=lost
+                )
             moved = moved or has_moved
         walk, known = walks[0], self._other is None or _same_state(*walks)
         why = self._why_not(line, walk, known=known, moved=moved)
@@ -122,7 +127,11 @@ class StateRebuild:
                 moved = moved or block.action is None
                 if isinstance(block.action, AskInput):
                     asks = block.action.terminal
-                    return f"the state of input {asks} on line {block.line} is not known.", moved
+                    return Message(
+                        "line {line} depends on input {terminal}, and the state of this input is unknown.",
+                        terminal=asks,
+                        line=block.line,
+                    ), moved
         return "", moved
 
     def _count_block(self) -> None:
@@ -188,7 +197,11 @@ class StateRebuild:
             elif isinstance(block.action, ProgramEnd):
                 self._ended = block.line
             elif isinstance(block.action, AskInput) and (self._walk.called or block.line != asked):
-                self._lost = f"the state of input {block.action.terminal} on line {block.line} is not known."
+                self._lost = Message(
+                    "line {line} depends on input {terminal}, and the state of this input is unknown.",
+                    terminal=block.action.terminal,
+                    line=block.line,
+                )
         if self._other is not None:
             for _ in self._other.before(line):
                 pass
@@ -196,7 +209,10 @@ class StateRebuild:
     def _ask(self) -> None:
         """From here on the second pass is the one in which the input of this line answers otherwise."""
         if self._other is not None:
-            self._lost = f"the state of the input on line {self._at} is not known."
+            self._lost = Message(
+                ("line {position} depends on an input, and the state of this input is unknown."),
+                position=self._at,
+            )
             return
         begin = Begin(self._walk.checkpoint, self._at)
         self._asked = self._at
@@ -206,17 +222,49 @@ class StateRebuild:
 
     def _why_not(self, line: int, walk: PassToLine, *, known: bool, moved: bool) -> str:
         reasons = (
-            (walk.failed, f"The program has errors before line {line}."),
-            (self._ended, f"The program ends on line {self._ended}, before line {line}."),
-            (self._lost, f"The program cannot resume at line {line}: {self._lost}"),
-            (walk.holds_moves, f"Line {line} uses nose compensation or is part of a corner."),
-            (walk.checkpoint.modal.mill, f"Plane switching is active at line {line}."),
-            (not known and self._asked, (f"Line {line} depends on the input that line {self._asked} reads.")),
+            (walk.failed, Message("The program has errors before line {line}.", line=line)),
+            (
+                self._ended,
+                Message(
+                    "The program ends on line {ended}, before line {line}.", ended=self._ended, line=line
+                ),
+            ),
+            (
+                self._lost,
+                Message(
+                    "The program cannot resume at line {line}: {position}", line=line, position=self._lost
+                ),
+            ),
+            (
+                walk.holds_moves,
+                Message("Line {line} uses nose compensation or is part of a corner.", line=line),
+            ),
+            (walk.checkpoint.modal.mill, Message("Plane switching is active at line {line}.", line=line)),
+            (
+                not known and self._asked,
+                (
+                    Message(
+                        "Line {line} depends on an input that is read on line {requested}.",
+                        line=line,
+                        requested=self._asked,
+                    )
+                ),
+            ),
             (
                 not known and not moved,
-                f"No axis has moved before line {line}; start the program from its first line.",
+                Message(
+                    "No axis has moved before line {line}; start the program from its first line.", line=line
+                ),
             ),
-            (not known, (f"The axis positions at line {line} depend on the axis positions at Cycle Start.")),
+            (
+                not known,
+                (
+                    Message(
+                        "The axis positions at line {line} depend on the axis positions at Cycle Start.",
+                        line=line,
+                    )
+                ),
+            ),
         )
         return next((why for wrong, why in reasons if wrong), "")
 
@@ -231,15 +279,28 @@ def found_on_lathe(
         return RestartPoint(line, point, back, cut, visit, left_out=_left_out(cut, done, point.blocks))
     if point.blocks > done:
         first, last = _left_out(cut, done, point.blocks)
-        which = f"line {first}" if first == last else f"lines {first} to {last}"
-        return f"Line {line} begins in material that {which} should have cut."
+        which = (
+            Message("line {line}", line=first)
+            if first == last
+            else Message("lines {first} to {last}", first=first, last=last)
+        )
+        return Message(
+            "At the start of line {line}, the tool is in material that {which} should have cut.",
+            line=line,
+            which=which,
+        )
     how = _HOW.get(back.tool_place, "")
-    return f"Line {line} begins inside the part, and no safe path leads there. {how}".strip()
+    return Message(
+        "At the start of line {line}, the tool is inside the part, and a safe path to that "
+        "point does not exist. {method}",
+        line=line,
+        method=how,
+    ).strip()
 
 
 _HOW = {
-    ToolPlace.TAP: "The tap is inside its thread at that point.",
-    ToolPlace.THREAD: "The threading tool is inside its thread at that point.",
+    ToolPlace.TAP: "The tap is in the thread at the start of that line.",
+    ToolPlace.THREAD: "The threading tool is in the thread at the start of that line.",
 }
 
 
@@ -255,12 +316,12 @@ def _retract_from(cut: CutRecord, point: Checkpoint) -> Retract:
 
 
 def _left_out(cut: CutRecord, done: int, blocks: int) -> tuple[int, int]:
-    """First and last line of what was to be cut between what is done and the line."""
+    """Return the lines of the first and last cut between the executed blocks and the line, lower first."""
     rows = (cut.n > done) & (cut.n <= blocks) & ((cut.how & 1) != 0)
     if not rows.any():
         return 0, 0
-    lines = cut.line[rows]
-    return int(lines[0]), int(lines[-1])
+    ends = int(cut.line[rows][0]), int(cut.line[rows][-1])
+    return min(ends), max(ends)  # a loop can end on an earlier line
 
 
 def _asks(program: Program, lines: RestartLines) -> list[int]:

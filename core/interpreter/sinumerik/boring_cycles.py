@@ -9,6 +9,7 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import Cycle, Step, dwell
 from core.interpreter.sinumerik.drilling_cycles import Hole, approach, hole_of, needed_feed, seconds
 from core.interpreter.sinumerik.spindle_and_dwell import demand_position, oriented_by_drive, shortest_turn
+from core.message import Message
 
 NO_DIRECTION = 61102
 
@@ -17,11 +18,13 @@ def _turning(cycle: Cycle) -> list[Step]:
     """The spindle in the direction SDIR. Raises ProgramError."""
     direction = cycle.number("SDIR")
     if direction not in {3.0, 4.0}:
-        raise cycle.wrong("SDIR", "must be 3 or 4", "Enter the spindle direction.", NO_DIRECTION)
+        raise cycle.wrong("SDIR", "{name} must be 3 or 4", "Enter the spindle direction.", NO_DIRECTION)
     modal, sign = cycle.state.modal, 1 if direction == 3.0 else -1
     if not modal.rpm or modal.css:
         raise cycle.refused(
-            "speed-missing", f"{cycle.line.call} needs S in rpm.", ("Write G97 with S before this block.")
+            "speed-missing",
+            Message("{call} needs S in rpm.", call=cycle.line.call),
+            ("Write G97 with S before this block."),
         )
     if modal.spindle == sign:
         return []
@@ -35,10 +38,14 @@ def lift_off(cycle: Cycle) -> Iterator[Block]:
     cycle.zero_only("RPO", "this lathe has no Y axis")
     angle = cycle.number("POSS")
     if not 0.0 <= angle < 360.0:
-        raise cycle.wrong("POSS", ("must be an angle from 0 to less than 360 degrees"), "Correct the value.")
+        raise cycle.wrong(
+            "POSS", ("{name} must be an angle from 0 to less than 360 degrees"), "Correct the value."
+        )
     aside, up = cycle.length("RPA"), cycle.length("RPAP")
     if up * hole.down > 0.0:
-        raise cycle.wrong("RPAP", ("would move the tool deeper into the hole"), "Correct the sign of RPAP.")
+        raise cycle.wrong(
+            "RPAP", ("{name} would move the tool deeper into the hole"), "Correct the sign of RPAP."
+        )
     x = cycle.x
     steps = [
         *approach(cycle, hole), *_turning(cycle), Step(x, hole.bottom, needed_feed(cycle)),

@@ -24,6 +24,7 @@ from core.interpreter.sinumerik.sinumerik_state import State, positive
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
+from core.message import Message
 
 _CUT = frozenset({Kind.FEED, Kind.RAPID, Kind.ARC})  # what may meet in a corner
 
@@ -43,7 +44,10 @@ class Corner:
     def refuse(self, code: str, why: str, hint: str) -> ProgramError:
         """An error at the corner's word."""
         return self.statement.refuse(
-            self.word, code, (f"Corner {self.word.text} is not possible: {why}."), hint
+            self.word,
+            code,
+            (Message("Corner {letter} is not possible: {why}.", letter=self.word.text, why=why)),
+            hint,
         )
 
 
@@ -119,7 +123,7 @@ class Corners:
             yield from (held.block, *held.between)
         elif held is not None:
             raise held.corner.refuse(
-                "corner-next", "no move follows", ("Program two consecutive moves for the corner.")
+                "corner-next", "no move follows the corner", ("Program two consecutive moves for the corner.")
             )
 
     def _cut(self, held: _Held, after: Block, corner: Corner | None) -> Iterator[Block]:
@@ -128,7 +132,9 @@ class Corners:
             yield from self.take(after, corner)
             return
         if after.kind not in _CUT or not _moves(after):
-            why = f"the next move, on line {after.line}, is not a line or an arc in X and Z"
+            why = Message(
+                "the next move, on line {line}, is not a line or an arc in X and Z", line=after.line
+            )
             raise held.corner.refuse("corner-next", why, ("Program two consecutive moves for the corner."))
         block, (dx, dz) = held.block, _shift(held.block, after)
         first, last = element_of(block), element_of(_moved(after, dx, dz))
@@ -139,10 +145,14 @@ class Corners:
                 yield from (block, *held.between)
                 yield from self.take(after, corner)
                 return
-            text = f"lines {block.line} and {after.line} run in the same direction and form no corner."
+            text = Message(
+                "the moves on lines {line} and {line2} are in the same direction and do not form a corner.",
+                line=block.line,
+                line2=after.line,
+            )
             self._log.add(
                 held.corner.statement.warning(
-                    held.corner.word, "corner-straight", text, ("Remove it from the program.")
+                    held.corner.word, "corner-straight", text, ("Remove this text from the program.")
                 )
             )
             yield from (block, *held.between)
@@ -151,7 +161,7 @@ class Corners:
         except CornerTooLargeError as problem:
             raise self._too_large(held, after, problem) from None
         except CornerError as problem:
-            raise held.corner.refuse("corner-next", str(problem), "Program another end point.") from None
+            raise held.corner.refuse("corner-next", str(problem), "Program a different end point.") from None
         yield along(self._state, block, cut)
         made = inserted(self._state, block, between)
         yield made if held.corner.feed is None else replace(made, feed=held.corner.feed)
@@ -169,9 +179,11 @@ class Corners:
     def _too_large(self, held: _Held, after: Block, problem: CornerTooLargeError) -> ProgramError:
         of = held.block if problem.first else after
         left = element_of(of).length
-        why = (
-            f"it needs {problem.needed:.4f} mm of the move on line {of.line}, which is only "
-            f"{left:.4f} mm long"
+        why = Message(
+            "the corner needs {needed} mm of the move on line {line}, which is only {left} mm long",
+            needed=f"{problem.needed:.4f}",
+            line=of.line,
+            left=f"{left:.4f}",
         )
         return held.corner.refuse("corner-too-large", why, ("Use a smaller chamfer or radius."))
 

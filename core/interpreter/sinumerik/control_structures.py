@@ -13,6 +13,7 @@ from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.program_jumps import Defined, Jump, Steering
 from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NESTING, NO_TARGET, NOT_DEFINED, fault
 from core.language.sinumerik.sinumerik_words import Line
+from core.message import Message
 
 _ENDS = {
     Steering.END_IF: Steering.IF,
@@ -59,14 +60,18 @@ def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
             opened[-1][2].append(at)
         elif jump.steering is Steering.ELSE or jump.steering in _ENDS:
             if not opened or opened[-1][1].steering is not _ENDS.get(jump.steering):
-                text = f"{jump.steering} has no matching start."
-                raise _refused(line, jump, NESTING, text, ("Check the start of the structure."))
+                text = Message("{steering} has no matching start.", steering=jump.steering)
+                raise _refused(line, jump, NESTING, text, ("Check the start of the control structure."))
             places = (*opened.pop()[2], at)
             found.update(dict.fromkeys(places, places))
     if opened:
         line, jump, _ = opened[-1]
         raise _refused(
-            line, jump, NESTING, f"{jump.steering} has no matching end.", ("Add the matching end statement.")
+            line,
+            jump,
+            NESTING,
+            Message("{steering} has no matching end.", steering=jump.steering),
+            ("Add the matching end statement."),
         )
     return found
 
@@ -87,8 +92,8 @@ def follow(line: Line, jump: Jump, state: State, program: Lines, at: int) -> int
         state.adopt(state.modal._replace(comment=_message(line, jump, state)))
     elif steering is Steering.ALARM and jump.condition is not None:
         number = _worth(line, jump, state, jump.condition)
-        text = f"the program raises its own alarm {number:g}."
-        raise _refused(line, jump, "program-alarm", text, ("Check the blocks before this one for the cause."))
+        text = Message("the program itself triggers alarm {number}.", number=f"{number:g}")
+        raise _refused(line, jump, "program-alarm", text, ("Check the preceding blocks for the cause."))
     elif (steering in _BEGINS or steering in _ENDS or steering is Steering.ELSE) and not jump.target:
         return _STEPS[steering](line, jump, state, program.partners()[at], program)
     return None
@@ -117,7 +122,9 @@ def _define(line: Line, jump: Jump, state: State) -> None:
             left = state.variables.fill(each.name, scope.elements(each.name)[0], each.values,
                                         lambda asked: _worth(line, jump, state, asked))  # fmt: skip
             if left:
-                told = f"{each.name} needs {left} more elements for this list."
+                told = Message(
+                    "array {item} needs {left} more elements for this list.", item=each.name, left=left
+                )
                 raise _refused(line, jump, "array-values", told, "Shorten the list, or enlarge the array.")
 
 
@@ -125,13 +132,23 @@ def _sizes(line: Line, jump: Jump, state: State, each: Defined) -> tuple[int, ..
     """How many elements an array has in each dimension. Raises ProgramError for none, and for too many."""
     sizes = tuple(int(_worth(line, jump, state, size)) for size in each.sizes)
     if len(sizes) > MOST_DIMENSIONS or min(sizes, default=1) < 1 or prod(sizes) > LARGEST_ARRAY:
-        told = f"{each.name}{list(sizes)} is not an array of 1 to {LARGEST_ARRAY:,} elements."
+        told = Message(
+            "{item}{sizes}: an array must have 1 to {largest_array} elements.",
+            item=each.name,
+            sizes=list(sizes),
+            largest_array=f"{LARGEST_ARRAY:,}",
+        )
         raise _refused(
             line,
             jump,
             FIRST_INDEX,
             told,
-            (f"Correct the array sizes; at most {MOST_DIMENSIONS} dimensions are allowed."),
+            (
+                Message(
+                    "Correct the array sizes; at most {most_dimensions} dimensions are allowed.",
+                    most_dimensions=MOST_DIMENSIONS,
+                )
+            ),
         )
     return sizes
 
@@ -216,8 +233,14 @@ _STEPS: dict[Steering, _Step] = {
 
 def _set(line: Line, jump: Jump, state: State, value: float) -> None:
     if not state.variables.keep(jump.name, value):
-        text = f"the name {jump.name} is not defined with DEF."
-        raise _refused(line, jump, NOT_DEFINED, text, (f"Write DEF INT {jump.name} before this block."))
+        text = Message("the name {jump} is not defined with DEF.", jump=jump.name)
+        raise _refused(
+            line,
+            jump,
+            NOT_DEFINED,
+            text,
+            (Message("Write DEF INT {jump} before this block.", jump=jump.name)),
+        )
 
 
 def _variable(jump: Jump, state: State) -> float:
@@ -241,7 +264,11 @@ def _target(line: Line, jump: Jump, program: Lines, at: int) -> int:
         return program.lines.start
     place = find_label(jump.steering, jump.target, program, at)
     if place is None:
-        text = f"label {jump.target} is not in the direction in which {jump.steering} searches."
+        text = Message(
+            "label {target} was not found in the search direction of {steering}.",
+            target=jump.target,
+            steering=jump.steering,
+        )
         raise _refused(line, jump, NO_TARGET, text, ("Correct the label or the direction of the jump."))
     return place
 

@@ -22,6 +22,7 @@ from core.interpreter.sinumerik.thread_cycle import thread_cycle
 from core.interpreter.sinumerik.undercut_cycles import shoulder_undercut, thread_undercut, undercut
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.sinumerik_words import Line
+from core.message import Message
 
 _RUN: Mapping[str, Callable[[Cycle], Iterator[Block]]] = {
     "CYCLE81": drill,
@@ -57,20 +58,28 @@ def _contour(cycle: Cycle, flow: Flow) -> list[Element]:
     named = cycle.text("NPP")
     if not named:
         hint = 'Write "NAME" for a subprogram, or "START:END" for two labels.'
-        raise cycle.wrong("NPP", "does not name a contour", hint, WRONG_CONTOUR)
+        raise cycle.wrong("NPP", "{name} does not contain the name of a contour", hint, WRONG_CONTOUR)
     known = flow.routine(named)
     lines = contour_lines(named, flow.running, known)
     if lines is None:
         if ":" in named:
             raise cycle.wrong(
-                "NPP", f"names labels that do not exist: {named}", ("Correct these entries."), 14080
+                "NPP",
+                Message("{name} refers to labels that do not exist: {named}", named=named, name="NPP"),
+                ("Correct these entries."),
+                14080,
             )
-        hint = (
-            f"Put {named}.spf in the main program's folder, or add %_N_{named}_SPF to the main "
-            "program's file."
+        hint = Message(
+            "Put {named}.spf in the main program's folder, or add %_N_{named2}_SPF to the main "
+            "program's file.",
+            named=named,
+            named2=named,
         )
         raise cycle.wrong(
-            "NPP", f"names the subprogram {named}, which does not exist", hint, "subprogram-missing"
+            "NPP",
+            Message("{name} refers to subprogram {named}, which does not exist", named=named, name="NPP"),
+            hint,
+            "subprogram-missing",
         )
     try:
         return read_contour(cycle.state, lines)
@@ -82,5 +91,5 @@ def _contour(cycle: Cycle, flow: Flow) -> list[Element]:
 
 def _told_at(line: Line, shown: str, found: Diagnostic) -> Diagnostic:
     """A mistake in the contour's own file, at the line of the cycle."""
-    message = f"{shown} line {found.line}: {found.message}"
+    message = Message("{source} line {line}: {value}", source=shown, line=found.line, value=found.message)
     return replace(found, line=line.number, column=line.call_column, message=message)

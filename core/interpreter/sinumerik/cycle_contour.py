@@ -23,6 +23,7 @@ from core.language.sinumerik.program_jumps import Steering
 from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_words import Line
 from core.language.sinumerik.word_table import ABSOLUTE, MOTION, PLANE, TRANSVERSE
+from core.message import Message
 
 WRONG_CONTOUR = 61605
 _SAME = 1e-6  # mm
@@ -98,7 +99,7 @@ class _Reader:
         groups = statement.g.keys() - _GROUPS
         if groups:
             word = statement.g[min(groups)]
-            raise _refused(statement.line, f"{word.text} is not allowed in a contour")
+            raise _refused(statement.line, Message("{line} is not allowed in a contour", line=word.text))
         motion = statement.code(MOTION)
         if motion is not None and motion not in _MOTIONS:
             raise _refused(statement.line, "a contour can contain only G0, G1, G2 and G3")
@@ -114,5 +115,12 @@ class _Reader:
 
 def _refused(line: Line, why: str) -> ProgramError:
     return ProgramError(
-        fault(line.number, 1, WRONG_CONTOUR, line.block, f"{why}.", ("Remove it from the program."))
+        fault(
+            line.number,
+            1,
+            WRONG_CONTOUR,
+            line.block,
+            Message("{what}.", what=why),
+            ("Remove this text from the program."),
+        )
     )

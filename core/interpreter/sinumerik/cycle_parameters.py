@@ -18,6 +18,7 @@ from core.language.sinumerik.call_arguments import Argument
 from core.language.sinumerik.cycle_names import CYCLES
 from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_words import Line
+from core.message import Message
 
 TOO_MANY = 12330
 NO_FEED = 61003
@@ -67,27 +68,40 @@ class Cycle:
     def _by_name(self) -> dict[str, Argument]:
         names, arguments = CYCLES[self.line.call], self.line.arguments or ()
         if len(arguments) > len(names):
-            text = f"{self.line.call} accepts {len(names)} parameters, but the call passes {len(arguments)}."
+            text = Message(
+                "{call} accepts {names_count} parameters, but the call passes {arguments_count}.",
+                call=self.line.call,
+                names_count=len(names),
+                arguments_count=len(arguments),
+            )
             raise self._fault(
                 arguments[len(names)].column,
                 TOO_MANY,
                 text,
-                (f"Use only these parameters: {', '.join(names)}."),
+                (Message("Use only these parameters: {names}.", names=", ".join(names))),
             )
         return {name: each for name, each in zip(names, arguments, strict=False) if each.given}
 
     def _check(self) -> None:
         """Raises ProgramError where no cycle can run: the frame is turned, or compensation is on."""
         if not self.state.programmed.plain:
-            text = f"{self.line.call} cannot run in a frame that is rotated, scaled or mirrored."
+            text = Message(
+                "{call} cannot run in a frame that is rotated, scaled or mirrored.", call=self.line.call
+            )
             raise self.refused("cycle-frame", text, ("Write TRANS without axes before this block."))
         plane = self.state.transformation
         if plane is not None and (self.line.call not in _LIVE or not plane.along_z):
-            what = "turns or taps with the spindle" if plane.along_z else "moves along Z"
-            text = f"{self.line.call} {what}, but {plane.name} is active."
+            what = "uses the spindle for turning or tapping" if plane.along_z else "moves along Z"
+            text = Message(
+                "{call} {what}, but {plane} is active.", call=self.line.call, what=what, plane=plane.name
+            )
             raise self.refused("transformation", text, ("Write TRAFOOF before this block."))
         if self.state.modal.nose_comp != 40:
-            text = f"{self.line.call} is not allowed while G{self.state.modal.nose_comp} is active."
+            text = Message(
+                "{what} is not allowed while G{state} is active.",
+                what=self.line.call,
+                state=self.state.modal.nose_comp,
+            )
             raise self.refused("comp-with", text, ("Write G40 and a move before this block."))
 
     def given(self, name: str) -> bool:
@@ -105,9 +119,10 @@ class Cycle:
         if argument is None:
             return default
         if argument.formula is None:
-            raise self.wrong(name, "is a text but must be a number", "Enter a number.")
+            raise self.wrong(name, "{name} is text but must be a number", "Enter a number.")
         return self.state.worth(
-            argument.formula, lambda c, t, h: self._fault(argument.column, c, f"{name}: {t}", h)
+            argument.formula,
+            lambda c, t, h: self._fault(argument.column, c, Message("{name}: {t}", name=name, t=t), h),
         )
 
     def length(self, name: str, default: float = 0.0) -> float:
@@ -120,20 +135,22 @@ class Cycle:
         """A length without a sign. Raises ProgramError under 0."""
         value = self.length(name, default)
         if value < 0.0:
-            raise self.wrong(name, ("is a size and cannot be negative"), "Remove the sign.")
+            raise self.wrong(name, ("{name} is a size and cannot be negative"), "Remove the sign.")
         return value
 
     def needed(self, name: str) -> float:
         """A length that must be there. Raises ProgramError."""
         if not self.given(name):
-            raise self.wrong(name, "is missing", f"Add this parameter to {self.line.call}.")
+            raise self.wrong(
+                name, "{name} is missing", Message("Add this parameter to {call}.", call=self.line.call)
+            )
         return self.length(name)
 
     def over_zero(self, name: str, alarm: int | str = "cycle-parameter") -> float:
         """A length that must be there and over 0. Raises ProgramError."""
         value = self.needed(name)
         if value <= 0.0:
-            raise self.wrong(name, "must be greater than 0", "Correct the value.", alarm)
+            raise self.wrong(name, "{name} must be greater than 0", "Correct the value.", alarm)
         return value
 
     def whole(self, name: str, default: int, low: int, high: int) -> int:
@@ -142,18 +159,35 @@ class Cycle:
         self._demand_whole(name, value)
         if not low <= value <= high:
             raise self.wrong(
-                name, f"is {value:g} but must be between {low} and {high}", ("Correct the value.")
+                name,
+                Message(
+                    ("{name} is {value} but must be between {low} and {high}"),
+                    value=f"{value:g}",
+                    low=low,
+                    high=high,
+                    name=name,
+                ),
+                ("Correct the value."),
             )
         return round(value)
 
     def _demand_whole(self, name: str, value: float) -> None:
         if value != round(value):
-            raise self.wrong(name, f"is {value:g} but must be a whole number", "Enter a whole number.")
+            raise self.wrong(
+                name,
+                Message("{name} is {value} but must be a whole number", value=f"{value:g}", name=name),
+                "Enter a whole number.",
+            )
 
     def zero_only(self, name: str, why: str) -> None:
         """Raises ProgramError where a parameter asks for what is not built."""
         if self.number(name):
-            raise self.wrong(name, f"is not supported here: {why}", f"Omit {name}.", "not-in-subset")
+            raise self.wrong(
+                name,
+                Message("{name} is not supported; {why}", why=why, name=name),
+                Message("Omit {name}.", name=name),
+                "not-in-subset",
+            )
 
     def feed(self, name: str) -> float | None:
         """A feed as modal.feed has it; that in force without the parameter."""
@@ -161,7 +195,7 @@ class Cycle:
             return self.state.modal.feed
         value = self.number(name)
         if value < 0.0:
-            raise self.wrong(name, "must be a feed rate above 0", "Correct the value.")
+            raise self.wrong(name, "{name} must be a feed rate above 0", "Correct the value.")
         value *= 25.4 if self.state.feed_in_inches else 1.0
         return value if self.state.modal.per_rev else value / 60.0
 
@@ -172,15 +206,25 @@ class Cycle:
         if round(value) not in known:
             low, high = known[0], known[-1]
             raise self.wrong(
-                name, f"is {value:g}; valid types are {low} to {high}", "Correct the value.", MACHINING_TYPE
+                name,
+                Message(
+                    ("{name} is {value}; valid types are {low} to {high}"),
+                    value=f"{value:g}",
+                    low=low,
+                    high=high,
+                    name=name,
+                ),
+                "Correct the value.",
+                MACHINING_TYPE,
             )
         return round(value)
 
     def wrong(self, name: str, what: str, hint: str, code: int | str = "cycle-parameter") -> ProgramError:
-        """An error about one parameter, by its name."""
+        """Return an error about one parameter; ``what`` has the hole ``{name}``."""
         argument = self._arguments.get(name)
         column = self.line.call_column if argument is None else argument.column
-        return self._fault(column, code, f"{self.line.call}: {name} {what}.", hint)
+        text = what if isinstance(what, Message) else Message(what, name=name)
+        return self._fault(column, code, Message("{call}: {what}.", call=self.line.call, what=text), hint)
 
     def refused(self, code: int | str, text: str, hint: str) -> ProgramError:
         """An error about the whole call."""

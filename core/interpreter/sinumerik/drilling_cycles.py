@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, Cycle, Step, dwell
+from core.message import Message
 
 REFERENCE_PLANE = 61101
 FIRST_DEPTH = 61107
@@ -26,17 +27,20 @@ class Hole(NamedTuple):
 def hole_of(cycle: Cycle) -> Hole:
     """The hole that a call asks for. Raises ProgramError by the parameter's name."""
     if cycle.state.plane != 17:
-        text = (
-            f"{cycle.line.call} drills perpendicular to plane G{cycle.state.plane}; drilling "
-            "along Z needs G17."
+        text = Message(
+            "{call} drills perpendicular to plane G{plane}; drilling along Z needs G17.",
+            call=cycle.line.call,
+            plane=cycle.state.plane,
         )
         raise cycle.refused("cycle-plane", text, ("Write G17 before this block and G18 after it."))
     if cycle.number("_AXN", 3.0) not in {0.0, 3.0}:
-        raise cycle.wrong("_AXN", "selects an axis other than Z", "Omit _AXN.", "not-in-subset")
+        raise cycle.wrong("_AXN", "{name} selects an axis other than Z", "Omit _AXN.", "not-in-subset")
     retract, reference = cycle.needed("RTP"), cycle.needed("RFP")
     if cycle.given("DP") == cycle.given("DPR"):
         if not cycle.given("DP"):
-            raise cycle.wrong("DP", "is missing", ("Enter DP, or DPR measured from the reference plane."))
+            raise cycle.wrong(
+                "DP", "{name} is missing", ("Enter DP, or DPR measured from the reference plane.")
+            )
         bottom = cycle.length("DP")
         if cycle.length("DPR") and abs(abs(bottom - reference) - cycle.length("DPR")) > _SAME:
             cycle.warn("cycle-depth-both", ("DP and DPR differ, so DP is used."), "Omit DP or DPR.")
@@ -47,7 +51,13 @@ def hole_of(cycle: Cycle) -> Hole:
     down = 1.0 if bottom > reference else -1.0
     if abs(bottom - reference) < _SAME or (retract - reference) * down > _SAME:
         name = "DP" if cycle.given("DP") else "DPR"
-        text = f"is not past RFP as seen from RTP ({retract:g}, {reference:g}, {bottom:g})"
+        text = Message(
+            "{name} is not beyond RFP as seen from RTP (RTP {retract}, RFP {reference}, depth {bottom})",
+            retract=f"{retract:g}",
+            reference=f"{reference:g}",
+            bottom=f"{bottom:g}",
+            name=name,
+        )
         raise cycle.wrong(
             name,
             text,
@@ -65,7 +75,7 @@ def seconds(cycle: Cycle, name: str) -> float:
     rpm = abs(cycle.state.rpm)
     if not rpm:
         raise cycle.wrong(
-            name, ("is in revolutions, but the spindle is stopped"), ("Enter the dwell in seconds.")
+            name, ("{name} is in revolutions, but the spindle is stopped"), ("Enter the dwell in seconds.")
         )
     return -value / rpm * 60.0
 
@@ -105,7 +115,7 @@ def peck(cycle: Cycle) -> Iterator[Block]:
     hole, feed = hole_of(cycle), needed_feed(cycle)
     factor = cycle.number("FRF", 1.0) or 1.0
     if not 0.001 <= factor <= 1.0:
-        raise cycle.wrong("FRF", ("must be a factor from 0.001 to 1"), "Correct the value.")
+        raise cycle.wrong("FRF", ("{name} must be a factor from 0.001 to 1"), "Correct the value.")
     clears = cycle.machining("VARI", range(2)) == 1
     at_start, at_bottom = seconds(cycle, "DTS"), seconds(cycle, "DTB")
     back = cycle.size("_VRT") or 1.0
@@ -131,14 +141,18 @@ def depths(cycle: Cycle, hole: Hole) -> list[float]:
     whole = abs(hole.bottom - hole.reference)
     first = abs(cycle.length("FDEP") - hole.reference) if cycle.given("FDEP") else cycle.size("FDPR")
     if cycle.given("FDEP") and (cycle.length("FDEP") - hole.reference) * hole.down < -_SAME:
-        raise cycle.wrong("FDEP", "is before RFP", "Correct the value.", FIRST_DEPTH)
+        raise cycle.wrong(
+            "FDEP", "{name} is before RFP in the drilling direction", "Correct the value.", FIRST_DEPTH
+        )
     if first > whole + _SAME:
         name = "FDEP" if cycle.given("FDEP") else "FDPR"
-        raise cycle.wrong(name, "is deeper than the hole", "Correct the value.", FIRST_DEPTH)
+        raise cycle.wrong(name, "{name} is deeper than the hole", "Correct the value.", FIRST_DEPTH)
     step, less, least = first or whole, cycle.number("DAM"), cycle.size("_MDEP")
     if less <= -1.0:
         raise cycle.wrong(
-            "DAM", ("must be a factor greater than -1 and up to 0, or an amount"), "Correct the value."
+            "DAM",
+            ("{name} must be an amount, or a factor greater than -1 and not greater than 0"),
+            "Correct the value.",
         )
     smallest = max(least, 0.0)
     found, reached, halved = [step], step, False
@@ -147,7 +161,7 @@ def depths(cycle: Cycle, hole: Hole) -> list[float]:
         floor = smallest or (max(0.0, less))
         step = max(shorter, floor) if not halved else whole - reached
         if step < 1e-3 or len(found) > MOST_PASSES:
-            raise cycle.wrong("DAM", "makes the pecks too small", ("Enter _MDEP, or reduce DAM."))
+            raise cycle.wrong("DAM", "{name} makes the pecks too small", ("Enter _MDEP, or reduce DAM."))
         left = whole - reached
         if step < left - _SAME and left < 2.0 * step and not halved:
             step, halved = left / 2.0, True

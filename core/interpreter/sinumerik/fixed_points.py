@@ -9,6 +9,7 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
 from core.language.sinumerik.word_table import BLOCKWISE, MOTION
+from core.message import Message
 
 _AXES = frozenset({"X", "Z", "X1", "Z1"})
 
@@ -18,8 +19,8 @@ def home(state: State, statement: Statement) -> Block:
     named = _named(state, statement, _AXES)
     for word in named:
         if state.number(statement, word) != 0.0:
-            text = f"{word.text}: G74 always moves to machine home."
-            raise statement.refuse(word, "word-unused", text, f"Write {word.name}=0.")
+            text = Message("{word}: G74 always moves to machine home.", word=word.text)
+            raise statement.refuse(word, "word-unused", text, Message("Write {word}=0.", word=word.name))
     return _to(state, statement, dict.fromkeys((word.name[0] for word in named), 0.0))
 
 
@@ -48,10 +49,17 @@ def _named(state: State, statement: Statement, words: frozenset[str]) -> list[Wo
     named = [each for name, each in statement.words.items() if name in _AXES]
     others = statement.words.keys() - words or statement.m or statement.sets
     if not named or others or statement.g.keys() - {BLOCKWISE, MOTION}:
-        text = f"{word.text} must be in a block with only the axes to move, each programmed as 0."
-        raise statement.refuse(word, "own-block", text, f"Write {word.text} X1=0 Z1=0.")
+        text = Message(
+            "{word} must be in a block that contains only the axes to move, each programmed as 0.",
+            word=word.text,
+        )
+        raise statement.refuse(word, "own-block", text, Message("Write {word} X1=0 Z1=0.", word=word.text))
     if (code := state.modal.nose_comp) != 40:
-        text = f"{word.text} leaves the contour while G{code} is active."
+        text = Message(
+            ("{word} moves the tool off the contour and cannot be used while G{code} is active."),
+            word=word.text,
+            code=code,
+        )
         raise statement.refuse(word, "comp-with", text, "Write G40 and a move before this block.")
     return named
 
@@ -63,29 +71,43 @@ def _number(state: State, statement: Statement) -> int:
         return 1
     number = state.number(statement, word)
     if number not in {1, 2, 3, 4}:
-        text = f"{word.text} is not a valid fixed point."
-        raise statement.refuse(word, "fixed-point", text, "Write FP=1 to FP=4.")
+        text = Message("{word} is not a valid fixed point.", word=word.text)
+        raise statement.refuse(word, "fixed-point", text, "Write a value from FP=1 to FP=4.")
     return int(number)
 
 
 def _missing(statement: Statement, axis: str, number: int, known: int) -> ProgramError:
-    key = f"fixed_points under [axis.{axis}] in the machine file"
+    key = Message("fixed_points under [axis.{axis}] in the machine file", axis=axis)
     word = statement.words.get("FP") or statement.g[BLOCKWISE]
     if known:
-        text = (
-            f"{word.text}: the machine file defines {known} fixed points for {axis}, but number "
-            f"{number} is programmed."
+        text = Message(
+            "{word}: the machine file defines {known} fixed points for {axis}, but number "
+            "{number} is programmed.",
+            word=word.text,
+            known=known,
+            axis=axis,
+            number=number,
         )
-        return statement.refuse(word, "fixed-point", text, (f"Correct FP, or add the point to {key}."))
-    text = f"{word.text}: the machine file defines no fixed point for {axis}."
-    hint = f"Add {key}, or write SUPA G0 D0 with machine coordinates X and Z."
+        return statement.refuse(
+            word, "fixed-point", text, (Message("Correct FP, or add the point to {key}.", key=key))
+        )
+    text = Message(
+        "{word}: the machine file does not define a fixed point for {axis}.", word=word.text, axis=axis
+    )
+    hint = Message("Add {key}, or write SUPA G0 D0 with machine coordinates X and Z.", key=key)
     return statement.refuse(word, "fixed-point", text, hint)
 
 
 def _tell_value(state: State, statement: Statement, word: Word, end: float) -> None:
     """Who writes X150 may expect to arrive there."""
-    text = f"{word.text} has no effect with G75: the axis goes to machine position {end:g} mm."
-    state.log.add(statement.warning(word, "fixed-point-value", text, f"Write {word.name[0]}0."))
+    text = Message(
+        "{word} has no effect with G75: the axis goes to machine position {end} mm.",
+        word=word.text,
+        end=f"{end:g}",
+    )
+    state.log.add(
+        statement.warning(word, "fixed-point-value", text, Message("Write {word}0.", word=word.name[0]))
+    )
 
 
 def _to(state: State, statement: Statement, ends: dict[str, float]) -> Block:

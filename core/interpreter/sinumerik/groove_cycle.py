@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, RETRACT, Cycle, Step, dwell
+from core.message import Message
 from core.tool_edges import edge_key, edge_name, edge_of, tool_of
 
 WRONG_WIDTH = 61602
@@ -43,13 +44,22 @@ def groove_of(cycle: Cycle) -> Groove:
     """The groove that a call asks for. Raises ProgramError by the parameter's name."""
     kind = (cycle.machining("VARI", range(1, 19)) - 1) % 10 + 1
     if kind > 8:
-        raise cycle.wrong("VARI", "must be 1 to 8 or 11 to 18", "Correct the value.", 61002)
+        raise cycle.wrong("VARI", "{name} must be 1 to 8 or 11 to 18", "Correct the value.", 61002)
     cycle.zero_only("STA1", "program a groove on a taper as a CYCLE95 contour")
     for name in ("RCO1", "RCO2", "RCI1", "RCI2"):
         cycle.zero_only(name, "program the corners as a CYCLE95 contour, or chamfer them with G1")
     if kind % 2 == 0:
         hint = "Program a face groove as a CYCLE95 contour or in G1 blocks."
-        raise cycle.wrong("VARI", f"is {kind}, which is a face groove", hint, "not-in-subset")
+        raise cycle.wrong(
+            "VARI",
+            Message(
+                ("{name} is {kind}, which specifies a face groove and is not supported"),
+                kind=kind,
+                name="VARI",
+            ),
+            hint,
+            "not-in-subset",
+        )
     inside, right = kind in {3, 7}, kind > 4
     x, z = cycle.over_zero("SPD") / 2.0, cycle.needed("SPL")
     width, depth = cycle.over_zero("WIDG"), cycle.over_zero("DIAG", WRONG_FORM)
@@ -58,7 +68,12 @@ def groove_of(cycle: Cycle) -> Groove:
     low, high = (z - here - width, z - here) if right else (z + here, z + here + width)
     runs = (there, here) if right else (here, there)
     if x - out * depth < 0.0:
-        raise cycle.wrong("DIAG", "reaches past the spindle axis", "Correct SPD or DIAG.", WRONG_FORM)
+        raise cycle.wrong(
+            "DIAG",
+            ("{name} makes the groove reach past the spindle centerline"),
+            "Correct SPD or DIAG.",
+            WRONG_FORM,
+        )
     return Groove(out, x, x - out * depth, low, high, *runs)
 
 
@@ -66,7 +81,9 @@ def _run(cycle: Cycle, name: str, depth: float) -> float:
     """How far a flank goes along Z from the bottom to the surface, mm. Raises ProgramError."""
     angle = cycle.number(name)
     if not 0.0 <= angle <= _STEEPEST:
-        raise cycle.wrong(name, "must be a flank angle from 0 to less than 90 degrees", "Correct the value.")
+        raise cycle.wrong(
+            name, ("{name} must be a flank angle from 0 to less than 90 degrees"), "Correct the value."
+        )
     return depth * tan(radians(angle))
 
 
@@ -79,24 +96,39 @@ def tool_width(cycle: Cycle, widest: float) -> tuple[float, bool]:
     state = cycle.state
     key, tools = state.modal.tool, state.setup.tools
     if not key or state.modal.edge == 0:
-        text = f"{cycle.line.call} needs an active tool with an offset."
+        text = Message("{call} needs an active tool with an offset.", call=cycle.line.call)
         raise cycle.refused(NO_TOOL, text, "Write T and D before this block.")
     number = cycle.whole("_DN", 0, 0, 9) or edge_of(key) + 1
     other = edge_key(tool_of(key), number)
     if key not in tools and other not in tools:
         width = min(_USUAL_WIDTH, widest)
-        text = f"{cycle.line.call} assumes a tool {width:g} mm wide because {edge_name(key)} is not set."
+        text = Message(
+            "{call} assumes a tool {width} mm wide because {key} is not set.",
+            call=cycle.line.call,
+            width=f"{width:g}",
+            key=edge_name(key),
+        )
         cycle.warn("tool-width", text, "Set both tool corners on the TOOL OFFSETS page (F8).")
         return width, False
     if key not in tools or other not in tools:
         name = edge_name(other)
-        text = f"{cycle.line.call} needs the tool width, but {name}, the other tool corner, is not set."
-        raise cycle.refused(WRONG_WIDTH, text, (f"Set {edge_name(other)} on the TOOL OFFSETS page (F8)."))
+        text = Message(
+            "{call} needs the tool width, but the other tool corner ({name}) is not set.",
+            call=cycle.line.call,
+            name=name,
+        )
+        raise cycle.refused(
+            WRONG_WIDTH, text, (Message("Set {other} on the TOOL OFFSETS page (F8).", other=edge_name(other)))
+        )
     here, there = tools[key], tools[other]
     # A corner further to plus has the smaller machine position at part zero.
     way = here.z - there.z
     if abs(way) < _SAME:
-        text = f"{edge_name(key)} and {edge_name(other)} are at the same position, so the tool has no width."
+        text = Message(
+            "{key} and {other} are at the same position, so the tool has no width.",
+            key=edge_name(key),
+            other=edge_name(other),
+        )
         raise cycle.refused(WRONG_WIDTH, text, "Correct the offsets of the two tool corners.")
     return abs(way), way > 0.0
 
@@ -108,7 +140,12 @@ def groove(cycle: Cycle) -> Iterator[Block]:
     width, at_low = tool_width(cycle, shape.high - shape.low - 2.0 * flank_left)
     room = shape.high - shape.low - 2.0 * flank_left - width
     if room < -_SAME:
-        text = f"is {shape.high - shape.low:g} with FAL2 on both flanks, but the tool is {width:g} wide"
+        text = Message(
+            "{name} is {high} including FAL2 on both flanks, but the tool is {width} wide",
+            high=f"{shape.high - shape.low:g}",
+            width=f"{width:g}",
+            name="WIDG",
+        )
         raise cycle.wrong("WIDG", text, "Use a narrower tool.", WRONG_WIDTH)
     feed = cycle.state.modal.feed
     if feed is None:
@@ -120,7 +157,9 @@ def groove(cycle: Cycle) -> Iterator[Block]:
     count = ceil(max(room, 0.0) / (width * _OVERLAP) - _WHOLE)
     if count > MOST_PASSES:
         raise cycle.wrong(
-            "WIDG", f"would need {count:,} cuts, which is too many", "Look for a missing decimal point."
+            "WIDG",
+            Message("{name} would need {count} cuts, which is too many", count=f"{count:,}", name="WIDG"),
+            "Look for a missing decimal point.",
         )
     for k in range(count + 1):
         place = shape.high - flank_left - width - (room * k / count if count else 0.0)
@@ -140,7 +179,7 @@ class _Plan:
         self._clear, self._corner = clear, corner
         self._infeed, self._dwell = cycle.size("IDEP"), cycle.number("DTB")
         if self._dwell < 0.0:
-            raise cycle.wrong("DTB", "must be a time of 0 s or more", "Correct the value.")
+            raise cycle.wrong("DTB", "{name} must be a time of 0 s or more", "Correct the value.")
 
     def begin(self) -> list[Step]:
         """Off the part in depth first, from where the tool stands."""
@@ -155,7 +194,9 @@ class _Plan:
         if count > MOST_PASSES:
             raise self._cycle.wrong(
                 "IDEP",
-                f"would need {count:,} steps, which is too many",
+                Message(
+                    ("{name} would need {count} steps, which is too many"), count=f"{count:,}", name="IDEP"
+                ),
                 ("Look for a missing decimal point."),
             )
         steps = [self._to(self._clear, place)]
@@ -171,7 +212,9 @@ class _Plan:
         count = ceil(abs(run) / (width * _OVERLAP) - _WHOLE)
         if count > MOST_PASSES:
             raise self._cycle.wrong(
-                "ANG1", f"would need {count:,} cuts, which is too many", "Check the angles."
+                "ANG1",
+                Message("{name} would need {count} cuts, which is too many", count=f"{count:,}", name="ANG1"),
+                "Check the angles.",
             )
         steps: list[Step] = []
         for share in (k / (count + 1) for k in range(1, count + 1)):

@@ -11,6 +11,7 @@ from core.interpreter.sinumerik.sinumerik_state import State
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_words import Line
+from core.message import Message
 
 PATTERNS = frozenset({"HOLES1", "HOLES2"})
 _MOST = 1000
@@ -18,7 +19,7 @@ _MOST = 1000
 
 def no_cycle(line: Line) -> ProgramError:
     """A pattern without a cycle to drill with."""
-    text = f"{line.call} uses the cycle of MCALL, but no MCALL is active."
+    text = Message("{call} uses the cycle called with MCALL, but no MCALL is active.", call=line.call)
     hint = "Write MCALL CYCLE81( ) or another cycle before this block."
     return ProgramError(fault(line.number, line.call_column, "pattern-cycle", line.block, text, hint))
 
@@ -28,13 +29,15 @@ def places(state: State, line: Line) -> Iterator[Block]:
     cycle = Cycle(state, line)
     plane = state.transformation
     if plane is None or not plane.along_z:
-        text = f"{line.call} uses positions in X and Y, but this lathe has no Y axis."
+        text = Message("{call} uses positions in X and Y, but this lathe has no Y axis.", call=line.call)
         raise cycle.refused(
             "not-in-subset", text, ("Write TRANSMIT before this block, or program the positions after MCALL.")
         )
     number = cycle.whole("NUM", 0, 0, _MOST)
     if not number:
-        raise cycle.wrong("NUM", "is the number of holes and must be greater than 0", "Correct the value.")
+        raise cycle.wrong(
+            "NUM", ("{name} is the number of holes and must be greater than 0"), "Correct the value."
+        )
     found = _row(cycle, number) if line.call == "HOLES1" else _circle(cycle, number)
     for k, (x, y) in enumerate(found, 1):
         yield plane.over(cycle.statement, x, y, f"{line.call} {k}/{number}")
@@ -46,7 +49,9 @@ def _row(cycle: Cycle, number: int) -> list[tuple[float, float]]:
     first, apart = cycle.length("FDIS"), cycle.size("DBH")
     if number > 1 and not apart:
         raise cycle.wrong(
-            "DBH", "is the distance between the holes and must be greater than 0", ("Correct the value.")
+            "DBH",
+            ("{name} is the distance between the holes and must be greater than 0"),
+            ("Correct the value."),
         )
     ways = [first + apart * k for k in range(number)]
     return [(x + way * cos(angle), y + way * sin(angle)) for way in ways]

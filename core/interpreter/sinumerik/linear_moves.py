@@ -16,6 +16,7 @@ from core.interpreter.sinumerik.sinumerik_state import NO_FRAME, Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import ARC, Form, Word
 from core.language.sinumerik.word_table import SUPPRESSION
+from core.message import Message
 
 # --- where the words lead, in machine coordinates
 
@@ -109,9 +110,12 @@ def _slide(state: State, statement: Statement, name: str, begun: float) -> float
     if word is None:
         return None
     if word.form in third_axis.NO_ROTARY:
-        text = f"{word.text}: {word.form} needs a rotary axis."
+        text = Message("{word}: {form} needs a rotary axis.", word=word.text, form=word.form)
         raise statement.refuse(
-            word, third_axis.NO_ROTARY[word.form], text, f"Write {name}=AC( ) or {name}=IC( )."
+            word,
+            third_axis.NO_ROTARY[word.form],
+            text,
+            Message("Write {name}=AC( ) or {name2}=IC( ).", name=name, name2=name),
         )
     relative = _form(state, word) is Form.IC
     halved = name == "X" and state.modal.diameter and not (relative and state.distance_is_radius)
@@ -120,9 +124,16 @@ def _slide(state: State, statement: Statement, name: str, begun: float) -> float
         state.moved_by_tool.discard(name)
         return value
     if name in state.moved_by_tool:
-        text = f"{word.text} is a distance, but T or D has just changed the position of {name}."
+        text = Message(
+            "{word} is incremental, but T or D has just changed the position of {name}.",
+            word=word.text,
+            name=name,
+        )
         raise statement.refuse(
-            word, "distance-behind-tool", text, (f"Program a position of {name} before this block.")
+            word,
+            "distance-behind-tool",
+            text,
+            (Message("Program a position of {name} before this block.", name=name)),
         )
     return begun + value
 
@@ -133,8 +144,10 @@ def _polar(state: State, statement: Statement) -> tuple[float, float]:
     radius, angle = statement.words.get("RP"), statement.words.get("AP")
     for name in ("X", "Z", "ANG"):
         if name in statement.words:
-            text = f"{statement.words[name].text} cannot be combined with RP and AP."
-            raise statement.refuse(statement.words[name], "polar-both", text, ("Use only one of the two."))
+            text: str = Message("{text} cannot be combined with RP and AP.", text=statement.words[name].text)
+            raise statement.refuse(
+                statement.words[name], "polar-both", text, ("Remove this word, or remove RP and AP.")
+            )
     if (radius is None or angle is None) and state.polar is None:
         text = "the first polar move needs RP and AP."
         raise statement.refuse(radius or angle, "polar-half", text, "Write both RP and AP.")
@@ -161,28 +174,42 @@ def _inclined(
     word = statement.words["ANG"]
     if state.motion is not Motion.LINE and state.motion is not Motion.RAPID:
         raise statement.refuse(
-            word, "word-unused", (f"{word.text} can be used only in a straight move."), "Write G1."
+            word,
+            "word-unused",
+            (Message("{word} can be used only in a straight move.", word=word.text)),
+            "Write G1.",
         )
     if x is None and z is None:
-        text = f"{word.text} alone begins a contour of two lines, which is not supported here."
+        text = Message(
+            (
+                "{word} without X or Z begins a contour of two straight lines, which TurnDesk "
+                "does not support."
+            ),
+            word=word.text,
+        )
         raise statement.refuse(word, "not-in-subset", text, ("Add X or Z of the end point to the block."))
     if x is not None and z is not None:
-        text = f"{word.text} cannot be combined with both X and Z, which define the end point."
-        raise statement.refuse(word, "angle-both", text, "Keep only X or Z with ANG.")
+        text = Message(
+            "{word} cannot be combined with both X and Z, which define the end point.", word=word.text
+        )
+        raise statement.refuse(word, "angle-both", text, "Program only X or only Z with ANG.")
     angle = radians(state.number(statement, word))
     if x is None and z is not None:
         if abs(cos(angle)) < _STEEP:
             raise statement.refuse(
                 word,
                 "angle-none",
-                ("this line never reaches the programmed Z."),
+                ("this straight line never reaches the programmed Z."),
                 ("Write X together with ANG."),
             )
         return begun[0] + (z - begun[1]) * tan(angle), z
     assert x is not None
     if abs(sin(angle)) < _STEEP:
         raise statement.refuse(
-            word, "angle-none", ("this line never reaches the programmed X."), ("Write Z together with ANG.")
+            word,
+            "angle-none",
+            ("this straight line never reaches the programmed X."),
+            ("Write Z together with ANG."),
         )
     return x, begun[1] + (x - begun[0]) / tan(angle)
 
@@ -206,7 +233,10 @@ def turn_of_c(state: State, statement: Statement, word: Word, form: Form, at: fl
         third_axis.check_reach(state.c + travel, limits.c_travel if limits.c_linear else third_axis.TURNS)
     except third_axis.TargetError as problem:
         raise statement.refuse(
-            word, problem.number, f"{word.text}: {problem}.", _hint(problem.number, linear=limits.c_linear)
+            word,
+            problem.number,
+            Message("{word}: {problem}.", word=word.text, problem=problem),
+            _hint(problem.number, linear=limits.c_linear),
         ) from None
     return travel
 
@@ -224,7 +254,7 @@ def _hint(number: int, *, linear: bool) -> str:
     return _HINTS[number]
 
 
-_WHOLE_TURN = "Write an angle from 0 to 359.999, or IC( ) for a distance."
+_WHOLE_TURN = "Write an angle from 0 to 359.999, or IC( ) for an incremental move."
 _NOT_MODULO = "This axis ranges from -360 to +360; write AC( ) or IC( )."
 _HINTS = {
     third_axis.WRONG_MODULO: _WHOLE_TURN,
@@ -236,7 +266,11 @@ _HINTS = {
 def straight(state: State, statement: Statement) -> Block:
     """G0 or G1 to where the words lead. Raises ProgramError."""
     for name in sorted(ARC & statement.words.keys()):
-        text = f"{statement.words[name].text} belongs to an arc, but G{state.motion:d} is active."
+        text = Message(
+            "{text} can be used only in an arc, but G{motion} is active.",
+            text=statement.words[name].text,
+            motion=f"{state.motion:d}",
+        )
         raise statement.refuse(
             statement.words[name], "word-unused", text, ("Write G2 or G3, or remove the word.")
         )

@@ -10,6 +10,7 @@ from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import Word
 from core.language.sinumerik.word_table import DWELL
+from core.message import Message
 
 NUMBER = 2
 _TURNS = frozenset({3, 4, 5})
@@ -35,8 +36,8 @@ def live_words(state: State, statement: Statement) -> None:
 
 def _demand(state: State, statement: Statement, word: Word) -> None:
     if not state.setup.limits.live_output:
-        text = f"{word.text}: this machine has one spindle and no output for a live tool."
-        hint = "Remove it, or define an output named live under [io.out] in the machine file."
+        text = Message("{word}: this machine has one spindle and no output for a live tool.", word=word.text)
+        hint = "Remove this word, or define an output named live under [io.out] in the machine file."
         raise statement.refuse(word, "one-spindle", text, hint)
 
 
@@ -53,30 +54,37 @@ def live_tool(state: State, statement: Statement) -> Iterator[Block]:
 def _speed(state: State, statement: Statement, word: Word) -> None:
     value = state.number(statement, word)
     if value < 0.0:
-        text = f"{word.text}: the speed cannot be negative; M3 and M4 set the direction."
+        text = Message("{word}: the speed cannot be negative; M3 and M4 set the direction.", word=word.text)
         raise statement.refuse(word, "speed-sign", text, "Remove the sign.")
     state.live_speed = value
     if state.live_rpm:
         state.live_rpm = value
     if "live-speed" not in state.told:
         state.told.add("live-speed")
-        text = (
-            f"{word.text}: this machine only switches the live tool on and off; its speed is set "
-            "at its drive."
+        text = Message(
+            "{word}: this machine only switches the live tool on and off; its speed is set at its drive.",
+            word=word.text,
         )
         state.log.add(
-            statement.warning(word, "live-speed", text, (f"Set the live tool to {value:g} rpm by hand."))
+            statement.warning(
+                word,
+                "live-speed",
+                text,
+                (Message("Set the live tool to {value} rpm by hand.", value=f"{value:g}")),
+            )
         )
 
 
 def _turn(state: State, statement: Statement, word: Word) -> Iterator[Block]:
     code = int(word.value or 0)
     if code == 4:
-        text = f"{word.text}: the live tool turns in only one direction."
-        raise statement.refuse(word, "live-direction", text, "Write M3, and use a tool of that hand.")
+        text = Message("{word}: the live tool turns in only one direction.", word=word.text)
+        raise statement.refuse(
+            word, "live-direction", text, "Write M3, and use a tool that cuts in that direction."
+        )
     on = code == 3
     if on and not state.live_speed:
-        text = f"{word.text} starts the live tool, but no S sets its speed."
+        text = Message("{word} starts the live tool, but its speed is not programmed with S.", word=word.text)
         raise statement.refuse(word, "speed-missing", text, "Write S2= in the block.")
     state.live_rpm = state.live_speed if on else 0.0
     name = state.setup.limits.live_output

@@ -13,6 +13,7 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
 from core.language.sinumerik.word_table import M_FUNCTIONS
+from core.message import Message
 
 COLLET = "collet"  # the output of the chuck, whatever codes the builder has given it
 _OF_ISO = frozenset({98, 99})  # which call and end subprograms in the other language of this control
@@ -27,7 +28,13 @@ def check_m(state: State, statement: Statement, lacking: list[Need]) -> None:
     limits = state.setup.limits
     for code, word in statement.m.items():
         if code in limits.m_ignored:
-            tell_idle(state, statement, word, f"M{code}", "the machine file defines it as ignored")
+            tell_idle(
+                state,
+                statement,
+                word,
+                f"M{code}",
+                ("the machine file contains ignored = true for this M code"),
+            )
         elif code in M_FUNCTIONS:
             tell_idle(state, statement, word, f"M{code}", _idle(state, code))
         elif code in limits.m_outputs:
@@ -43,7 +50,7 @@ def _check_chuck(state: State, statement: Statement, word: Word, name: str, on: 
     """A code that opens the chuck is kept to the interlock that M13 of the other language has."""
     turns = state.modal.spindle and 5 not in statement.m
     if name == COLLET and not on and turns and not state.setup.limits.unclamp_while_turning:
-        text = f"{word.text} opens the chuck while the spindle turns."
+        text = Message("{word} cannot open the chuck while the spindle turns.", word=word.text)
         raise statement.refuse(word, "unclamp-turning", text, "Write M5 before this block.")
 
 
@@ -55,9 +62,11 @@ def _idle(state: State, code: int) -> str:
 
 def _refused(state: State, statement: Statement, code: int, word: Word) -> ProgramError:
     if code in state.setup.limits.m_disabled:
-        text = f"M{code} is defined but not enabled in the machine file."
-        return statement.refuse(word, "m-disabled", text, f"Set enabled = true for {code} under [m_codes].")
-    text = f"M{code} belongs to the ISO dialect of this control."
+        text = Message("M{code} is defined but not enabled in the machine file.", code=code)
+        return statement.refuse(
+            word, "m-disabled", text, Message("Set enabled = true for {code} under [m_codes].", code=code)
+        )
+    text = Message("M{code} belongs to the ISO dialect of this control.", code=code)
     return statement.refuse(word, "m-unknown", text, ("Call a subprogram by its name, and end it with M17."))
 
 
@@ -66,10 +75,10 @@ def _tell_unanswered(state: State, statement: Statement, code: int, word: Word) 
     if f"M{code}" in state.told:
         return
     state.told.add(f"M{code}")
-    what = f"M{code} is a machine-builder code, and nothing on this machine responds to it"
-    text = f"{what}: the machine will not start."
+    what = Message("M{code} is a machine-builder code that has no function on this machine", code=code)
+    text = Message("{what}, so the machine will not start.", what=what)
     hint = how_bound(code)
-    state.log.add(statement.warning(word, "m-unanswered", text, f"{hint[0].upper()}{hint[1:]}."))
+    state.log.add(statement.warning(word, "m-unanswered", text, Message("{hint}.", hint=hint.as_sentence())))
 
 
 def functions_before(state: State, statement: Statement) -> Iterator[Block]:

@@ -9,6 +9,7 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import Severity
 from core.language.sinumerik import word_table as table
 from core.language.sinumerik.sinumerik_words import Form, Word
+from core.message import Message
 
 _NAMED_MOTION = {"CIP": Motion.THROUGH, "CT": Motion.TANGENT}
 _FIFTH = {505: 58, 506: 59}  # of the six that are kept
@@ -36,10 +37,13 @@ def programmed_frame(state: State, statement: Statement) -> None:
     check_c(state, statement)
     name = key.name.removeprefix("A")
     if name == "ROT":
-        _refuse_axes(statement, key, "rotates the plane with RPL= and not with axes")
+        _refuse_axes(statement, key, "rotates the plane with RPL=, not with axis words")
     elif word := statement.words.get("RPL"):
         raise statement.refuse(
-            word, "word-unused", f"{word.text} can be used only with ROT.", ("Remove it from the program.")
+            word,
+            "word-unused",
+            Message("{word} can be used only with ROT.", word=word.text),
+            ("Remove this text from the program."),
         )
     frame = state.programmed if key.name[0] == "A" else NO_FRAME
     if name == "TRANS":
@@ -52,7 +56,9 @@ def programmed_frame(state: State, statement: Statement) -> None:
     else:
         frame = frame.scaled(*(-1.0 if axis in statement.words else 1.0 for axis in "XZ"))
     if name in {"SCALE", "MIRROR"} and (word := statement.words.get("C")):
-        raise statement.refuse(word, "offset-form", f"{key.name} can be used only with X and Z.", "Remove C.")
+        raise statement.refuse(
+            word, "offset-form", Message("{word} can be used only with X and Z.", word=key.name), "Remove C."
+        )
     state.programmed = frame
     state.derive_offsets()
 
@@ -73,7 +79,7 @@ def check_c(state: State, statement: Statement) -> None:
     if word is not None and not state.setup.limits.c_enabled:
         text = "unknown axis: this machine has no third axis."
         raise statement.refuse(
-            word, "unknown-axis", text, "Remove it, or select a machine file that has this axis."
+            word, "unknown-axis", text, "Remove this axis, or select a machine file that has this axis."
         )
 
 
@@ -82,18 +88,18 @@ def check_y(state: State, statement: Statement) -> None:
     word = statement.words.get("Y") or statement.words.get("J")
     if word is None or state.transformation is not None:
         return
-    text = f"{word.name}: this lathe has no Y axis."
+    text: str = Message("{word}: this lathe has no Y axis.", word=word.name)
     if word.name == "J":
         text = "J: an arc in G18 uses I and K."
-    hint = "Remove it; TRANSMIT and TRACYL produce Y from X and C."
+    hint = "Remove this word; TRANSMIT and TRACYL create Y from X and C."
     raise statement.refuse(word, "not-in-subset", text, hint)
 
 
 def _refuse_axes(statement: Statement, key: Word, what: str) -> None:
     for axis in statement.axes:
         word = statement.words[axis]
-        text = f"{word.text}: on a lathe, {key.name} {what}."
-        raise statement.refuse(word, "offset-form", text, f"Write {key.name} RPL=…")
+        text = Message("{word}: on a lathe, {key} {what}.", word=word.text, key=key.name, what=what)
+        raise statement.refuse(word, "offset-form", text, Message("Write {key} RPL=…", key=key.name))
 
 
 def _shift(state: State, statement: Statement, name: str) -> float:
@@ -108,7 +114,7 @@ def _factor(state: State, statement: Statement, name: str) -> float:
     word = _plain(statement, name)
     value = 1.0 if word is None else state.number(statement, word)
     if word is not None and not 0.001 <= value <= 1000.0:
-        text = f"{word.text}: a factor must be between 0.001 and 1000."
+        text = Message("{word}: a factor must be between 0.001 and 1000.", word=word.text)
         raise statement.refuse(
             word, "offset-form", text, ("Correct the factor; to reverse an axis, use MIRROR.")
         )
@@ -118,8 +124,10 @@ def _factor(state: State, statement: Statement, name: str) -> float:
 def _plain(statement: Statement, name: str) -> Word | None:
     word = statement.words.get(name)
     if word is not None and word.form is not Form.PLAIN:
-        text = f"{word.text}: an offset must be a plain number."
-        raise statement.refuse(word, "offset-form", text, f"Write {word.name} with a plain number.")
+        text = Message("{word}: an offset must be a plain number.", word=word.text)
+        raise statement.refuse(
+            word, "offset-form", text, Message("Write {word} with a plain number.", word=word.name)
+        )
     return word
 
 
@@ -150,7 +158,11 @@ def _motion_and_plane(state: State, statement: Statement) -> None:
     elif name := statement.key(table.MOTION):
         state.motion = _NAMED_MOTION[name]
     if plane is not None and plane != state.plane and state.modal.nose_comp != 40:
-        text = f"G{plane} changes the plane while G{state.modal.nose_comp} is active."
+        text = Message(
+            "G{plane} cannot change the plane while G{nose_comp} is active.",
+            plane=plane,
+            nose_comp=state.modal.nose_comp,
+        )
         raise statement.refuse(statement.g[table.PLANE], "comp-plane", text, ("Write G40 before this line."))
     state.plane = plane or state.plane
 
@@ -168,8 +180,13 @@ def _path_modes(state: State, statement: Statement) -> None:
         plane = 18 if state.transformation is None else state.transformation.plane
         if code != 40 and state.plane != plane:
             of = "X and Z" if state.transformation is None else state.transformation.name
-            word, text = statement.g[table.COMPENSATION], (f"radius compensation in {of} needs G{plane}.")
-            raise statement.refuse(word, "comp-plane", text, f"Write G{plane} before this block.")
+            word, text = (
+                statement.g[table.COMPENSATION],
+                (Message("radius compensation in {total} needs G{plane}.", total=of, plane=plane)),
+            )
+            raise statement.refuse(
+                word, "comp-plane", text, Message("Write G{plane} before this block.", plane=plane)
+            )
         state.adopt(state.modal._replace(nose_comp=code))
     if area := statement.key(table.AREA):
         state.area_on = area == "WALIMON"
@@ -189,7 +206,9 @@ def tell_idle(state: State, statement: Statement, word: Word, name: str, why: st
     """Say once that a function is taken and changes nothing."""
     if why and name not in state.told:
         state.told.add(name)
-        found = statement.warning(word, "no-effect", f"{name} has no effect here: {why}.", "")
+        found = statement.warning(
+            word, "no-effect", Message("{name} has no effect here: {why}.", name=name, why=why), ""
+        )
         state.log.add(replace(found, severity=Severity.NOTE))
 
 
@@ -200,7 +219,7 @@ def frame_block(state: State, statement: Statement) -> bool:
     if word is None or code not in {110, 111, 112, 25, 26}:
         return False
     if "C" in statement.words:
-        text = f"{word.text} can be used only with X and Z."
+        text = Message("{word} can be used only with X and Z.", word=word.text)
         raise statement.refuse(statement.words["C"], "own-block", text, "Remove C.")
     if code in {25, 26}:
         _limits(state, statement, upper=code == 26)
@@ -243,6 +262,11 @@ def check_area(state: State, statement: Statement, x: float, z: float) -> None:
         for upper in (False, True):
             limit = state.area.get((name, upper))
             if limit is not None and (value > limit + 1e-6 if upper else value < limit - 1e-6):
-                text = f"{name} leaves the working area limited by G{(26 if upper else 25)} at {limit:g} mm."
+                text = Message(
+                    "{name} moves past the working area limit that G{value} sets at {limit} mm.",
+                    name=name,
+                    value=26 if upper else 25,
+                    limit=f"{limit:g}",
+                )
                 hint = "Correct the move, or write WALIMOF."
                 raise statement.refuse(statement.words.get(name), "working-area", text, hint)

@@ -15,6 +15,7 @@ from core.language.sinumerik.call_arguments import Argument, Parameter
 from core.language.sinumerik.program_jumps import Jump
 from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_words import Line
+from core.message import Message
 
 TOO_MANY = 12330
 """The alarm of a call whose arguments do not fit the parameters."""
@@ -60,7 +61,12 @@ def handed_over(state: State, line: Line, heading: Jump | None) -> tuple[Scope, 
     parameters = () if heading is None else heading.parameters
     arguments = line.arguments or ()
     if len(arguments) > len(parameters):
-        text = f"{line.call} accepts {_count(len(parameters))}, but the call passes {len(arguments)}."
+        text = Message(
+            "{call} accepts {parameters_count}, but the call passes {arguments_count}.",
+            call=line.call,
+            parameters_count=_count(len(parameters)),
+            arguments_count=len(arguments),
+        )
         hint = "Correct the call, or the PROC line of the subprogram."
         raise _refused(line, arguments[len(parameters)].column, TOO_MANY, text, hint)
     scope, references = Scope(), list[tuple[str, str]]()
@@ -106,14 +112,21 @@ def _hand_over_array(
     sizes = outer.sizes.get(name, ())
     column = line.call_column if argument is None else argument.column
     if not sizes:
-        text = f"{parameter.name} of {line.call} is a VAR array and needs an array."
+        text = Message(
+            "{parameter} of {call} is a VAR array, so the call must pass an array.",
+            parameter=parameter.name,
+            call=line.call,
+        )
         raise _refused(line, column, NO_VARIABLE, text, "Pass the name of an array without an index.")
     asked = tuple(size if each is None else each for each, size in zip(parameter.sizes, sizes, strict=False))
     if asked != sizes or len(parameter.sizes) != len(sizes):
-        text = (
-            f"{name} has {' by '.join(map(str, sizes))} elements, but {parameter.name} has different sizes."
+        text = Message(
+            "{name} has {text} elements, but this size does not match the dimensions of {parameter}.",
+            name=name,
+            text=" by ".join(map(str, sizes)),
+            parameter=parameter.name,
         )
-        raise _refused(line, column, OTHER_SIZE, text, "Use the array sizes of the PROC line.")
+        raise _refused(line, column, OTHER_SIZE, text, "Use the array sizes given in the PROC line.")
     scope.define(parameter.name, 0.0, sizes)
     for inside, outside in zip(scope.elements(parameter.name), outer.elements(name), strict=True):
         scope.numbers[inside] = outer.numbers[outside]
@@ -139,7 +152,11 @@ def _place(state: State, line: Line, parameter: Parameter, argument: Argument | 
     """The caller's variable that VAR writes back to."""
     formula = None if argument is None else argument.formula
     if not isinstance(formula, Variable):
-        text = f"{parameter.name} of {line.call} is a VAR parameter and needs a variable."
+        text = Message(
+            "{parameter} of {call} is a VAR parameter, so the call must pass a variable.",
+            parameter=parameter.name,
+            call=line.call,
+        )
         column = line.call_column if argument is None else argument.column
         raise _refused(line, column, TOO_MANY, text, "Pass a variable or an R parameter.")
 
@@ -150,7 +167,11 @@ def _place(state: State, line: Line, parameter: Parameter, argument: Argument | 
 
 
 def _count(count: int) -> str:
-    return f"{count} parameter{'s' if count != 1 else ''}" if count else "no parameters"
+    return (
+        Message("{count} parameter{ending}", count=count, ending="s" if count != 1 else "")
+        if count
+        else "no parameters"
+    )
 
 
 def _refused(line: Line, column: int, code: int | str, text: str, hint: str) -> ProgramError:

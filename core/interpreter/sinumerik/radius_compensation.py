@@ -23,6 +23,7 @@ from core.interpreter.sinumerik.moves_along import along, inserted
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_alarms import fault
+from core.message import Message
 from core.tool_edges import TIP_DIRECTIONS
 
 _STRAIGHT = frozenset({Kind.FEED, Kind.RAPID})
@@ -103,19 +104,22 @@ class Compensation:
         """The move that leads to the contour."""
         state, code = self._state, block.modal.nose_comp
         if block.kind not in _STRAIGHT or self._turns(block):
-            text = f"the first move with G{code} is not a straight line."
+            text = Message("the first move with G{code} is not a straight line.", code=code)
             raise _fault(block, "comp-approach", text, ("Approach with G0 or G1, then begin the contour."))
         if not state.modal.edge:
-            text = f"G{code} needs a tool with a cutting edge."
+            text = Message("G{code} needs a tool with a cutting edge.", code=code)
             raise _fault(block, "comp-no-edge", text, "Write T and D before this block.")
         edge = state.edge
         if not edge.nose_radius:
-            text = f"the nose radius of the tool is 0, so G{code} does not compensate."
+            text = Message("the nose radius of the tool is 0, so G{code} does not compensate.", code=code)
             self._warn(
                 block, "comp-no-radius", text, ("Enter the nose radius on the TOOL OFFSETS page (F8).")
             )
         elif not edge.quadrant:
-            text = f"the tool has no tip quadrant, so G{code} applies its offset to the nose center."
+            text = Message(
+                ("the tool has no tip quadrant, so G{code} applies the tool offset to the nose center."),
+                code=code,
+            )
             self._warn(
                 block, "comp-no-quadrant", text, ("Enter the tip quadrant (F8); 9 means the nose center.")
             )
@@ -131,22 +135,29 @@ class Compensation:
             raise _open(block)
         if isinstance(block.action, ToolChange):
             text = "T or D is programmed before the move that leaves the contour."
-            raise _fault(block, "comp-with", text, "Write a move after G40 first.")
+            raise _fault(block, "comp-with", text, "Program a move after G40, before T or D.")
         _last(contour).after.append(block)
 
     def _follow(self, contour: _Contour, block: Block) -> None:
         """One more move of the contour."""
         first, code = contour.approach.block, block.modal.nose_comp
         if code != first.modal.nose_comp:
-            text = f"G{code} follows G{first.modal.nose_comp} within the same contour."
+            text = Message(
+                "G{nose_comp} cannot change to G{code} within the same contour.",
+                code=code,
+                nose_comp=first.modal.nose_comp,
+            )
             raise _fault(block, "comp-with", text, "Leave the contour with G40 before this block.")
         if block.kind not in _FOLLOWED or self._turns(block):
-            what = "C turns" if self._turns(block) else "a thread is cut"
+            what = "the C axis turns" if self._turns(block) else "a thread is cut"
             raise _fault(
-                block, "comp-with", f"{what} while G{code} is active.", ("Write G40 before this line.")
+                block,
+                "comp-with",
+                Message("{what} while G{code} is active.", what=what, code=code),
+                ("Write G40 before this line."),
             )
         if (block.offset_x, block.offset_z) != (first.offset_x, first.offset_z):
-            text = f"the zero point changes while G{code} is active."
+            text = Message("the zero point changes while G{code} is active.", code=code)
             raise _fault(block, "comp-with", text, "Write G40 and a move before this block.")
         if (block.x, block.z) == (block.x0, block.z0) and block.kind is not Kind.ARC:
             _last(contour).after.append(block)
@@ -163,10 +174,10 @@ class Compensation:
             contour.approach.block.offset_x,
             contour.approach.block.offset_z,
         ):
-            text = "the zero point is different in the move that leaves the contour."
-            raise _fault(block, "comp-departure", text, "Leave the contour first.")
+            text = "the zero point changes in the move that leaves the contour."
+            raise _fault(block, "comp-departure", text, "Leave the contour before you change the zero point.")
         if not contour.moves:
-            text = f"no contour move follows G{code}."
+            text = Message("no contour move follows G{code}.", code=code)
             raise _fault(contour.approach.block, "comp-empty", text, "Write the contour before G40.")
         yield from _Beside(self._state, contour, block).blocks()
 
@@ -227,7 +238,11 @@ class _Beside:
             found += offset.close()
         except GougeError as problem:
             block = contour.moves[min(problem.index, len(contour.moves) - 1)].block
-            text = f"a nose radius of {contour.radius:g} mm does not fit here: {problem.why}."
+            text = Message(
+                "a nose radius of {radius} mm does not fit this contour: {why}.",
+                radius=f"{contour.radius:g}",
+                why=problem.why,
+            )
             raise _fault(
                 block, "comp-gouge", text, ("Use a smaller nose radius, or change the contour.")
             ) from None
@@ -285,16 +300,26 @@ class _Beside:
         radius = contour.radius
         if not radius or not cuts_in(way, end.contour, radius):
             return [way]
-        text = f"during the {end.name}, the nose radius of {radius:g} mm cuts into the contour."
+        text = Message(
+            "during the {end}, the nose radius of {radius} mm cuts into the contour.",
+            end=end.name,
+            radius=f"{radius:g}",
+        )
         if not contour.round_ends:
-            hint = (
-                "Choose another point for this move, or write KONT, which goes around the end of the contour."
-            )
+            hint = "Choose another point for this move, or write KONT to go around the end of the contour."
             raise _fault(end.block, "comp-gouge", text, hint)
         away = dist(end.at, end.corner)
         if away < radius - SAME_POINT:
-            text = f"the {end.name} with KONT is closer to the end of the contour than the nose radius."
-            raise _fault(end.block, f"comp-{end.name}-short", text, "Start farther away.")
+            text = Message(
+                (
+                    "with KONT, the distance from the {end} point to the end of the contour is "
+                    "less than the nose radius."
+                ),
+                end=end.name,
+            )
+            raise _fault(
+                end.block, f"comp-{end.name}-short", text, "Choose a point farther away from the contour."
+            )
         around = self._round(end, away)
         straight = Line(end.at, around.start)
         if any(clearance(straight, each) < radius - _TOUCHES for each in end.contour):
@@ -352,4 +377,4 @@ def _open(block: Block) -> ProgramError:
 
 
 def _fault(block: Block, code: str, text: str, hint: str) -> ProgramError:
-    return ProgramError(fault(block.line, 1, code, f"in line {block.line}", text, hint))
+    return ProgramError(fault(block.line, 1, code, Message("in line {line}", line=block.line), text, hint))

@@ -13,6 +13,7 @@ from core.interpreter.sinumerik.sinumerik_state import Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import ARC, Form, Word
+from core.message import Message
 
 WRONG_END = 14040
 _TOLERANCE = 0.01  # mm by which the radii at both ends may differ
@@ -56,8 +57,8 @@ def _check_words(state: State, statement: Statement) -> None:
         raise statement.refuse(
             word,
             "word-unused",
-            f"{word.text} cannot be used with {kind}.",
-            ("Remove it, or program the matching arc."),
+            Message("{word} cannot be used with {kind}.", word=word.text, kind=kind),
+            ("Remove this word, or program the type of arc that uses it."),
         )
 
 
@@ -76,7 +77,7 @@ def _through(state: State, statement: Statement, travel: AxisTravel) -> tuple[bo
     """CIP: the circle through start, the point of I1 and K1, and end."""
     begun, words = travel.begun, statement.words
     if not _OF_CIP & words.keys():
-        text = "CIP needs I1 and K1, a point on the arc."
+        text = "CIP needs I1 and K1 to define a point on the arc."
         raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, ("Add I1 and K1."))
     relative = state.modal.absolute is False
     x, z = begun
@@ -90,8 +91,8 @@ def _through(state: State, statement: Statement, travel: AxisTravel) -> tuple[bo
     across = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     if abs(across) < NO_WAY * max(dist(a, b), dist(a, c), NO_WAY):
         text = (
-            "the start point, the end point and the point of I1 and K1 are on one line, or two "
-            "of them are identical."
+            "the start point, the end point and the intermediate point (I1, K1) are on one "
+            "line, or two of them are identical."
         )
         word = words.get("I1") or words.get("K1")
         raise statement.refuse(word, "arc-radius", text, "Correct the point, or write G1.")
@@ -136,7 +137,7 @@ def _centre(
     words, by_centre = statement.words, {"I", "K"} & statement.words.keys()
     if "CR" in words and ("AR" in words or by_centre):
         text = "the arc has CR and another definition of its center."
-        raise statement.refuse(words["CR"], "arc-both", text, "Keep only one of them.")
+        raise statement.refuse(words["CR"], "arc-both", text, "Keep only one of these words.")
     if "CR" in words:
         return _by_radius(state, statement, travel, clockwise), travel
     if "AR" in words:
@@ -177,9 +178,11 @@ def _by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise
     radius, chord = state.length(statement, word) * travel.frame.factor, travel.length
     _demand_ends(statement, word, chord)
     if chord > 2 * abs(radius) + _TOLERANCE:
-        text = (
-            f"{word.text} is too small: it must be at least half the distance between the arc "
-            f"ends, which is {chord:.4f} mm."
+        text = Message(
+            "{word} is too small: it must be at least half the distance between the arc ends, "
+            "which is {chord} mm.",
+            word=word.text,
+            chord=f"{chord:.4f}",
         )
         raise statement.refuse(word, "arc-radius", text, "Correct CR or the end point.")
     side = clockwise if radius > 0 else not clockwise
@@ -196,7 +199,7 @@ def _by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise:
             word,
             "arc-both",
             ("the arc has AR, an end point and a center, but only two of them are allowed."),
-            "Keep only two of them.",
+            "Keep only two of these values.",
         )
     # To the right of the chord for a clockwise arc; for more than half a turn the cotangent changes side.
     aside = (0.5 if clockwise else -0.5) / tan(half)
@@ -228,7 +231,9 @@ def _turned(
 def _angle(state: State, statement: Statement, word: Word) -> float:
     angle = state.number(statement, word)
     if not 0.0 < angle < 360.0:
-        text = f"{word.text}: an opening angle must be greater than 0 and less than 360 degrees."
+        text = Message(
+            "{word}: an opening angle must be greater than 0 and less than 360 degrees.", word=word.text
+        )
         raise statement.refuse(word, "arc-angle", text, "Program a full circle with I and K.")
     return angle
 
@@ -236,7 +241,7 @@ def _angle(state: State, statement: Statement, word: Word) -> float:
 def _demand_ends(statement: Statement, word: Word | None, chord: float) -> None:
     if chord < NO_WAY:
         by = f" by {word.name}" if word else ""
-        text = f"the arc{by} ends where it starts."
+        text = Message("the arc{name} ends where it starts.", name=by)
         raise statement.refuse(word, "arc-no-chord", text, "Program a full circle with I and K.")
 
 
@@ -248,7 +253,11 @@ def _check_radii(statement: Statement, travel: AxisTravel, centre: Point) -> Non
             word, "arc-radius", "the center of the arc is its start point.", "Correct I and K."
         )
     if abs(first - last) > _TOLERANCE:
-        text = f"the arc's radius is {first:.4f} mm at its start and {last:.4f} mm at its end."
+        text = Message(
+            "the arc's radius is {first} mm at its start and {last} mm at its end.",
+            first=f"{first:.4f}",
+            last=f"{last:.4f}",
+        )
         hint = (
             "Enter I and K as distances from the start point (I as a radius), or as coordinates with AC( )."
         )

@@ -7,6 +7,7 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.interpreter.units import MM_PER_INCH
 from core.language.sinumerik.sinumerik_words import Word
 from core.language.sinumerik.word_table import DWELL, FEED_AND_SPEED, MOTION
+from core.message import Message
 
 NO_FEED = 10860
 
@@ -28,7 +29,10 @@ def feed_words(state: State, statement: Statement) -> None:
         state.override = state.number(statement, word) / 100.0
         if not 0.01 <= state.override <= 2.0:
             raise statement.refuse(
-                word, "not-positive", f"{word.text} is not between 1 and 200.", ("Correct the value.")
+                word,
+                "not-positive",
+                Message("{word} is not between 1 and 200.", word=word.text),
+                ("Correct the value."),
             )
     if word := statement.words.get("FRCM"):
         value = state.number(statement, word)
@@ -62,21 +66,21 @@ def check_feed(
     word = statement.words.get("FB")
     feed = modal.feed if word is None else feed_of(state, statement, word)
     if feed is None:
-        hint = "Program F; switching between G94 and G95 deletes the old value, and G96 and G97 count as G95."
+        hint = "Program F; a change between G94 and G95 deletes F, and G96 and G97 are treated as G95."
         raise statement.refuse(_mover(statement), NO_FEED, "no feedrate is programmed.", hint)
     if modal.css and modal.spindle and not modal.surface_speed:
-        text = "G96 is active, but no S sets a surface speed."
+        text = "G96 is active, but no surface speed is programmed with S."
         raise statement.refuse(
-            statement.words.get("S"), "surface-speed-missing", text, ("Write S next to G96.")
+            statement.words.get("S"), "surface-speed-missing", text, ("Program S together with G96.")
         )
     by_tool = modal.per_rev and state.master != 1
     if by_tool and not state.live_rpm:
-        text = "no speed for G95: the live tool is stopped, and SETMS(2) is active."
+        text = "G95 needs a speed, but the live tool is stopped and SETMS(2) is active."
         raise statement.refuse(
             _mover(statement), "g95-spindle-stopped", text, ("Start the live tool with S and M3.")
         )
     if modal.per_rev and not by_tool and not (state.rpm_at(x0) and state.rpm_at(x1)):
-        text = "no spindle speed for G95: the spindle is stopped."
+        text = "G95 needs a spindle speed, but the spindle is stopped."
         raise statement.refuse(
             _mover(statement),
             "g95-spindle-stopped",

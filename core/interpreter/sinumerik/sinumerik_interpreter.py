@@ -61,6 +61,7 @@ from core.language.sinumerik.word_table import (
     WORDS,
 )
 from core.language.source import Source
+from core.message import Message
 
 # Codes of findings that follow from where the machine stands and what is in force: behind a bad block nobody
 # knows either.
@@ -140,9 +141,9 @@ class Interpreter(Interpretation):
     def waits_for(self) -> str:
         """Why no other pass can go on from here."""
         if self._transformed is not None:
-            where = (
-                f"the line is part of a corner or a contour in {self._transformed.name}; start before "
-                "the approach"
+            where = Message(
+                "the line is part of a corner or a contour in {transformed}; start before the approach",
+                transformed=self._transformed.name,
             )
             return where if self._transformed.holds else ""
         if self._compensation.holds:
@@ -234,8 +235,12 @@ class Interpreter(Interpretation):
         control = self._setup.limits.control
         if found := lacking(control, line):
             name, column = found
-            text = f"{name} is not a function of the SINUMERIK {control.upper()} on this machine."
-            hint = "Program it differently, or correct control under [machine] in the machine file."
+            text = Message(
+                "{name} is not a function of the SINUMERIK {control} on this machine.",
+                name=name,
+                control=control.upper(),
+            )
+            hint = 'Use a different function, or correct "control" under [machine] in the machine file.'
             raise ProgramError(fault(line.number, column, "not-in-control", line.block, text, hint))
 
     def _call(self, line: Line, *, modal: bool = False) -> Iterator[Block]:
@@ -267,12 +272,12 @@ class Interpreter(Interpretation):
                     "not-in-subset",
                     line.block,
                     text,
-                    ("Remove it from the program."),
+                    ("Remove this text from the program."),
                 )
             )
         if line.call not in self._state.told:
             self._state.told.add(line.call)
-            why = f"{line.call} has no effect here: {CYCLES_TAKEN[line.call]}."
+            why = Message("{name} has no effect here: {why}.", name=line.call, why=CYCLES_TAKEN[line.call])
             found = fault(line.number, line.call_column, "no-effect", line.block, why, "")
             self._log.add(replace(found, severity=Severity.NOTE))
 
@@ -382,13 +387,13 @@ class Interpreter(Interpretation):
             raise statement.refuse(
                 word,
                 "word-unused",
-                f"{word.text} can be used only with {of}.",
-                ("Remove it from the program."),
+                Message("{word} can be used only with {total}.", word=word.text, total=of),
+                ("Remove this text from the program."),
             )
         elif statement.moves or (ARC & statement.words.keys()):
             yield from self._move(statement)
         elif word := statement.g.get(SUPPRESSION):
-            text = f"{word.text} is effective only in a block that moves an axis."
+            text = Message("{word} is effective only in a block that moves an axis.", word=word.text)
             raise statement.refuse(word, "word-unused", text, "Add the axes to the block.")
         else:
             return
@@ -453,8 +458,12 @@ class Interpreter(Interpretation):
         return told
 
     def _never_ends(self, line: Line) -> None:
-        text = f"the program exceeds the limit of {MOST_BLOCKS:,} blocks or {MOST_LINES:,} executed lines."
-        hint = "Check the loops, and reduce the number of passes of the calls."
+        text = Message(
+            "the program exceeds the limit of {most_blocks} blocks or {most_lines} executed lines.",
+            most_blocks=f"{MOST_BLOCKS:,}",
+            most_lines=f"{MOST_LINES:,}",
+        )
+        hint = "Check the loops, and reduce the repeat counts of the calls."
         self._refuse(fault(line.number, 0, "too-many-blocks", line.block, text, hint))
 
 
@@ -471,8 +480,12 @@ def _set_parameters(state: State, statement: Statement) -> None:
 def _no_place(state: State, statement: Statement, word: Word, name: str) -> ProgramError:
     if word.name in state.variables.scope.sizes:
         return statement.refuse(word, *state.variables.missing(word.name, name))
-    text = f"the name {name} is not defined: it is neither a word nor a variable of this program."
-    return statement.refuse(word, NOT_DEFINED, text, (f"Write DEF REAL {word.name} before this block."))
+    text = Message(
+        "the name {name} is not defined: it is neither a word nor a variable of this program.", name=name
+    )
+    return statement.refuse(
+        word, NOT_DEFINED, text, (Message("Write DEF REAL {word} before this block.", word=word.name))
+    )
 
 
 def _fill(state: State, statement: Statement, word: Word, name: str) -> None:
@@ -487,7 +500,9 @@ def _fill(state: State, statement: Statement, word: Word, name: str) -> None:
     assert word.values is not None
     left = state.variables.fill(letters, name, word.values, lambda asked: state.worth(asked, refuse))
     if left:
-        text = f"{word.text}: the array needs {left} more elements for this list."
+        text = Message(
+            "{word}: the array needs {left} more elements for this list.", word=word.text, left=left
+        )
         raise refuse("array-values", text, "Shorten the list.")
 
 

@@ -21,6 +21,7 @@ from core.interpreter.units import MM_PER_INCH
 from core.language.diagnostics import AT_THE_STOP, Diagnostic, ProgramError, Severity, resting_on
 from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.sinumerik_words import Line, Word
+from core.message import Message
 
 NO_OFFSET = ZeroOffset()
 NO_FRAME = ProgrammedFrame()
@@ -154,7 +155,7 @@ class State:
         try:
             return worth(formula, parameter)
         except NoValueError as problem:
-            error = refuse("arithmetic", f"{problem}.", "Correct the formula.")
+            error = refuse("arithmetic", Message("{what}.", what=problem), "Correct the formula.")
             if self.place_assumed:
                 error = ProgramError(resting_on(error.diagnostic, AT_THE_STOP))
             raise error from None
@@ -218,5 +219,8 @@ def positive(statement: Statement, word: Word, value: float, what: str) -> float
     if value > 0.0:
         return value
     raise statement.refuse(
-        word, "not-positive", f"{word.text}: {what} must be greater than 0.", ("Correct the value.")
+        word,
+        "not-positive",
+        Message("{word}: {what} must be greater than 0.", word=word.text, what=what),
+        ("Correct the value."),
     )

@@ -11,6 +11,7 @@ from core.language.sinumerik.iso_words import iso_habit
 from core.language.sinumerik.sinumerik_alarms import ONE_GROUP, TWICE, UNKNOWN_G, fault
 from core.language.sinumerik.sinumerik_lexer import variable
 from core.language.sinumerik.sinumerik_words import Line, Word
+from core.message import Message
 
 _DWELL_WORDS = frozenset({"F", "S"})
 _ENDS = frozenset({2, 17, 30})
@@ -100,13 +101,17 @@ def _sort(statement: Statement, word: Word) -> None:
         statement.live.append(word)
         return
     if word.spindle > 1:
-        text = f"{word.text}: this machine can position only one spindle; spindle 2 is its live tool."
-        raise statement.refuse(word, "one-spindle", text, "Program it for spindle 1, or remove it.")
+        text = Message(
+            "{word}: this machine can position only one spindle; spindle 2 is its live tool.", word=word.text
+        )
+        raise statement.refuse(
+            word, "one-spindle", text, "Program this function for spindle 1, or remove it."
+        )
     if word.name == "G":
         _sort_g(statement, word, known.G_GROUPS.get(int(word.value or 0)))
     elif word.name == "M":
         if word.value is None:
-            text = f"{word.text}: the M function must be given as a number."
+            text = Message("{word}: the M function must be a number.", word=word.text)
             raise statement.refuse(word, "m-unknown", text, "Write M with a number.")
         statement.m[int(word.value)] = word
     elif word.name in known.KEYS:
@@ -116,7 +121,10 @@ def _sort(statement: Statement, word: Word) -> None:
         statement.sets.append(word)
     elif word.name in statement.words:
         raise statement.refuse(
-            word, TWICE, f"{word.name} is programmed twice in the block.", "Keep only one of them."
+            word,
+            TWICE,
+            Message("{word} is programmed twice in the block.", word=word.name),
+            "Keep only one of these words.",
         )
     else:
         statement.words[word.name] = word
@@ -127,34 +135,49 @@ def _sort_g(statement: Statement, word: Word, group: str | None) -> None:
         why = known.WHY_OUTSIDE.get(f"G{int(word.value or 0)}")
         if why is not None:
             raise statement.refuse(
-                word, "not-in-subset", f"{word.text}: {why}.", ("Remove it from the program.")
+                word,
+                "not-in-subset",
+                Message("{word}: {problem}.", word=word.text, problem=why),
+                ("Remove this text from the program."),
             )
         if habit := iso_habit(statement.line.text.upper()):
             raise statement.refuse(word, "other-control", habit.text, habit.hint)
         raise statement.refuse(
             word,
             UNKNOWN_G,
-            f"{word.text} is not a G function of this control.",
-            ("Remove it from the program."),
+            Message("{word} is not a G function of this control.", word=word.text),
+            ("Remove this text from the program."),
         )
     before = statement.g.get(group)
     if before is not None:
-        text = f"{before.text} and {word.text} belong to the same group ({group})."
-        raise statement.refuse(word, ONE_GROUP, text, "Use only one G code of a group in a block.")
+        text = Message(
+            "{before} and {word} belong to the same group ({group}) and cannot be in the same block.",
+            before=before.text,
+            word=word.text,
+            group=group,
+        )
+        raise statement.refuse(word, ONE_GROUP, text, "Use only one G code from each group in a block.")
     statement.g[group] = word
 
 
 def _check_m(statement: Statement) -> None:
     if len(statement.m) > known.MOST_M:
-        text = f"the block contains {len(statement.m)} M codes."
+        text = Message("the block contains {m_count} M codes.", m_count=len(statement.m))
         raise statement.refuse(
-            list(statement.m.values())[-1], "m-too-many", text, f"The maximum is {known.MOST_M}."
+            list(statement.m.values())[-1],
+            "m-too-many",
+            text,
+            Message("The maximum is {most_points} points.", most_points=known.MOST_M),
         )
     for group in ({3, 4, 5, 19, 70}, {0, 1, 2, 17, 30}, {7, 9}, {8, 9}, {40, 41, 42, 43, 44, 45}):
         found = sorted(group & statement.m.keys())
         if len(found) > 1:
-            text = f"M{found[0]} and M{found[1]} cannot be in the same block."
-            raise statement.refuse(statement.m[found[1]], "m-conflict", text, ("Keep only one of them."))
+            text = Message(
+                "M{value} and M{value2} cannot be in the same block.", value=found[0], value2=found[1]
+            )
+            raise statement.refuse(
+                statement.m[found[1]], "m-conflict", text, ("Keep only one of these words.")
+            )
 
 
 def _check_alone(statement: Statement) -> None:
@@ -168,7 +191,7 @@ def _check_alone(statement: Statement) -> None:
             raise statement.refuse(dwell, "other-control", habit.text, habit.hint)
         if others or len(statement.words) != 1:
             text = "G4 must be in a separate block with F (seconds) or S (revolutions)."
-            raise statement.refuse(dwell, "own-block", text, "Split the block into separate blocks.")
+            raise statement.refuse(dwell, "own-block", text, "Split the block into two or more blocks.")
     if key is not None:
         others = (
             statement.words.keys() - {*known.AXES, "RPL"}
@@ -177,8 +200,8 @@ def _check_alone(statement: Statement) -> None:
             or len(statement.g) > 1
         )
         if others:
-            text = f"{key.name} must be in a separate block that contains only axes."
-            raise statement.refuse(key, "own-block", text, "Split the block into separate blocks.")
+            text = Message("{key} must be in a separate block that contains only axes.", key=key.name)
+            raise statement.refuse(key, "own-block", text, "Split the block into two or more blocks.")
 
 
 def _check_corner(statement: Statement) -> None:
@@ -186,10 +209,17 @@ def _check_corner(statement: Statement) -> None:
         return
     corners = sorted(known.CORNERS & statement.words.keys())
     if len(corners) > 1:
-        text = f"{corners[0]} and {corners[1]} cannot be in the same block."
-        raise statement.refuse(statement.words[corners[1]], "corner-both", text, ("Keep only one of them."))
-    if corners and not (known.PLACES - {"C"}) & statement.words.keys():
-        text = f"{corners[0]} is in a block without X or Z."
+        text = Message(
+            "{corners} and {corners2} cannot be in the same block.", corners=corners[0], corners2=corners[1]
+        )
         raise statement.refuse(
-            statement.words[corners[0]], "corner-without-move", text, ("Put it in the block of a move.")
+            statement.words[corners[1]], "corner-both", text, ("Keep only one of these words.")
+        )
+    if corners and not (known.PLACES - {"C"}) & statement.words.keys():
+        text = Message("{corners} is in a block without X or Z.", corners=corners[0])
+        raise statement.refuse(
+            statement.words[corners[0]],
+            "corner-without-move",
+            text,
+            ("Put this word in a block that contains a move."),
         )

@@ -15,6 +15,7 @@ from core.interpreter.units import METRES_PER_MINUTE, MM_PER_INCH
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Form, Word
 from core.language.sinumerik.word_table import BLOCKWISE, FEED_AND_SPEED
+from core.message import Message
 
 _FASTEST_SURFACE = 100_000.0  # mm/s; ten times what any tool stands
 _LONGEST_DWELL = 3600.0  # s
@@ -77,7 +78,9 @@ def _position(state: State, statement: Statement, word: Word) -> Iterator[Block]
     """The spindle stops, and its drive brings it to its angle, or holds it as C. Raises ProgramError."""
 
     def refuse(text: str, hint: str) -> ProgramError:
-        return statement.refuse(word, "spindle-position", f"{word.text}: {text}", hint)
+        return statement.refuse(
+            word, "spindle-position", Message("{word}: {what}", word=word.text, what=text), hint
+        )
 
     if word.name == "M" and word.value == _AXIS_MODE:
         demand_spindle_as_c(state, refuse)
@@ -121,14 +124,18 @@ def demand_spindle_as_c(state: State, refuse: Callable[[str, str], ProgramError]
         return
     why = "C has a separate drive" if limits.c_enabled else "the machine has no C axis"
     if limits.spindle_oriented:
-        text = (
-            f"the spindle of this machine is not a C axis: {why}, and the spindle drive can only "
-            "move it to an angle."
+        text = Message(
+            "the spindle of this machine is not a C axis because {why}; the spindle drive can "
+            "only turn the spindle to an angle.",
+            why=why,
         )
         raise refuse(text, "Select the machine sinumerik-live, whose spindle is the C axis.")
-    text = (
-        f"the spindle of this machine cannot be oriented: {why}, and nothing else moves the "
-        "spindle to an angle."
+    text = Message(
+        (
+            "the spindle of this machine cannot be oriented because {why} and the machine "
+            "file does not enable orientation by the spindle drive."
+        ),
+        why=why,
     )
     hint = (
         "Set oriented = true under [spindle] in the machine file if the drive supports it, "
@@ -145,20 +152,24 @@ def _orient(state: State, statement: Statement, word: Word) -> SpindleOrient:
     value = state.number(statement, word)
     if form is Form.IC:
         if at is None:
-            text = (
-                f"{word.text} is relative to a spindle angle, but the spindle is not positioned at any angle."
+            text = Message(
+                "{word} is relative to a spindle angle, but the spindle is not positioned at any angle.",
+                word=word.text,
             )
             raise statement.refuse(
                 word, "spindle-position", text, ("Write SPOS with an angle before this block.")
             )
         if abs(value) >= _TURN:
-            text = f"{word.text}: the drive turns less than one revolution to reach an angle."
+            text = Message(
+                ("{word}: on this drive, a spindle positioning move must be less than one revolution."),
+                word=word.text,
+            )
             raise statement.refuse(
                 word, "spindle-position", text, ("Enter an angle of less than 360 degrees.")
             )
         return SpindleOrient((at + value) % _TURN, int(copysign(1, value)) if value else 0)
     if not 0.0 <= value < _TURN:
-        text = f"{word.text}: {value:g} is not a valid spindle angle."
+        text = Message("{word}: {value} is not a valid spindle angle.", word=word.text, value=f"{value:g}")
         raise statement.refuse(word, WRONG_MODULO, text, ("Enter an angle from 0 to less than 360 degrees."))
     sense = {Form.ACP: 1, Form.ACN: -1}.get(form, 0)
     if form is Form.AC and at is not None:  # never across 0
@@ -215,12 +226,20 @@ def _limit(state: State, statement: Statement) -> None:
     value = state.number(statement, word)
     if value < 0 or (code == 26 and not value):
         raise statement.refuse(
-            word, "not-positive", f"{word.text} is not a valid speed limit.", ("Correct the value.")
+            word,
+            "not-positive",
+            Message("{word} is not a valid speed limit.", word=word.text),
+            ("Correct the value."),
         )
     lowest, highest = (value, state.highest) if code == 25 else (state.lowest, value)
     highest = min(highest, state.setup.limits.max_rpm)
     if lowest > highest:
-        text = f"{word.text}: the minimum speed {lowest:g} is above the maximum speed {highest:g}."
+        text = Message(
+            "{word}: the minimum speed {lowest} is above the maximum speed {highest}.",
+            word=word.text,
+            lowest=f"{lowest:g}",
+            highest=f"{highest:g}",
+        )
         raise statement.refuse(word, "speed-limits", text, "Correct G25 or G26.")
     state.lowest, state.highest = lowest, highest
     state.adopt(state.modal._replace(css_min=lowest))
@@ -234,12 +253,12 @@ def _speed(state: State, statement: Statement) -> None:
     _demand_controlled(state, statement, word)
     value = state.number(statement, word)
     if value < 0:
-        text = f"{word.text}: the speed cannot be negative; M3 and M4 set the direction."
+        text = Message("{word}: the speed cannot be negative; M3 and M4 set the direction.", word=word.text)
         raise statement.refuse(word, "speed-sign", text, "Remove the sign.")
     if state.modal.css:
         speed = value * (METRES_PER_MINUTE if state.modal.metric else _FEET)
         if speed > _FASTEST_SURFACE:
-            text = f"{word.text} m/min is too high a surface speed for any tool."
+            text = Message("a surface speed of {word} m/min is too high for any tool.", word=word.text)
             raise statement.refuse(word, "speed-range", text, "Write G97 if S is in rpm.")
         state.adopt(state.modal._replace(surface_speed=speed))
         return
@@ -247,14 +266,21 @@ def _speed(state: State, statement: Statement) -> None:
     state.adopt(state.modal._replace(rpm=min(value, highest)))
     if value > highest:
         raise statement.refuse(
-            word, "speed-range", f"{word.text} is above the spindle maximum of {highest:g} rpm.", "Lower S."
+            word,
+            "speed-range",
+            Message(
+                "{word} is above the spindle maximum of {highest} rpm.",
+                word=word.text,
+                highest=f"{highest:g}",
+            ),
+            "Lower S.",
         )
 
 
 def _demand_controlled(state: State, statement: Statement, word: Word | None) -> None:
     if word is not None and not state.setup.limits.spindle_controlled:
-        text = f"{word.text} needs a controlled spindle, which this machine does not have."
-        raise statement.refuse(word, "no-controlled-spindle", text, "Remove it from the program.")
+        text = Message("{word} needs a controlled spindle, which this machine does not have.", word=word.text)
+        raise statement.refuse(word, "no-controlled-spindle", text, "Remove this text from the program.")
 
 
 def _check_start(state: State, statement: Statement, word: Word) -> None:
@@ -262,13 +288,13 @@ def _check_start(state: State, statement: Statement, word: Word) -> None:
     if not limits.spindle_controlled:
         state.adopt(state.modal._replace(rpm=limits.max_rpm))  # it has one speed
     if not (state.modal.surface_speed if state.modal.css else state.modal.rpm):
-        text = f"{word.text} starts the spindle, but S is 0 or not programmed."
+        text = Message("{word} starts the spindle, but S is 0 or not programmed.", word=word.text)
         raise statement.refuse(word, "speed-missing", text, "Write S in the block.")
     if not state.modal.collet_closed and not limits.start_with_collet_open:
         raise statement.refuse(
             word,
             "collet-open",
-            f"{word.text} starts the spindle with the collet open.",
+            Message("{word} starts the spindle with the collet open.", word=word.text),
             ("Close the collet first."),
         )
 
@@ -279,11 +305,19 @@ def dwell(state: State, statement: Statement) -> Block:
     value = state.number(statement, word)
     if value < 0:
         raise statement.refuse(
-            word, "dwell-range", f"{word.text}: a dwell cannot be negative.", ("Correct the value.")
+            word,
+            "dwell-range",
+            Message("{word}: a dwell cannot be negative.", word=word.text),
+            ("Correct the value."),
         )
     seconds = value if word.name == "F" else value / _turning(state, statement, word) * 60.0
     if seconds > _LONGEST_DWELL:
-        text = f"{word.text} is a dwell of {seconds:.0f} s; the maximum is {_LONGEST_DWELL:g} s."
+        text = Message(
+            "{word} is a dwell of {seconds} s; the maximum is {longest_dwell} s.",
+            word=word.text,
+            seconds=f"{seconds:.0f}",
+            longest_dwell=f"{_LONGEST_DWELL:g}",
+        )
         raise statement.refuse(word, "dwell-range", text, "Enter F in seconds or S in revolutions.")
     return state.action(statement.line.number, statement.line.text, Dwell(seconds))
 
@@ -293,7 +327,7 @@ def _turning(state: State, statement: Statement, word: Word) -> float:
     _demand_controlled(state, statement, word)
     rpm = abs(state.rpm)
     if not rpm:
-        text = f"G4 {word.text} waits for spindle revolutions, but the spindle is stopped."
+        text = Message("G4 {word} waits for spindle revolutions, but the spindle is stopped.", word=word.text)
         raise statement.refuse(
             word, "dwell-spindle-stopped", text, ("Start the spindle with M3 or M4, or write G4 F.")
         )

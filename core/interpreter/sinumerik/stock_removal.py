@@ -20,6 +20,7 @@ from core.interpreter.contour_passes import ContourView, Move, Rougher, StartNea
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_contour import WRONG_CONTOUR
 from core.interpreter.sinumerik.cycle_parameters import MACHINING_TYPE, MOST_PASSES, RETRACT, Cycle, Step
+from core.message import Message
 from core.tool_edges import TIP_DIRECTIONS
 
 NO_INFEED = 61610
@@ -45,14 +46,14 @@ def kind_of(cycle: Cycle) -> Kind:
     number = round(value) % _ROUNDING
     if value != round(value) or value < 1 or number not in range(1, 13) or value > _ROUNDING + 12:
         told = (
-            f"is {value:g}; valid types are 1 to 12"
+            Message("{name} is {value}; valid types are 1 to 12", value=f"{value:g}", name="VARI")
             if cycle.given("VARI")
-            else ("is missing; valid types are 1 to 12")
+            else ("{name} is missing; valid types are 1 to 12")
         )
         raise cycle.wrong(
             "VARI",
             told,
-            ("Enter 1 for roughing, 5 for finishing or 9 for both, along Z and external."),
+            ("Enter 1 for roughing, 5 for finishing or 9 for both, for external machining along Z."),
             MACHINING_TYPE,
         )
     rest = (number - 1) % 4
@@ -65,15 +66,20 @@ def stock_removal(cycle: Cycle, contour: list[Element]) -> Iterator[Block]:
     if not contour:
         raise cycle.wrong(
             "NPP",
-            "names a contour without a line or arc",
+            "{name} refers to a contour without lines or arcs",
             ("Write the points of the contour."),
             WRONG_CONTOUR,
         )
     if len(contour) > _MOST_ELEMENTS:
         raise cycle.wrong(
             "NPP",
-            f"has {len(contour):,} elements; the maximum is {_MOST_ELEMENTS:,}",
-            ("Split it into smaller parts."),
+            Message(
+                "{name} has {contour_count} elements; the maximum is {most_elements}",
+                contour_count=f"{len(contour):,}",
+                most_elements=f"{_MOST_ELEMENTS:,}",
+                name="NPP",
+            ),
+            ("Split the contour into smaller parts."),
         )
     plan = _Plan(cycle, kind, contour)
     steps = plan.approach()
@@ -138,9 +144,9 @@ class _Plan:
         try:
             return Area(view.from_start(contour), left + self._nose), view
         except TrimError:
-            hint = "Reduce FAL, or widen the narrow place in the contour."
+            hint = "Reduce FAL, or widen the narrow part of the contour."
             raise self._cycle.wrong(
-                "FAL", ("leaves no continuous path along the contour"), hint, 61606
+                "FAL", ("{name} does not leave a continuous path along the contour"), hint, 61606
             ) from None
 
     def approach(self) -> list[Step]:
@@ -161,26 +167,33 @@ class _Plan:
         infeed = cycle.size("MID")
         if not infeed:
             raise cycle.wrong(
-                "MID", ("is missing, so the depth of a pass is not defined"), "Write MID.", NO_INFEED
+                "MID", ("{name} is missing, so the depth of a pass is not defined"), "Write MID.", NO_INFEED
             )
         contour, left = self._with_allowance()
         area, view = self._area(contour, left)
         if area.deepest <= 0:
             raise cycle.wrong(
-                "NPP", "leaves nothing to cut", ("Check the direction of the contour."), WRONG_CONTOUR
+                "NPP",
+                "{name} does not leave any material to cut",
+                ("Check the direction of the contour."),
+                WRONG_CONTOUR,
             )
         count = ceil(area.deepest / infeed - _WHOLE)
         if count > MOST_PASSES or count * len(contour) > _MOST_LOOKS:
             raise cycle.wrong(
                 "MID",
-                f"would need {count:,} passes, which is too many",
+                Message(
+                    ("{name} would need {count} passes, which is too many"), count=f"{count:,}", name="MID"
+                ),
                 ("Look for a missing decimal point."),
             )
         rougher = Rougher(area, 1.0, self._off)
         for k in range(1, count + 1):
             rougher.cut(area.deepest * k / count)
         if rougher.plunged and not cycle.number("FF2") and cycle.state.modal.feed is None:
-            raise cycle.wrong("FF2", ("is missing, but the contour has a relief cut"), "Write FF2.", 61003)
+            raise cycle.wrong(
+                "FF2", ("{name} is missing, but the contour has a relief cut"), "Write FF2.", 61003
+            )
         moves = self._run(rougher, view)
         return self._fed(moves, cycle.feed("FF1"), cycle.feed("FF2"), breaks=True)
 
@@ -193,8 +206,13 @@ class _Plan:
         try:
             rougher.finish(backwards=view.backwards)
         except StartNearError:
-            hint = "End the contour where the tool can leave it."
-            raise self._cycle.wrong("NPP", ("blocks the path to its own ends"), hint, 61607) from None
+            hint = "End the contour at a point where the tool can leave it."
+            raise self._cycle.wrong(
+                "NPP",
+                ("{name} specifies a contour that blocks the tool path to the contour ends"),
+                hint,
+                61607,
+            ) from None
         return [view.placed(move) for move in rougher.moves]
 
     def _with_allowance(self) -> tuple[list[Element], float]:
@@ -218,7 +236,9 @@ class _Plan:
         cycle = self._cycle
         if feed is None:
             name = "FF1" if breaks else "FF3"
-            raise cycle.wrong(name, "is missing, and no F is active", f"Write {name}.", 61003)
+            raise cycle.wrong(
+                name, "{name} is missing, and no F is active", Message("Write {name}.", name=name), 61003
+            )
         steps: list[Step] = []
         at = self._start
         for move in moves:
@@ -240,7 +260,15 @@ class _Plan:
         count = ceil(abs(way) / length - _WHOLE)
         if count > MOST_PASSES:
             raise self._cycle.wrong(
-                "DAM", (f"would interrupt a pass {count:,} times, which is too many"), ("Correct the value.")
+                "DAM",
+                (
+                    Message(
+                        ("{name} would interrupt a pass {count} times, which is too many"),
+                        count=f"{count:,}",
+                        name="DAM",
+                    )
+                ),
+                ("Correct the value."),
             )
         for k in range(1, count + 1):
             share = min(k * length / abs(way), 1.0)
@@ -270,8 +298,9 @@ def _nose_of(cycle: Cycle) -> tuple[float, Point]:
     if not cycle.state.modal.edge or not edge.nose_radius:
         return 0.0, (0.0, 0.0)
     if not edge.quadrant:
-        text = (
-            f"the tool has no tip quadrant, so {cycle.line.call} ignores its nose radius on tapers and arcs."
+        text = Message(
+            "the tool has no tip quadrant, so {call} ignores the nose radius on tapers and arcs.",
+            call=cycle.line.call,
         )
         cycle.warn("comp-no-quadrant", text, ("Enter the tip quadrant on the TOOL OFFSETS page (F8)."))
         return 0.0, (0.0, 0.0)

@@ -21,6 +21,7 @@ from core.language.sinumerik.sinumerik_words import Line
 from core.language.sinumerik.subprogram_files import Section, program_name, sections
 from core.language.sinumerik.third_axis_name import OWN
 from core.language.source import Source
+from core.message import Message
 
 
 @dataclass(slots=True)
@@ -205,7 +206,9 @@ class Flow:
         if routine is None:
             raise _missing(line)
         if len(self._calls) > DEEPEST_CALL:
-            text = f"subprogram calls are nested more than {DEEPEST_CALL} levels deep."
+            text = Message(
+                "subprogram calls are nested more than {deepest_call} levels deep.", deepest_call=DEEPEST_CALL
+            )
             raise _refused(line, "recursion", text, "A subprogram must not call itself.")
         heading = routine.heading()
         first = routine.first()
@@ -235,9 +238,13 @@ class Flow:
             call.routine.repeats = call.routine.repeats or back
             call.at = at
             if back and self._comes_round():
-                text = "this jump repeats forever: nothing that affects a jump changes in the loop."
+                text = (
+                    "this jump repeats forever because nothing in the loop changes the result of a jump "
+                    "condition."
+                )
                 hint = (
-                    "In the loop, change a variable that the condition uses; Cycle Start runs the part again."
+                    "In the loop, change a variable that the condition uses; to repeat the part, use "
+                    "Cycle Start instead."
                 )
                 raise _steering_fault(line, jump, ENDLESS, text, hint)
 
@@ -262,7 +269,11 @@ class Flow:
         until = find_label(Steering.GOTO, jump.until, call.routine, here) if jump.until else here
         missing = jump.target if start is None else jump.until if until is None else ""
         if start is None or until is None:
-            text = f"label {missing} of {jump.steering} is not in this program."
+            text = Message(
+                "label {missing}, which {steering} uses, is not in this program.",
+                missing=missing,
+                steering=jump.steering,
+            )
             raise _steering_fault(line, jump, NO_TARGET, text, "Correct the label.")
         if jump.steering is Steering.REPEAT_BLOCK:
             end = start + 1
@@ -271,7 +282,13 @@ class Flow:
         else:
             end = _end_label(call.routine, start, here)
         if end <= start or (start <= here < end):
-            text = f"the section to repeat contains {jump.steering} itself or does not end before it."
+            text = Message(
+                (
+                    "the program section to repeat contains the {steering} block or does not end "
+                    "before that block."
+                ),
+                steering=jump.steering,
+            )
             raise _steering_fault(
                 line, jump, NESTING, text, ("Put the whole section to repeat before or after this block.")
             )
@@ -279,8 +296,14 @@ class Flow:
         if jump.passes is not None:
             passes = int(state.worth(jump.passes, lambda c, t, h: _steering_fault(line, jump, c, t, h)))
         if not 1 <= passes <= _MOST_PASSES or len(call.repeats) >= DEEPEST_CALL:
-            text = f"P{passes} is not a valid number of passes."
-            raise _steering_fault(line, jump, "passes", text, f"Write P1 to P{_MOST_PASSES}.")
+            text = Message("P{passes} is not a valid repeat count.", passes=passes)
+            raise _steering_fault(
+                line,
+                jump,
+                "passes",
+                text,
+                Message("Write a repeat count from P1 to P{most_passes}.", most_passes=_MOST_PASSES),
+            )
         call.routine.repeats = True
         call.repeats.append(_Repeat(start, end, passes, call.at))
         call.at = start
@@ -295,7 +318,7 @@ class Flow:
         shown = self._calls[-1].routine.shown if self._calls else ""
         if not shown:
             return found
-        message = f"{shown} line {found.line}: {found.message}"
+        message = Message("{source} line {line}: {value}", source=shown, line=found.line, value=found.message)
         place = self.shown_line(found.line)
         return Diagnostic(place, 0, found.severity, found.code, message, found.hint)
 
@@ -326,11 +349,17 @@ def ends_main(statement: Statement, *, called: bool) -> bool:
 
 def _missing(line: Line) -> ProgramError:
     if reason := CYCLES_OUTSIDE.get(line.call):
-        return _refused(line, "not-in-subset", f"{line.call}: {reason}.", ("Remove it from the program."))
-    text = f"subprogram {line.call} does not exist."
-    hint = (
-        f"Put {line.call}.spf in the main program's folder, or add %_N_{line.call}_SPF to the "
-        "main program's file."
+        return _refused(
+            line,
+            "not-in-subset",
+            Message("{word}: {problem}.", word=line.call, problem=reason),
+            ("Remove this text from the program."),
+        )
+    text = Message("subprogram {call} does not exist.", call=line.call)
+    hint = Message(
+        "Put {named}.spf in the main program's folder, or add %_N_{named2}_SPF to the main program's file.",
+        named=line.call,
+        named2=line.call,
     )
     return _refused(line, "subprogram-missing", text, hint)
 

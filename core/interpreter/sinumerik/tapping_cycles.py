@@ -18,6 +18,7 @@ from core.interpreter.sinumerik.sinumerik_state import Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.interpreter.sinumerik.spindle_and_dwell import demand_spindle_as_c, shortest_turn
 from core.interpreter.sinumerik.thread_cycle import COARSE_LEADS, WRONG_LEAD
+from core.message import Message
 
 NO_DIRECTION = 61102
 _SAME = 1e-6  # mm
@@ -29,7 +30,9 @@ def lead_of_tap(cycle: Cycle) -> float:
     """PIT or MPIT, under 0 for a left-hand thread: mm a revolution; 0 where neither is written."""
     unit = cycle.whole("_PITA", 0, 0, 4)
     if unit == 4:
-        raise cycle.wrong("_PITA", ("is 4, which means a lead in modules"), "Enter PIT in mm.", WRONG_LEAD)
+        raise cycle.wrong(
+            "_PITA", ("{name} is 4, which specifies the lead as a module"), "Enter PIT in mm.", WRONG_LEAD
+        )
     pit, size = cycle.number("PIT"), cycle.number("MPIT")
     if pit:
         in_inches = unit == 3 or (unit == 0 and not cycle.state.modal.metric)
@@ -39,7 +42,10 @@ def lead_of_tap(cycle: Cycle) -> float:
     lead = COARSE_LEADS.get(round(abs(size)), 0.0) if size == round(size) else 0.0
     if not lead:
         raise cycle.wrong(
-            "MPIT", "does not define a lead", ("Enter PIT, or MPIT from 3 to 68 for M3 to M68."), WRONG_LEAD
+            "MPIT",
+            "{name} does not define a lead",
+            ("Enter PIT, or MPIT from 3 to 68 for M3 to M68."),
+            WRONG_LEAD,
         )
     return copysign(lead, size)
 
@@ -54,18 +60,23 @@ def rigid(cycle: Cycle) -> Iterator[Block]:
     lead = lead_of_tap(cycle)
     if not lead:
         raise cycle.wrong(
-            "PIT", "does not define a lead", ("Enter PIT, or MPIT from 3 to 68 for M3 to M68."), WRONG_LEAD
+            "PIT",
+            "{name} does not define a lead",
+            ("Enter PIT, or MPIT from 3 to 68 for M3 to M68."),
+            WRONG_LEAD,
         )
     into = _speed(cycle, "SST", state.modal.rpm)
     out = _speed(cycle, "SST1", into)
     rest = cycle.whole("SDAC", 5, 3, 5)
     if rest != 5 and not state.modal.rpm:
         raise cycle.wrong(
-            "SDAC", ("starts the spindle, but no S is programmed"), ("Write S before this block.")
+            "SDAC", ("{name} starts the spindle, but no S is programmed"), ("Write S before this block.")
         )
     wanted = cycle.number("POSS")
     if not 0.0 <= wanted < 360.0:
-        raise cycle.wrong("POSS", ("must be an angle from 0 to less than 360 degrees"), "Correct the value.")
+        raise cycle.wrong(
+            "POSS", ("{name} must be an angle from 0 to less than 360 degrees"), "Correct the value."
+        )
     lock = [Step(0.0, 0.0, action=SpindleLock(orient=False), spindle=0)]
     steps = [*approach(cycle, hole), *lock]
     if turn := shortest_turn(state, wanted):
@@ -84,12 +95,15 @@ def _speed(cycle: Cycle, name: str, default: float) -> float:
     most = cycle.state.setup.limits.c_max_rpm
     if value <= 0.0:
         raise cycle.wrong(
-            name, "does not define a speed", ("Enter this speed, or program S before the cycle.")
+            name, "{name} does not define a speed", ("Enter a speed, or program S before the cycle.")
         )
     if value > most:
-        text = (
-            f"{cycle.line.call}: {name} is {value:g} rpm, but C turns at {most:g} rpm at most and "
-            "taps at that speed."
+        text = Message(
+            "{call}: {name} is {value} rpm, but the maximum for C is {maximum} rpm, so C taps at that speed.",
+            call=cycle.line.call,
+            name=name,
+            value=f"{value:g}",
+            maximum=f"{most:g}",
         )
         cycle.warn("tap-speed", text, "Lower the speed.")
     return min(value, most)
@@ -102,7 +116,9 @@ def _ways(cycle: Cycle, hole: Hole, lead: float, speeds: tuple[float, float]) ->
     count = max(ceil(whole / each - _WHOLE), 1) if kind and each else 1
     if count > MOST_PASSES:
         raise cycle.wrong(
-            "_DAM", f"would need {count:,} steps, which is too many", ("Look for a missing decimal point.")
+            "_DAM",
+            Message("{name} would need {count} steps, which is too many", count=f"{count:,}", name="_DAM"),
+            ("Look for a missing decimal point."),
         )
     back, at, steps = cycle.size("_VRT") or 1.0, hole.clear, list[Step]()
 
@@ -132,17 +148,19 @@ def compensating(cycle: Cycle) -> Iterator[Block]:
     hole, state = hole_of(cycle), cycle.state
     modal, sign = state.modal, state.modal.spindle
     if not sign or not modal.rpm or modal.css:
-        text = f"{cycle.line.call} needs the spindle running at a speed in rpm."
+        text = Message("{call} needs the spindle to turn at a speed in rpm.", call=cycle.line.call)
         raise cycle.refused(NO_DIRECTION, text, ("Write G97 with S and M3 or M4 before this block."))
     by_feed = _by_feed(cycle)
     back, rest = cycle.whole("SDR", 0, 0, 5), cycle.whole("SDAC", 3 if sign > 0 else 4, 3, 5)
     if back not in {0, 3, 4} or (back and (back == 3) is (sign > 0)):
-        raise cycle.wrong("SDR", "does not reverse the tap", ("Enter 0, or 4 after M3 and 3 after M4."))
+        raise cycle.wrong(
+            "SDR", "{name} does not reverse the tap", ("Enter 0; otherwise, enter 4 after M3 or 3 after M4.")
+        )
     lead = abs(lead_of_tap(cycle))
     if not lead and not by_feed:
         raise cycle.wrong(
             "PIT",
-            "does not define a lead",
+            "{name} does not define a lead",
             ("Enter PIT or MPIT, or ENC 1 to use the active feed rate."),
             WRONG_LEAD,
         )
@@ -163,7 +181,11 @@ def _by_feed(cycle: Cycle) -> bool:
     """ENC: 0, 11 and 20 take the lead from PIT or MPIT, 1 from the feed in force. Raises ProgramError."""
     value = cycle.whole("ENC", 0, 0, 20)
     if value not in {0, 1, 11, 20}:
-        raise cycle.wrong("ENC", f"is {value} but must be 0, 1, 11 or 20", "Correct the value.")
+        raise cycle.wrong(
+            "ENC",
+            Message(("{name} is {value} but must be 0, 1, 11 or 20"), value=value, name="ENC"),
+            "Correct the value.",
+        )
     return value == 1
 
 
@@ -176,27 +198,34 @@ def tap(state: State, statement: Statement) -> Block:
     code = f"G{int(state.motion)}"
     demand_spindle_as_c(state, lambda text, hint: statement.refuse(word, "spindle-position", text, hint))
     if not state.modal.c_locked:
-        text = f"{code} turns the spindle as the C axis, but the spindle is not locked as C."
+        text = Message(
+            "{code} turns the spindle as the C axis, but the spindle is not locked as C.", code=code
+        )
         raise statement.refuse(word, "spindle-position", text, ("Write SPOS=0 before this block."))
     for name in ("X", "C", "I", "CR", "AR"):
         if other := statement.words.get(name):
-            text = f"{other.text}: {code} taps only along Z."
-            raise statement.refuse(other, "word-unused", text, "Remove it from the program.")
+            text = Message("{other}: {code} can tap only along Z.", other=other.text, code=code)
+            raise statement.refuse(other, "word-unused", text, "Remove this text from the program.")
     lead = statement.words.get("K")
     pitch = state.length(statement, lead) if lead is not None else state.tap_lead
     if not pitch:
-        raise statement.refuse(lead or word, "thread-lead-missing", f"{code} needs the lead K.", "Write K.")
+        raise statement.refuse(
+            lead or word, "thread-lead-missing", Message("{code} needs the lead K.", code=code), "Write K."
+        )
     state.tap_lead = pitch
     travel = travel_of(state, statement)
     way = travel.z - travel.z0
     if abs(way) < _SAME:
         raise statement.refuse(
-            word, "thread-length", f"{code} has no travel along Z.", ("Enter Z of the end point.")
+            word,
+            "thread-length",
+            Message("{code} does not move along Z.", code=code),
+            ("Enter Z of the end point."),
         )
     rpm = state.modal.rpm
     if not rpm:
         raise statement.refuse(
-            word, "speed-missing", f"{code} has no spindle speed.", "Write S in the block."
+            word, "speed-missing", Message("{code} has no spindle speed.", code=code), "Write S in the block."
         )
     rpm = min(rpm, state.setup.limits.c_max_rpm)
     # Into the hole, G331, a lead over 0 turns as M3 does; G332 is the same the other way round.

@@ -11,6 +11,7 @@ from math import inf
 
 from core.coded_error import CodedError
 from core.language.sinumerik.sinumerik_words import Form
+from core.message import Message
 
 TURN = 360.0
 TURNS = (-TURN, TURN)
@@ -49,7 +50,15 @@ def modulo_travel(form: Form, value: float, position: float) -> float:
     if not 0.0 <= value < TURN:
         raise TargetError(
             WRONG_MODULO,
-            (f"{value:.9g} is not a valid position of a modulo axis, which ranges from 0 to <360"),
+            (
+                Message(
+                    (
+                        "{value} is not a valid position of a modulo axis; valid positions are from 0 "
+                        "to less than 360"
+                    ),
+                    value=f"{value:.9g}",
+                )
+            ),
         )
     at = wrapped(position)
     if form is Form.AC:
@@ -70,7 +79,7 @@ def linear_travel(form: Form, value: float, position: float) -> float:
     Raises TargetError for DC, ACP and ACN, which only a modulo rotary axis has.
     """
     if form in NO_ROTARY:
-        raise TargetError(NO_ROTARY[form], f"{form} needs a modulo rotary axis")
+        raise TargetError(NO_ROTARY[form], Message("{form} needs a modulo rotary axis", form=form))
     return value if form is Form.IC else _unless_noise(value - position)
 
 
@@ -78,7 +87,12 @@ def check_reach(end: float, ends: tuple[float, float] | None = TURNS) -> None:
     """Raises TargetError where an axis would stand beyond its ends in the machine's own count."""
     low, high = ends or (-inf, inf)
     if not low - ROUNDING <= end <= high + ROUNDING:
-        text = f"the end point {end:g} is outside the machine range of {low:g} to {high:+g}"
+        text = Message(
+            "the end point {end} is outside the machine range of {low} to {high}",
+            end=f"{end:g}",
+            low=f"{low:g}",
+            high=f"{high:+g}",
+        )
         raise TargetError(WRONG_RANGE, text)
 
 

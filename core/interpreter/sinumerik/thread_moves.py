@@ -16,6 +16,7 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
 from core.language.sinumerik.word_table import FEED_AND_SPEED, MOTION
+from core.message import Message
 
 _ROUNDING = 1 + 1e-9
 _STEEP = 0.5  # of X to Z: what leads out of a thread, and does not go on cutting it
@@ -27,13 +28,15 @@ def thread(state: State, statement: Statement) -> Iterator[Block]:
     """The block of G33, G34 or G35, behind the way back that SF asks for. Raises ProgramError."""
     for name in ("CR", "AR", "I1", "K1"):
         if word := statement.words.get(name):
-            text = f"{word.text} cannot be used with G{int(state.motion)}."
-            raise statement.refuse(word, "word-unused", text, "Remove it from the program.")
+            text: str = Message(
+                "{word} cannot be used with G{motion}.", word=word.text, motion=int(state.motion)
+            )
+            raise statement.refuse(word, "word-unused", text, "Remove this text from the program.")
     travel = travel_of(state, statement)
     if abs(travel.z - travel.z0) < NO_WAY or travel.turn:
-        text = "a thread is cut along Z in sync with the spindle, but this one has no travel along Z."
+        text = "a thread is cut along Z in sync with the spindle, but this block does not move along Z."
         if travel.turn:
-            text = "C cannot turn in a thread."
+            text = "C cannot turn while a thread is cut."
         raise _refused(statement, "thread-length", text, "Enter Z of the end point and K.")
     lead = _lead(state, statement, travel)
     growth = _growth(state, statement)
@@ -57,13 +60,13 @@ def _growth(state: State, statement: Statement) -> float:
     if word := statement.words.get("F"):
         value = state.length(statement, word)
         if value <= 0.0:
-            text = f"{word.text}: the lead change must be greater than 0."
+            text = Message("{word}: the lead change must be greater than 0.", word=word.text)
             raise statement.refuse(
                 word, "not-positive", text, "Use G34 to increase the lead and G35 to decrease it."
             )
         state.lead_change = value
     if not state.lead_change:
-        text = f"G{int(state.motion)} needs F, the lead change per revolution."
+        text = Message("G{motion} needs F, the lead change per revolution.", motion=int(state.motion))
         raise _refused(
             statement, "thread-lead-missing", text, ("Enter F as the lead change per revolution, in mm/rev.")
         )
@@ -79,9 +82,12 @@ def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: fl
     end = sqrt(square) if square > 0.0 else 0.0
     if end < _LEAST_LEAD:
         text = "the lead decreases to 0 before the end of the thread."
-        hint = (
-            f"The lead of {lead:g} mm decreases by {-growth:g} mm per revolution and allows a "
-            f"thread only {lead * lead / -growth / 2.0:.4g} mm long."
+        hint = Message(
+            "The lead of {lead} mm decreases by {growth} mm per revolution, so the thread can be "
+            "only {lead2} mm long.",
+            lead=f"{lead:g}",
+            growth=f"{-growth:g}",
+            lead2=f"{lead * lead / -growth / 2.0:.4g}",
         )
         raise _refused(statement, "thread-lead-missing", text, hint)
     return (lead + end) / 2.0, end
@@ -96,13 +102,18 @@ def _start_angle(
     if word is None or not angle:
         return None
     if state.threads:
-        text = f"{word.text} is in the middle of a thread chain."
-        raise statement.refuse(word, "word-unused", text, "Write it in the first block of the chain.")
+        text = Message("{word} is allowed only in the first block of a thread chain.", word=word.text)
+        raise statement.refuse(
+            word, "word-unused", text, ("Write this word in the first block of the thread chain.")
+        )
     state.start_turns = turns = angle / 360.0
     far = (lead - 0.5 * growth * turns) * turns
     if lead - growth * turns < _LEAST_LEAD:
         raise statement.refuse(
-            word, "thread-lead-missing", "no lead is left at this start point.", "Lower F."
+            word,
+            "thread-lead-missing",
+            "at this start point, the lead has already decreased to 0.",
+            "Lower F.",
         )
     share = far / abs(travel.z - travel.z0)
     x, z = (a - (b - a) * share for a, b in ((travel.x0, travel.x), (travel.z0, travel.z)))
@@ -115,7 +126,7 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
     if along is None and across is None:
         if state.threads:
             return state.end_lead
-        text = f"G{int(state.motion)} needs K, the lead along Z."
+        text: str = Message("G{motion} needs K, the lead along Z.", motion=int(state.motion))
         raise _refused(statement, "thread-lead-missing", text, "Write K.")
     if along is not None and across is not None:
         text = "the thread has both a lead along X and a lead along Z."
@@ -127,13 +138,16 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
     value = state.length(statement, word)
     if value <= 0.0:
         raise statement.refuse(
-            word, "not-positive", f"{word.text}: a lead must be greater than 0.", ("Correct the value.")
+            word,
+            "not-positive",
+            Message("{word}: a lead must be greater than 0.", word=word.text),
+            ("Correct the value."),
         )
     if along is not None:
         return value
     dx = abs(travel.x - travel.x0)
     if dx < NO_WAY:
-        text = f"{word.text} is the lead along X, but X does not move."
+        text = Message("{word} is the lead along X, but X does not move.", word=word.text)
         raise statement.refuse(word, "thread-lead-missing", text, "Write K.")
     return value * abs(travel.z - travel.z0) / dx
 
@@ -142,7 +156,7 @@ def check_spindle(state: State, statement: Statement, lead: float) -> None:
     """Raises ProgramError where the spindle stands, changes its speed, or is too fast for this lead, mm."""
     modal = state.modal
     if not modal.spindle or not state.rpm:
-        text = "a thread needs a turning spindle, but the spindle is stopped."
+        text = "a thread needs the spindle running, but the spindle is stopped."
         raise _refused(statement, "g95-spindle-stopped", text, ("Start the spindle with S and M3 or M4."))
     if modal.css:
         text = "G96 is active, but a thread needs the same spindle speed from the first pass to the last."
@@ -151,9 +165,11 @@ def check_spindle(state: State, statement: Statement, lead: float) -> None:
     speed, most = lead * abs(state.rpm) / 60.0, state.setup.limits.max_feed
     if speed > most * _ROUNDING:
         shown, limit = speed * 60.0, most * 60.0
-        text = (
-            f"at {abs(state.rpm):.0f} rpm, this lead requires {shown:.0f} mm/min; the maximum is "
-            f"{limit:.0f} mm/min."
+        text = Message(
+            "at {rpm} rpm, this lead requires {value} mm/min; the maximum is {limit} mm/min.",
+            rpm=f"{abs(state.rpm):.0f}",
+            value=f"{shown:.0f}",
+            limit=f"{limit:.0f}",
         )
         raise _refused(statement, "feed-over-speed", text, "Lower S.")
 
@@ -171,7 +187,7 @@ def _continues(state: State, statement: Statement, travel: AxisTravel, lead: flo
         text = "this thread runs in the opposite Z direction to the previous thread."
         raise _refused(statement, "thread-chain", text, "End the chain with G0.")
     if last is not first and not last.continues:
-        text = "the previous block left the thread and ended the chain."
+        text = "the previous block moved out of the thread and ended the thread chain."
         raise _refused(statement, "thread-chain", text, "End the chain with G0.")
     leads_out = abs(way_x) >= _STEEP * abs(way_z) and abs(lead - state.end_lead) < _SAME and not last.growth
     return not leads_out or state.motion is not Motion.THREAD

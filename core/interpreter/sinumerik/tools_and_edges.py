@@ -12,6 +12,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import Word
+from core.message import Message
 from core.tool_edges import EDGES, NAMED_TOOLS, NamedTool, edge_key, edge_name, edge_of, tool_of
 
 WRONG_TOOL = 17190
@@ -25,13 +26,17 @@ def tool_words(state: State, statement: Statement, use: ToolUse) -> Iterator[Blo
         return
     if state.modal.nose_comp != 40:
         word = tool or edge
-        text = f"{(word.text if word else '')} is not allowed while G{state.modal.nose_comp} is active."
+        text: str = Message(
+            "{what} is not allowed while G{state} is active.",
+            what=word.text if word else "",
+            state=state.modal.nose_comp,
+        )
         raise statement.refuse(word, "comp-with", text, "Write G40 and a move before this block.")
     before = state.modal.tool
     number = tool_of(before) if tool is None else _number(state, statement, tool)
     wanted = 1 if edge is None else _edge(state, statement, edge)
     if not number and edge is not None and wanted:
-        text = f"{edge.text}: no tool is active."
+        text = Message("{edge}: no tool is active.", edge=edge.text)
         raise statement.refuse(edge, WRONG_EDGE, text, "Write T before this block.")
     _take(state, statement, number, wanted if number else 0, use)
     if tool is not None or state.modal.tool != before:
@@ -43,7 +48,9 @@ def _number(state: State, statement: Statement, word: Word) -> int:
     if not word.string:
         value = state.number(statement, word)
         if not value.is_integer() or not 0 <= value < NAMED_TOOLS:
-            text = f"{word.text} results in {value:g}, which is not a tool number."
+            text = Message(
+                "{word} results in {value}, which is not a tool number.", word=word.text, value=f"{value:g}"
+            )
             raise statement.refuse(word, WRONG_TOOL, text, "Enter the tool as a whole number.")
         return int(value)
     wanted = word.string.casefold()
@@ -58,7 +65,7 @@ def _number(state: State, statement: Statement, word: Word) -> int:
 def _edge(state: State, statement: Statement, word: Word) -> int:
     value = state.number(statement, word)
     if value != 0 and value not in EDGES:
-        text = f"{word.text}: cutting edges are D1 to D9; D0 selects none."
+        text = Message("{word}: cutting edges are D1 to D9; D0 deselects the cutting edge.", word=word.text)
         raise statement.refuse(word, WRONG_EDGE, text, "Correct D.")
     return int(value)
 
@@ -82,14 +89,20 @@ def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolO
     tools = state.setup.tools
     if key not in tools and tool_of(key) in tools:
         name, word = edge_name(key), statement.words.get("D")
-        text = (
-            f"{name} does not exist: {edge_name(tool_of(key))} has no such cutting edge in the tool offsets."
+        text = Message(
+            "{name} does not exist: {key} has no such cutting edge in the tool offsets.",
+            name=name,
+            key=edge_name(tool_of(key)),
         )
-        raise statement.refuse(word, WRONG_EDGE, text, f"Set {name} on the TOOL OFFSETS page (F8).")
+        raise statement.refuse(
+            word, WRONG_EDGE, text, Message("Set {other} on the TOOL OFFSETS page (F8).", other=name)
+        )
     offset = use.offset(key, tools)
     if offset is None:
         word = statement.words.get("T") or statement.words.get("D")
-        text = f"{edge_name(key)} has no tool offset, so 0 is used and the machine will not start."
+        text = Message(
+            "{key} has no tool offset, so 0 is used and the machine will not start.", key=edge_name(key)
+        )
         hint = _hint(word)
         state.log.add(statement.warning(word, "tool-offset-missing", text, hint))
     return offset or ToolOffset()
@@ -98,10 +111,15 @@ def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolO
 def _hint(word: Word | None) -> str:
     """What to do where a tool has no offset; T0101 is how other controls write tool 1 and its offset."""
     if word is not None and word.string:
-        return "Enter the name as the remark of a tool (F8)."
+        return "Enter this name as the remark of a tool (F8)."
     if word is not None and (iso := _TOOL_AND_OFFSET.fullmatch(word.text)):
         meant = f"T{int(iso[1])} D{max(int(iso[2]) % 10, 1)}"
-        return f"{word.text} is tool {int(word.text[1:])} here; write {meant}."
+        return Message(
+            "{word} is tool {word2} here; write {meant}.",
+            word=word.text,
+            word2=int(word.text[1:]),
+            meant=meant,
+        )
     return _SET
 
 

@@ -13,6 +13,7 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.interpreter.sinumerik.transformed_plane import Transformation
 from core.language.sinumerik.sinumerik_words import PLACES, Word
 from core.language.sinumerik.word_table import TRANSFORMATION
+from core.message import Message
 
 COMPENSATED = 14400
 """Alarm: radius compensation is on where a transformation begins or ends."""
@@ -25,10 +26,12 @@ def transform(state: State, log: Log, statement: Statement) -> Iterator[Block]:
     """TRANSMIT, TRACYL or TRAFOOF. Raises ProgramError where it cannot be."""
     word = statement.g[TRANSFORMATION]
     if (PLACES & statement.words.keys()) or statement.sets or statement.m:
-        text = f"{word.text} must be in a separate block."
-        raise statement.refuse(word, "own-block", text, ("Split the block into separate blocks."))
+        text: str = Message("{word} must be in a separate block.", word=word.text)
+        raise statement.refuse(word, "own-block", text, ("Split the block into two or more blocks."))
     if state.modal.nose_comp != 40:
-        text = f"{word.text} is not allowed while G{state.modal.nose_comp} is active."
+        text = Message(
+            "{what} is not allowed while G{state} is active.", what=word.text, state=state.modal.nose_comp
+        )
         raise statement.refuse(word, COMPENSATED, text, ("Write G40 and a move before this block."))
     if word.name == "TRAFOOF":
         _leave(state)
@@ -59,23 +62,33 @@ def _leave(state: State) -> None:
 def _check_machine(state: State, statement: Statement, word: Word) -> None:
     modal, limits = state.modal, state.setup.limits
     if limits.third_axis == "Y":
-        text = (
-            f"{word.text} creates a Y axis from X and the spindle, but the third axis of this machine is Y."
+        text = Message(
+            "{word} creates a Y axis from X and the spindle, but the third axis of this machine is Y.",
+            word=word.text,
         )
         raise statement.refuse(word, NOT_THERE, text, ("Program the part with the Y axis of this machine."))
     if not limits.c_enabled:
-        text = f"{word.text} rotates the part with C, but this machine has no third axis."
+        text = Message("{word} rotates the part with C, but this machine has no third axis.", word=word.text)
         raise statement.refuse(word, NOT_THERE, text, ("Select a machine file that has a C axis."))
     if limits.c_linear:
-        text = f"{word.text} rotates the part with C, but the third axis of this machine is linear."
+        text = Message(
+            "{word} rotates the part with C, but the third axis of this machine is linear.", word=word.text
+        )
         raise statement.refuse(word, NOT_THERE, text, ("Select a machine file that has a C axis."))
     if modal.spindle:
-        text = f"{word.text}: the spindle is turning, but it must be locked as C."
+        text = Message("{word}: the spindle is turning, but it must be locked as C.", word=word.text)
         raise statement.refuse(word, "transformation", text, ("Write M5 or SPOS=0 before this block."))
     if modal.settable_x:
-        text = f"{word.text}: G{modal.settable} shifts X, but the part rotates about X0."
+        text = Message(
+            "{word}: G{settable} shifts X, but the part rotates about X0.",
+            word=word.text,
+            settable=modal.settable,
+        )
         raise statement.refuse(
-            word, "transformation", text, f"Set X of G{modal.settable} to 0, or write G500."
+            word,
+            "transformation",
+            text,
+            Message("Set X of G{settable} to 0, or write G500.", settable=modal.settable),
         )
 
 
@@ -89,11 +102,18 @@ def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
     ]  # fmt: skip
     sets = values[1:] if word.name == "TRACYL" else values
     if any(value not in {0.0, 1.0} for value in sets[:1]) or any(sets[1:]):
-        text = (
-            f"{word.text} requests another data set or the walls of a groove, but only one data set exists."
+        text: str = Message(
+            (
+                "{word} requests another data set or groove walls; only one data set without "
+                "groove walls is available."
+            ),
+            word=word.text,
         )
         raise statement.refuse(
-            word, NOT_THERE, text, (f"Write {word.name} alone, and program the walls as contours.")
+            word,
+            NOT_THERE,
+            text,
+            (Message("Write {word} alone, and program the walls as contours.", word=word.name)),
         )
     far = state.x - state.modal.base_x > -_SAME
     if word.name == "TRANSMIT":

@@ -32,6 +32,7 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.interpreter.turn_at_axis import turns_at_axis
 from core.language.sinumerik.sinumerik_words import AXES, PLACES, Form, Word
 from core.language.sinumerik.word_table import BLOCKWISE, MOTION, SUPPRESSION
+from core.message import Message
 
 _SAME = 1e-9
 _FOLLOWED = (
@@ -127,9 +128,9 @@ class Transformation:
         names, words = self._names, {}
         for name, word in statement.words.items():
             if name == "C" or name in {"X1", "Z1", "I1", "K1", "SF"}:
-                text = f"{word.text}: {names.word} itself turns C."
+                text = Message("{word}: {word2} already controls C.", word=word.text, word2=names.word)
                 if name != "C":
-                    text = f"{word.text} has no meaning in {names.word}."
+                    text = Message("{word} has no meaning in {word2}.", word=word.text, word2=names.word)
                 raise statement.refuse(word, "transformation", text, ("Write TRAFOOF before this block."))
             if name in names.places:
                 made = self._resolved(statement, word)
@@ -138,8 +139,10 @@ class Transformation:
                 made = self._resolved(statement, word)
                 words[names.centres[name]] = made._replace(name=names.centres[name])
             elif name in {"I", "J", "K"}:
-                text = f"{word.text} is not an arc center in G{names.plane}."
-                raise statement.refuse(word, "word-unused", text, ("Use the arc center words of the plane."))
+                text = Message("{word} is not an arc center in G{plane}.", word=word.text, plane=names.plane)
+                raise statement.refuse(
+                    word, "word-unused", text, ("Use the arc center words for this plane.")
+                )
             else:
                 words[name] = word
         return replace(statement, words=words)
@@ -153,8 +156,13 @@ class Transformation:
         if word.name in {"X", "I"} and diameter and not (relative and self._state.distance_is_radius):
             value /= 2.0
         if word.form in {Form.DC, Form.ACP, Form.ACN}:
-            text = f"{word.text}: {word.form} needs a rotary axis."
-            raise statement.refuse(word, 16800, text, f"Write {word.name}=AC( ) or {word.name}=IC( ).")
+            text = Message("{word}: {form} needs a rotary axis.", word=word.text, form=word.form)
+            raise statement.refuse(
+                word,
+                16800,
+                text,
+                Message("Write {name}=AC( ) or {name2}=IC( ).", name=word.name, name2=word.name),
+            )
         return word._replace(value=value, formula=None)
 
     def _follow_state(self) -> None:
@@ -255,11 +263,12 @@ class Transformation:
         """OFFN: what is left beside the contour, while no contour is under way."""
         value = self._state.length(statement, word)
         if self._compensation.holds or (value and not self.along_z):
-            text = f"{word.text} changes a contour that is not finished yet."
+            text = Message("{word} cannot change a contour that is not finished yet.", word=word.text)
             if not self._compensation.holds:
-                text = (
-                    f"{word.text} is half the groove width in TRACYL, but the groove walls are not made "
-                    "from it here."
+                text = Message(
+                    "{word} is half the groove width in TRACYL, but TurnDesk does not machine the groove "
+                    "walls from this value.",
+                    word=word.text,
                 )
             raise statement.refuse(word, "not-in-subset", text, ("Program the walls as contours after G40."))
         self.offn = value
@@ -275,13 +284,20 @@ class Transformation:
         if (code := statement.code(BLOCKWISE)) in {25, 26, 74, 75} or SUPPRESSION in statement.g:
             word = statement.g.get(SUPPRESSION) or statement.g[BLOCKWISE]
             if code not in {25, 26} or {"X", "Y", "Z"} & statement.words.keys():
-                text = f"{word.text} moves the machine axes, but {names.word} is active."
+                text = Message(
+                    ("{word} moves the machine axes and cannot be used while {word2} is active."),
+                    word=word.text,
+                    word2=names.word,
+                )
                 raise statement.refuse(word, "transformation", text, ("Write TRAFOOF before this block."))
         if not PLACES & statement.words.keys():
             return
         word = statement.g.get(MOTION) or next(iter(statement.words.values()))
         if state.motion in THREADS | TAPS:
-            text = f"a thread along Z needs the turning spindle, but {names.word} uses the spindle as C."
+            text = Message(
+                "a thread along Z needs the spindle running, but {word} uses the spindle as C.",
+                word=names.word,
+            )
             raise statement.refuse(word, "transformation", text, ("Write TRAFOOF before this block."))
         needs = (
             state.motion in ARCS
@@ -290,8 +306,14 @@ class Transformation:
             or "ANG" in statement.words
         )
         if needs and state.plane != names.plane:
-            text = f"arcs, corners and radius compensation in {names.word} need G{names.plane}."
-            raise statement.refuse(word, "arc-plane", text, (f"Write G{names.plane} before this block."))
+            text = Message(
+                "arcs, corners and radius compensation in {word} need G{plane}.",
+                word=names.word,
+                plane=names.plane,
+            )
+            raise statement.refuse(
+                word, "arc-plane", text, (Message("Write G{plane} before this block.", plane=names.plane))
+            )
 
     def _depth_of(self, taken: Statement) -> float:
         """Where the depth of a statement leads, mm of the frame's zero."""

@@ -23,6 +23,7 @@ from core.interpreter.sinumerik.cycle_parameters import (
     Step,
 )
 from core.interpreter.sinumerik.thread_cycle import COARSE_LEADS
+from core.message import Message
 from core.tool_edges import TIP_DIRECTIONS
 
 TOO_SMALL = 61601
@@ -91,7 +92,7 @@ def shoulder_undercut(cycle: Cycle) -> Iterator[Block]:
     """CYCLE94. Raises ProgramError before the first block."""
     form = cycle.text("FORM")
     if form not in {"E", "F"}:
-        raise cycle.wrong("FORM", 'must be "E" or "F"', "Correct the value.", WRONG_FORM)
+        raise cycle.wrong("FORM", '{name} must be "E" or "F"', "Correct the value.", WRONG_FORM)
     size = _at_shoulder(cycle, form)
     out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
     place = Place(cycle.needed("SPD") / 2.0, cycle.needed("SPL"), out, side)
@@ -102,8 +103,12 @@ def _at_shoulder(cycle: Cycle, form: str) -> Size:
     """Form E or F of DIN 509 by the diameter SPD. Raises ProgramError."""
     diameter = cycle.over_zero("SPD", TOO_SMALL)
     if diameter <= 3.0:
-        text = f"is {diameter:g}, but must be greater than 3 mm for an undercut"
-        raise cycle.wrong("SPD", text, "Program the undercut as lines.", TOO_SMALL)
+        text = Message(
+            "{name} is {diameter}, but must be greater than 3 mm for an undercut",
+            diameter=f"{diameter:g}",
+            name="SPD",
+        )
+        raise cycle.wrong("SPD", text, "Program the undercut block by block.", TOO_SMALL)
     sizes = next((row[1:] for row in _DIN_509 if diameter <= row[0]), _DIN_509_OVER)
     depth, width, radius, face = sizes
     return Size(depth, width, radius, 15.0, face if form == "F" else 0.0)
@@ -113,18 +118,32 @@ def thread_undercut(cycle: Cycle) -> Iterator[Block]:
     """CYCLE96. Raises ProgramError before the first block."""
     form = cycle.text("FORM")
     if form not in {"A", "B", "C", "D"}:
-        raise cycle.wrong("FORM", 'must be "A", "B", "C" or "D"', "Correct the value.", WRONG_FORM)
+        raise cycle.wrong("FORM", ('{name} must be "A", "B", "C" or "D"'), "Correct the value.", WRONG_FORM)
     nominal = cycle.over_zero("DIATH", TOO_SMALL)
     lead = COARSE_LEADS.get(round(nominal), 0.0) if abs(nominal - round(nominal)) < _SAME else 0.0
     if not lead:
-        text = f"is {nominal:g}, which is not a coarse thread size from M3 to M{_LARGEST_OF_ALL}"
-        raise cycle.wrong("DIATH", text, "Program the undercut as lines.", TOO_SMALL)
+        text = Message(
+            "{name} is {nominal}, which is not a coarse thread size from M3 to M{largest_of_all}",
+            nominal=f"{nominal:g}",
+            largest_of_all=_LARGEST_OF_ALL,
+            name="DIATH",
+        )
+        raise cycle.wrong("DIATH", text, "Program the undercut block by block.", TOO_SMALL)
     lacks, long, short, radius, long_inside, short_inside = _DIN_76[lead]
     out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
     inside = form in {"C", "D"}
     if inside is (out > 0.0):
         where, other = ("inside", "outside") if inside else ("outside", "inside")
-        text = f"{form} is for {where} undercuts, but the cutting edge of the tool is for {other}"
+        text = Message(
+            (
+                "{name} {form} is for {place} undercuts, but the cutting edge of the tool is "
+                "for {other} undercuts"
+            ),
+            form=form,
+            place=where,
+            other=other,
+            name="FORM",
+        )
         raise cycle.wrong("FORM", text, ("Correct FORM, or use another tool."), WRONG_EDGE)
     feed = _feed(cycle.state.modal.feed, cycle)
     if not inside:
@@ -141,7 +160,7 @@ def thread_undercut(cycle: Cycle) -> Iterator[Block]:
 _OF_PLACE = {0: 4, 1: 3, 2: 1, 3: 2}
 """Tip quadrants by _LAGE: 0 and 1 outside, 2 and 3 inside; 0 and 2 with the shoulder towards plus Z."""
 
-_NOT_BUILT = "program the undercut as lines"
+_NOT_BUILT = "program the undercut block by block"
 
 
 def undercut(cycle: Cycle) -> Iterator[Block]:
@@ -151,8 +170,13 @@ def undercut(cycle: Cycle) -> Iterator[Block]:
     """
     form = cycle.text("FORM")
     if form not in {"A", "B", "E", "F"}:
-        hint = 'Write "A", "B", "E" or "F"; program C and D with CYCLE96, and a free form T as lines.'
-        raise cycle.wrong("FORM", f"is {form or 'missing'}, which is not supported here", hint, WRONG_FORM)
+        hint = 'Write "A", "B", "E" or "F"; program C and D with CYCLE96, and free form T block by block.'
+        raise cycle.wrong(
+            "FORM",
+            Message("{name} is {form}, which is not supported", form=form or "missing", name="FORM"),
+            hint,
+            WRONG_FORM,
+        )
     for name in ("_EPD", "_EPL", "_R1", "_R2", "_STA", "_VRT"):
         cycle.zero_only(name, _NOT_BUILT)
     out, side = position(cycle, _OF_PLACE[cycle.whole("_LAGE", 0, 0, 3)])
@@ -171,8 +195,12 @@ def _behind_thread(cycle: Cycle, form: str) -> Size:
     else:
         lead = COARSE_LEADS.get(round(cycle.needed("SPD")), 0.0)
     if lead not in _DIN_76:
-        text = f"specifies a lead of {lead:g}, for which no undercut is defined here"
-        raise cycle.wrong("_PITI", text, "Program the undercut as lines.", TOO_SMALL)
+        text = Message(
+            "{name} specifies a lead of {lead}, but no undercut is defined for that lead",
+            lead=f"{lead:g}",
+            name="_PITI",
+        )
+        raise cycle.wrong("_PITI", text, "Program the undercut block by block.", TOO_SMALL)
     lacks, long, short, radius, *_ = _DIN_76[lead]
     return Size(lacks / 2.0, long if form == "A" else short, radius, 30.0)
 
@@ -182,7 +210,10 @@ def _in_passes(cycle: Cycle, place: Place, size: Size, feed: float, clear: float
     kind = cycle.whole("_VARI", 3, 1, 13)
     if kind % 10 not in {1, 2, 3}:
         raise cycle.wrong(
-            "_VARI", f"is {kind}", ("Enter 1 for roughing, 2 for finishing or 3 for both."), MACHINING_TYPE
+            "_VARI",
+            Message("{name} cannot be {value}", value=kind, name="_VARI"),
+            ("Enter 1 for roughing, 2 for finishing or 3 for both."),
+            MACHINING_TYPE,
         )
     left = cycle.size("_FAL")
     up, off = max(left, cycle.size("_FALX")), max(left, cycle.size("_FALZ"))
@@ -193,7 +224,9 @@ def _in_passes(cycle: Cycle, place: Place, size: Size, feed: float, clear: float
         if count > MOST_PASSES:
             raise cycle.wrong(
                 "_MID",
-                f"would need {count:,} passes, which is too many",
+                Message(
+                    ("{name} would need {count} passes, which is too many"), count=f"{count:,}", name="_MID"
+                ),
                 ("Look for a missing decimal point."),
             )
         for k in range(1, count + 1):
@@ -214,11 +247,14 @@ def position(cycle: Cycle, chosen: int) -> tuple[float, float]:
     """
     state = cycle.state
     if not state.modal.edge:
-        text = f"{cycle.line.call} needs an active tool with an offset."
+        text = Message("{call} needs an active tool with an offset.", call=cycle.line.call)
         raise cycle.refused(61000, text, ("Write T and D before this block."))
     quadrant = state.edge.quadrant
     if quadrant not in _BY_POSITION and (not chosen or state.edge.nose_radius):
-        text = f"the tip quadrant of the tool is {quadrant}, but an undercut needs a quadrant from 1 to 4."
+        text = Message(
+            "the tip quadrant of the tool is {quadrant}, but an undercut needs a quadrant from 1 to 4.",
+            quadrant=quadrant,
+        )
         raise cycle.refused(WRONG_EDGE, text, ("Enter the tip quadrant on the TOOL OFFSETS page (F8)."))
     return _BY_POSITION[chosen or quadrant]
 
@@ -262,7 +298,11 @@ def _nose(cycle: Cycle, size: Size) -> float:
     """Nose radius of the tool, which must fit into the corners. Raises ProgramError."""
     nose = cycle.state.edge.nose_radius
     if nose > size.radius + _SAME:
-        text = f"the nose radius {nose:g} is larger than the radius {size.radius:g} of this undercut."
+        text = Message(
+            "the nose radius {nose} is larger than the radius {radius} of this undercut.",
+            nose=f"{nose:g}",
+            radius=f"{size.radius:g}",
+        )
         raise cycle.refused(NOSE_TOO_LARGE, text, ("Use a tool with a smaller nose radius."))
     return nose
 
@@ -287,7 +327,11 @@ def _of_tip(cycle: Cycle, place: Place, contour: list[Element]) -> list[Element]
         centres = [piece.element for each in contour for piece in offset.add(each)]
         centres += [piece.element for piece in offset.close()]
     except GougeError as problem:
-        text = f"the nose radius {edge.nose_radius:g} does not fit into this undercut: {problem.why}."
+        text = Message(
+            "the nose radius {nose_radius} does not fit into this undercut: {why}.",
+            nose_radius=f"{edge.nose_radius:g}",
+            why=problem.why,
+        )
         raise cycle.refused(NOSE_TOO_LARGE, text, ("Use a tool with a smaller nose radius.")) from None
     z, x = TIP_DIRECTIONS[edge.quadrant]
     return [shifted(each, x * edge.nose_radius, z * edge.nose_radius) for each in centres]

@@ -11,6 +11,7 @@ from core.language.formulas import INDICES, Formula, Operation, Parameter
 from core.language.sinumerik.array_values import Values
 from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NOT_DEFINED, OTHER_INDEX
 from core.language.sinumerik.sinumerik_words import MOST_R
+from core.message import Message
 
 UNSET = "r-unset"
 LARGEST_ARRAY = 10_000
@@ -52,7 +53,9 @@ class Variables:
     def value(self, asked: Parameter, worth: Callable[[Formula], float], refuse: Refuse) -> float:
         """What an R parameter or a variable holds. Raises what ``refuse`` makes where it holds nothing."""
         if asked.letters.startswith("$"):
-            text = f"{asked.letters} is a system variable, which cannot be read here."
+            text = Message(
+                "{letters} is a system variable, which TurnDesk cannot read.", letters=asked.letters
+            )
             raise refuse("system-variable", text, ("Write the value, or an R parameter that contains it."))
         name = place_name(asked.letters, asked.number, worth, refuse)
         if asked.letters == "R" and name[1:].isdigit():
@@ -91,30 +94,40 @@ class Variables:
         if name in self.scope.texts:
             return (
                 "text-variable",
-                f"{name} is a text, not a number.",
+                Message("{name} is text, not a number.", name=name),
                 ("Use a variable of type REAL or INT."),
             )
         if letters in self.scope.sizes:
             sizes = self.scope.sizes[letters]
             index = name[len(letters) :].strip("[]").split(",")
             right = index[0].isdigit() and int(index[0]) < sizes[0]
-            text = (
-                f"{name} is not an element of {letters}, which has {' by '.join(map(str, sizes))} elements."
+            text = Message(
+                "{name} is not an element of {letters}, which has {text} elements.",
+                name=name,
+                letters=letters,
+                text=" by ".join(map(str, sizes)),
             )
             last = ",".join(str(size - 1) for size in sizes)
-            hint = f"Use indices from 0; the last element is {letters}[{last}]."
+            hint = Message(
+                "Use indices from 0; the last element is {letters}[{last}].", letters=letters, last=last
+            )
             return OTHER_INDEX if right else FIRST_INDEX, text, hint
         if letters == "R":
             return (
                 UNSET,
                 (
-                    f"{name} has no value and is treated as 0: neither the program nor the operator has "
-                    "set it."
+                    Message(
+                        "{name} has no value and is treated as 0: neither the program nor the operator has "
+                        "set it.",
+                        name=name,
+                    )
                 ),
-                f"Write {name}=… before this block, or set it in R PARAMETERS (F10).",
+                Message(
+                    ("Write {name}=… before this block, or set the value in R PARAMETERS (F10)."), name=name
+                ),
             )
-        text = f"the name {name} is not defined with DEF."
-        return NOT_DEFINED, text, f"Write DEF REAL {name} before this block."
+        text = Message("the name {jump} is not defined with DEF.", jump=name)
+        return NOT_DEFINED, text, Message("Write DEF REAL {word} before this block.", word=name)
 
 
 def place_name(
@@ -127,7 +140,11 @@ def place_name(
     for place, index in enumerate(indices):
         if abs(index - round(index)) > 1e-9 or index < 0 or (letters == "R" and place):
             code = OTHER_INDEX if place else FIRST_INDEX
-            text = f"{letters}[{','.join(f'{each:g}' for each in indices)}] does not exist."
+            text = Message(
+                "{letters}[{item}] does not exist.",
+                letters=letters,
+                item=",".join(f"{each:g}" for each in indices),
+            )
             raise refuse(code, text, "Use a whole number of 0 or more as the index.")
     written = ",".join(str(round(each)) for each in indices)
     return f"R{written}" if letters == "R" else f"{letters}[{written}]"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.language.klartext import klartext_nodes as nodes
+from core.message import Message
 
 _FEEDS = {"max": "FMAX", "auto": "F AUTO"}
 
@@ -33,13 +34,15 @@ def _short(node: nodes.Node) -> str:
     match node:
         case nodes.Begin() | nodes.End():
             unit = "INCH" if node.inch else "MM"
-            made = _joined(f"{type(node).__name__.upper()} PGM", node.name, unit)
+            made = _joined(Message("{name} PGM", name=type(node).__name__.upper()), node.name, unit)
         case nodes.BlankForm():
-            made = _joined(f"BLK FORM 0.{node.part}", node.tool_axis, _axes(node.corner))
+            made = _joined(Message("BLK FORM 0.{part}", part=node.part), node.tool_axis, _axes(node.corner))
         case nodes.Label():
-            made = f"LBL {name_text(node.name)}"
+            made = Message("LBL {part}", part=name_text(node.name))
         case nodes.Call():
-            repeat = "" if node.repeat is None else f"REP {_value(node.repeat, plus=False)}"
+            repeat = (
+                "" if node.repeat is None else Message("REP {repeat}", repeat=_value(node.repeat, plus=False))
+            )
             made = _joined("CALL LBL", name_text(node.name), repeat)
         case nodes.Heading():
             made = f"* - {node.text}"
@@ -64,7 +67,7 @@ def _tool_call(node: nodes.ToolCall) -> str:
 
 def _datum(node: nodes.Datum) -> str:
     if node.cycle is not None:
-        return _joined(f"CYCL DEF 7.{node.cycle}", node.text, _axes(node.axes))
+        return _joined(Message("CYCL DEF 7.{cycle}", cycle=node.cycle), node.text, _axes(node.axes))
     return "TRANS DATUM RESET" if node.reset else _joined("TRANS DATUM AXIS", _axes(node.axes))
 
 

@@ -15,6 +15,7 @@ from core.language.klartext.klartext_nodes import (
     Selection,
 )
 from core.language.klartext.line_cursor import Cursor
+from core.message import Message
 
 _CONTOUR = re.compile(r"([PI])\s*[0-9]+\s*=?\s*")
 _DEPTH = re.compile(r"DEPTH|V(?=[0-9])")
@@ -65,7 +66,7 @@ def _number(cursor: Cursor) -> int:
     if match is None:
         raise cursor.expected("Expected QC and a contour number", "Write QC and a number.")
     if int(match.group(1)[:6]) > _HIGHEST:
-        text = f"Contour numbers go up to QC{_HIGHEST}."
+        text = Message("Contour numbers go up to QC{highest}.", highest=_HIGHEST)
         raise syntax(cursor.line, column, text, "Use another number.")
     return int(match.group(1))
 
@@ -74,7 +75,7 @@ def declaration(cursor: Cursor, column: int) -> ContourDeclare:
     """Behind ``DECLARE CONTOUR``: ``QC1 = "120.H"``. Raises ProgramError."""
     number = _number(cursor)
     if cursor.take(_EQUALS) is None:
-        raise cursor.expected(f"Expected '=' after QC{number}")
+        raise cursor.expected(Message("Expected '=' after QC{number}", number=number))
     part = _where(cursor)
     if cursor.take(_DEPTH):
         raise unsupported(cursor.line, column, "A contour with its own depth")
@@ -87,7 +88,7 @@ def formula(cursor: Cursor, column: int) -> ContourFormula:
     """``QC10 = ( QC1 | QC3 ) \\ QC2``. Raises ProgramError; signs that differ need brackets."""
     number = _number(cursor)
     if cursor.take(_EQUALS) is None:
-        raise cursor.expected(f"Expected '=' after QC{number}")
+        raise cursor.expected(Message("Expected '=' after QC{number}", number=number))
     reader = FormulaReader(_GRAMMAR, cursor.upper, cursor.at)
     try:
         made = reader.formula()
@@ -117,7 +118,9 @@ def _demand_brackets(cursor: Cursor, made: Formula, column: int) -> None:
 
 def _demand_one_sign(cursor: Cursor, signs: str, column: int) -> None:
     if len(set(signs)) > 1:
-        text = f"A contour formula mixes {' and '.join(sorted(set(signs)))} without parentheses."
+        text = Message(
+            "A contour formula mixes {signs} without parentheses.", signs=" and ".join(sorted(set(signs)))
+        )
         raise syntax(cursor.line, column, text, "Add parentheses.")
 
 

@@ -21,6 +21,7 @@ from core.language.klartext.klartext_nodes import (
 )
 from core.language.klartext.line_cursor import Cursor, axis_words, feed
 from core.language.klartext.path_block import codes_to_the_end
+from core.message import Message
 
 _NUMBER = re.compile(r"([0-9]{1,3})(?:\s*\.([0-9]{1,2}))?(?![0-9.])")
 _TEXT_VALUE = re.compile(r"QS\s*[0-9]+\s*=")
@@ -41,10 +42,11 @@ def cycle(cursor: Cursor, column: int) -> Node:
         raise cursor.expected("CYCL DEF needs a cycle number")
     number, part = int(match.group(1)), match.group(2)
     if number >= _NEW or (number in _OF_CONTOURS and part in {None, "0"}):
-        return Cycle(number, _values(cursor, f"CYCL DEF {number}"), column)
+        return Cycle(number, _values(cursor, Message("CYCL DEF {number}", number=number)), column)
     if part is None:
         raise cursor.expected(
-            f"CYCL DEF {number} needs a line number after a point", f"Write CYCL DEF {number}.0."
+            Message("CYCL DEF {number} needs a decimal point and a line number", number=number),
+            Message("Write CYCL DEF {number}.0.", number=number),
         )
     if number == _DATUM:
         return _datum(cursor, int(part))
@@ -72,7 +74,7 @@ def global_definition(cursor: Cursor, column: int) -> GlobalDef:
     match = cursor.take(_NUMBER)
     if match is None:
         raise cursor.expected("GLOBAL DEF needs a number")
-    return GlobalDef(_values(cursor, f"GLOBAL DEF {match.group(1)}"), column)
+    return GlobalDef(_values(cursor, Message("GLOBAL DEF {word}", word=match.group(1))), column)
 
 
 def preset(cursor: Cursor, column: int) -> Cycle:
@@ -81,14 +83,18 @@ def preset(cursor: Cursor, column: int) -> Cycle:
         raise unsupported(cursor.line, column, "PRESET SELECT with a name")
     at, row = cursor.column, cursor.value("#")
     if not cursor.done:
-        raise unsupported(cursor.line, cursor.column, f"PRESET SELECT with {cursor.rest()}")
+        raise unsupported(
+            cursor.line, cursor.column, Message("PRESET SELECT with {rest}", rest=cursor.rest())
+        )
     return Cycle(_PRESET, (CycleValue(_PRESET_NUMBER, row.formula, at),), column)
 
 
 def _values(cursor: Cursor, of: str) -> tuple[CycleValue, ...]:
     """The Q parameters behind the cycle's name, which says nothing."""
     if text := _TEXT_VALUE.search(cursor.upper, cursor.at):
-        raise unsupported(cursor.line, text.start() + 1, f"{of} with a string parameter (QS)")
+        raise unsupported(
+            cursor.line, text.start() + 1, Message("{total} with a string parameter (QS)", total=of)
+        )
     first = _Q_VALUE.search(cursor.upper, cursor.at)
     if first is None:
         cursor.rest()
@@ -122,7 +128,7 @@ def _datum(cursor: Cursor, part: int) -> Datum:
         return made
     axes = axis_words(cursor, "XYZABC")
     if not axes:
-        raise cursor.expected(f"CYCL DEF 7.{part} needs a value for X, Y or Z")
+        raise cursor.expected(Message("CYCL DEF 7.{part} needs a value for X, Y or Z", part=part))
     if not cursor.done:
         raise cursor.expected("Unexpected word in cycle 7")
     return Datum(axes, cycle=part)
@@ -207,7 +213,7 @@ def _line(cursor: Cursor, number: int, part: int, column: int) -> CycleLine:
         elif match := cursor.take(_TEXT):
             text.append(match.group())
         else:
-            raise cursor.expected(f"Unexpected word in cycle {number}")
+            raise cursor.expected(Message("Unexpected word in cycle {number}", number=number))
     return CycleLine(number, part, tuple(words), speed, turn, " ".join(text), column)
 
 

@@ -45,7 +45,7 @@ def _frame() -> tuple[Entry, ...]:
         Entry(
             "BLK FORM 0.1",
             "Z X.. Y.. Z..",
-            "The tool axis and the minimum corner of the blank.",
+            "Tool axis, and MIN point of the blank: the corner with the smallest coordinates.",
             blank,
             "BLK FORM 0.1 X-50 Y-50 Z-20",
             "tool axis",
@@ -53,13 +53,22 @@ def _frame() -> tuple[Entry, ...]:
         Entry(
             "BLK FORM 0.2",
             "X.. Y.. Z..",
-            "The maximum corner of the blank.",
+            "MAX point of the blank: the corner with the largest coordinates.",
             blank,
             "BLK FORM 0.2 X+50 Y+50",
             "Z is missing",
         ),
-        Entry("STOP", "M..", "Program stop; M functions may follow.", "STOP M9", "STOP X+3", "X+3"),
-        Entry("*", "- text", "Heading that only structures the program.", "* - FIRST SIDE"),
+        Entry(
+            "STOP",
+            "M..",
+            "Stops the program; the block may also contain M functions.",
+            "STOP M9",
+            "STOP X+3",
+            "X+3",
+        ),
+        Entry(
+            "*", "- text", "Heading that structures the program and has no other effect.", "* - FIRST SIDE"
+        ),
     )
 
 
@@ -77,8 +86,8 @@ def _tools() -> tuple[Entry, ...]:
             "TOOL CALL",
             "n Z S.. F.. DL.. DR..",
             (
-                "Tool by number or name, tool axis, speed in rpm, feed, and the values added to "
-                "length and radius."
+                "Calls a tool by number or name, with the tool axis, speed in rpm, feed, and the "
+                "values added to length and radius."
             ),
             "TOOL CALL 1 Z S2500 F400 DL+0.1 DR-0.02",
             "TOOL CALL 1 Z W3",
@@ -91,7 +100,14 @@ def _paths() -> tuple[Entry, ...]:
     polar = "CC X+0 Y+0\n"
     return (
         Entry("L", "X.. Y.. Z.. R0 F.. M..", "Straight line.", "L X+10 IY+5 R0 F300", "L X+10 X+5", "X"),
-        Entry("CC", "X.. Y..", "Circle center and pole from here on.", "CC X+10 Y+0", "CC W+3", "CC"),
+        Entry(
+            "CC",
+            "X.. Y..",
+            "Sets the circle center and the pole for the following blocks.",
+            "CC X+10 Y+0",
+            "CC W+3",
+            "CC",
+        ),
         Entry(
             "C",
             "X.. Y.. DR+",
@@ -103,7 +119,7 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "CR",
             "X.. Y.. R.. DR+",
-            "Arc by its radius; a negative R gives the arc of more than 180 degrees.",
+            "Arc with a given radius; a negative R gives an arc of more than 180 degrees.",
             "CR X+10 Y+10 R+10 DR-",
             "CR X+10 Y+10 DR-",
             "CR needs R",
@@ -127,7 +143,7 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "CP",
             "PA.. IZ.. DR+",
-            "Arc around CC by its angle; with the tool axis, a helix.",
+            "Arc around CC through a given angle; adding the tool axis makes a helix.",
             polar + "LP PR+20 PA+0 R0 F400\nCP IPA+720 IZ-4 DR+",
             "CP IPA+90 DR+",
             "CC missing",
@@ -143,7 +159,7 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "RND",
             "R..",
-            "Rounds the corner between the elements before and after it.",
+            "Rounds the corner between the preceding element and the following element.",
             "L X+20 Y+0 R0 F400\nRND R3\nL X+20 Y+20",
             "L X+20 Y+0 R0 F400\nRND R30\nL X+20 Y+20",
             "Rounding",
@@ -159,7 +175,10 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "FU",
             "n",
-            ("Feed per revolution, or FZ per tooth (CUT of the tool table), based on the programmed S."),
+            (
+                "Feed per revolution, or feed per tooth with FZ (CUT of the tool table), based on "
+                "the programmed S."
+            ),
             "L X+10 R0 FU0.1",
             "L X+10 R0 FZ0.1",
             "CUT",
@@ -167,12 +186,12 @@ def _paths() -> tuple[Entry, ...]:
         Entry(
             "FMAX",
             "",
-            "Rapid for this block only; the feed programmed before applies again afterward.",
+            "Rapid for this block only; afterward, the previously programmed feed applies again.",
             "L X+10 R0 F400\nL X+20 FMAX\nL X+30",
             "L X+20 FMAX F400",
             "F is programmed twice",
         ),
-        Entry("R0", "", "Radius compensation off.", "L X+10 R0 F400"),
+        Entry("R0", "", "Turns radius compensation off.", "L X+10 R0 F400"),
         Entry(
             "RL",
             "",
@@ -255,7 +274,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "CALL LBL",
             "n REP ..",
-            "Calls a subprogram; with REP, repeats the section from LBL to here.",
+            "Calls a subprogram; with REP, repeats the section from LBL to this block.",
             "LBL 3\nL IX+5 R0 F300\nCALL LBL 3 REP 4",
             "CALL LBL 9",
             "Label not found",
@@ -344,7 +363,7 @@ def _parameters() -> tuple[Entry, ...]:
         Entry(
             "QR",
             "n = formula",
-            "Assigns a value to a parameter that remains stored after the program ends.",
+            "Assigns a value to a parameter that retains the value after the program ends.",
             "QR5 = 3\nL X+QR5 R0 F300",
             "QR900 = 3",
             "QR499",
@@ -367,7 +386,11 @@ def _parameters() -> tuple[Entry, ...]:
         jump(11, "GT", "Jumps if the first value is greater."),
         jump(12, "LT", "Jumps if the first value is less."),
         function(
-            13, ": Q5 = +Q1 ANG +Q2", "Angle from the lengths of two sides.", "FN 13: Q5 = +1", "FN 13 needs"
+            13,
+            ": Q5 = +Q1 ANG +Q2",
+            "Angle calculated from the lengths of two sides.",
+            "FN 13: Q5 = +1",
+            "FN 13 needs",
         ),
         Entry(
             "FN 14",
@@ -375,19 +398,19 @@ def _parameters() -> tuple[Entry, ...]:
             "Ends the program with an error that the program defines.",
             "FN 9: IF +1 EQU +1 GOTO LBL 98\nFN 14: ERROR = 1000\nLBL 98",
             "FN 14: ERROR = 1000",
-            "Error of the program",
+            "Error raised by the program",
         ),
         function(
             15,
             ": PRINT Q1",
-            ("Prints; nothing is printed on this control, and a message reports this."),
+            ("Prints on the original control. This control prints nothing and shows a message."),
             "",
             "",
         ),
         function(
             16,
             ": F-PRINT A.A",
-            ("Prints to a file; nothing is printed on this control, and a message reports this."),
+            ("Prints to a file on the original control. This control prints nothing and shows a message."),
             "",
             "",
         ),
@@ -395,8 +418,8 @@ def _parameters() -> tuple[Entry, ...]:
             17,
             ": SYSWRITE ID50 NR22 IDX1 = +0",
             (
-                "Writes to the tool table: no value is changed there, and values that would move an "
-                "axis are rejected."
+                "Writes to the tool table. On this control, no value in the tool table changes, and "
+                "values that would move an axis are rejected."
             ),
             "FN 17: SYSWRITE ID50 NR4 IDX1 = +0.5",
             "DL of tool 1",
@@ -425,30 +448,46 @@ def _planes() -> tuple[Entry, ...]:
         )
 
     return (
-        plane("AXIAL", "A+30 C+0", "Tilts by the angles of the rotary axes.", "MOVE", "angle"),
-        plane("SPATIAL", "SPA+30 SPB+0 SPC+0", "Tilts by three spatial angles.", "SPA+30 MOVE", "missing"),
+        plane("AXIAL", "A+30 C+0", "Tilts the plane by the angles of the rotary axes.", "MOVE", "angle"),
+        plane(
+            "SPATIAL",
+            "SPA+30 SPB+0 SPC+0",
+            "Tilts the plane by three spatial angles.",
+            "SPA+30 MOVE",
+            "missing",
+        ),
         plane(
             "POINTS",
             "P1X+0 P1Y+0 P1Z+0 P2X+10 P2Y+0 P2Z+0 P3X+0 P3Y+8 P3Z+6",
-            "Tilts by three points.",
+            "Tilts the plane by three points.",
             "P1X+0 P1Y+0 P1Z+0 MOVE",
             "missing",
         ),
         plane(
             "VECTOR",
             "BX+1 BY+0 BZ+0 NX+0 NY-0.5 NZ+1",
-            "Tilts by a normal vector and a base vector.",
+            "Tilts the plane by a normal vector and a base vector.",
             "BX+1 MOVE",
             "missing",
         ),
-        plane("EULER", "EULPR+0 EULNU+30 EULROT+0", "Tilts by Euler angles.", "EULPR+0 MOVE", "missing"),
         plane(
-            "PROJECTED", "PROPR+0 PROMIN+20 ROT+0", "Tilts by projection angles.", "PROPR+0 MOVE", "missing"
+            "EULER",
+            "EULPR+0 EULNU+30 EULROT+0",
+            "Tilts the plane by Euler angles.",
+            "EULPR+0 MOVE",
+            "missing",
+        ),
+        plane(
+            "PROJECTED",
+            "PROPR+0 PROMIN+20 ROT+0",
+            "Tilts the plane by projection angles.",
+            "PROPR+0 MOVE",
+            "missing",
         ),
         plane(
             "RELATIV",
             "SPA+20",
-            "Tilts by one additional angle, from the active plane.",
+            "Tilts the plane by one additional angle, starting from the active plane.",
             "SPA+10 SPB+10 MOVE",
             "one of",
         ),
@@ -463,7 +502,10 @@ def _planes() -> tuple[Entry, ...]:
         Entry(
             "MOVE",
             "DIST.. F..",
-            "The rotary axes turn, and the tool tip follows its point on the workpiece.",
+            (
+                "The rotary axes turn, and the position of the tool tip relative to the "
+                "workpiece does not change."
+            ),
             "PLANE AXIAL A+30 C+0 MOVE DIST20 F1000\nPLANE RESET MOVE F1000",
             "PLANE AXIAL A+30 TURN DIST20 F1000",
             "DIST",
@@ -471,7 +513,7 @@ def _planes() -> tuple[Entry, ...]:
         Entry(
             "TURN",
             "F..",
-            "The rotary axes turn, the linear axes do not move.",
+            "The rotary axes turn; the linear axes do not move.",
             "PLANE AXIAL A+30 C+0 TURN F1000\nPLANE RESET TURN F1000",
             "PLANE AXIAL A+30 TURN MOVE",
             "cannot contain both",
@@ -479,7 +521,7 @@ def _planes() -> tuple[Entry, ...]:
         Entry(
             "STAY",
             "",
-            "No axis moves; the program turns the rotary axes with Q120 to Q122.",
+            "No axis moves; the program must turn the rotary axes with Q120 to Q122.",
             "PLANE AXIAL A+30 C+0 STAY\nPLANE RESET STAY",
             "PLANE AXIAL A+30 STAY F500",
             "STAY does not move any axis",
@@ -487,7 +529,10 @@ def _planes() -> tuple[Entry, ...]:
         Entry(
             "FUNCTION TCPM",
             "F TCP AXIS POS PATHCTRL AXIS",
-            "The tool tip stays at its point while the rotary axes move.",
+            (
+                "The position of the tool tip relative to the workpiece does not change while "
+                "the rotary axes move."
+            ),
             "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\nL IA+5 R0 F300\nFUNCTION RESET TCPM",
             "FUNCTION TCPM AXIS SPAT",
             "AXIS SPAT",

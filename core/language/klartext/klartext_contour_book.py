@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.language.code_book import Entry
+from core.message import Message
 
 _POCKET = "LBL 1\nL X+0 Y+0 RR\nL Y+40\nRND R6\nL X+60\nL Y+0\nL X+0\nLBL 0\n"
 _ISLAND = "LBL 2\nL X+38 Y+20 RL\nCC X+30 Y+20\nC X+38 Y+20 DR-\nLBL 0\n"
@@ -23,7 +24,10 @@ _OLDER = {
     ),
     15: (
         "PILOT DRILLING",
-        ("Drills where a tool of this radius would plunge; in TurnDesk, cycle 6 does not need this hole."),
+        (
+            "Drills at the plunge point of a tool with this radius; in TurnDesk, cycle 6 does "
+            "not need this hole."
+        ),
         "SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2",
         ("F150", "FMAX", "rapid"),
     ),
@@ -45,7 +49,12 @@ _DECLARED = 'DECLARE CONTOUR QC1 = "ROUND"'
 
 
 def _told(number: int, name: str, parameters: str) -> str:
-    return f"CYCL DEF {number} {name}" + "".join(f" ~\n  {each}" for each in parameters.split())
+    return Message(
+        "CYCL DEF {number} {name}{item}",
+        number=number,
+        name=name,
+        item="".join(f" ~\n  {each}" for each in parameters.split()),
+    )
 
 
 _DATA = _told(20, "CONTOUR DATA", "Q1=-5 Q2=+1 Q3=+0.2 Q4=+0.1 Q5=+0 Q6=+2 Q7=+50 Q8=+0.2 Q9=+1")
@@ -53,7 +62,7 @@ _ROUGH = _told(22, "ROUGH-OUT", "Q10=-5 Q11=150 Q12=400 Q18=0 Q19=200 Q208=99999
 _OF_A_CYCLE = {
     21: (
         "PILOT DRILLING",
-        "Drills where cycle 22 plunges with tool Q13.",
+        "Drills at the points where tool Q13 plunges in cycle 22.",
         "Q10=-5 Q11=150 Q13=1",
         ("Q13=1", "Q13=99", "Q13"),
     ),
@@ -81,9 +90,12 @@ _OF_A_CYCLE = {
 def _older(number: int, name: str, what: str, lines: str, spoilt: tuple[str, str, str]) -> Entry:
     before, after, why = spoilt
     told = (name, *lines.split("|"))
-    body = "\n".join(f"CYCL DEF {number}.{part} {line}" for part, line in enumerate(told))
+    body = "\n".join(
+        Message("CYCL DEF {number}.{part} {line}", number=number, part=part, line=line)
+        for part, line in enumerate(told)
+    )
     return Entry(
-        f"CYCL DEF {number}",
+        Message("CYCL DEF {number}", number=number),
         f".0 {name}",
         what,
         f"{_NAMED}\n{body}\nCYCL CALL",
@@ -100,9 +112,9 @@ def _formulas() -> tuple[Entry, ...]:
         Entry(
             "DECLARE CONTOUR",
             'QCn = "name"',
-            "Names a closed contour: a separate program (in quotes) or LBL n.",
+            "Assigns a closed contour to QCn: a separate program (in quotes) or LBL n.",
             f"{_DECLARED}\nCONTOUR DEF P1 = QC1\n{_DATA}\n{_ROUGH}\nCYCL CALL",
-            f"{_DECLARED} DEPTH5",
+            Message("{declared} DEPTH5", declared=_DECLARED),
             "its own depth",
             files=_CIRCLE,
         ),
@@ -110,8 +122,9 @@ def _formulas() -> tuple[Entry, ...]:
             "QC",
             "n = formula",
             (
-                "Combines contours into the area to mill: | in either, & in both, \\ in the first "
-                "without the second, ^ in only one of the two."
+                "Combines contours into the area to mill: | is the area in either contour, & the "
+                "area in both, \\ the area in the first but not in the second, and ^ the area in only "
+                "one of the two."
             ),
             f"{_DECLARED}\nQC10 = QC1 | QC1\n{_DATA}\n{_ROUGH}\nCYCL CALL",
             f"{_DECLARED}\nQC10 = QC1 | QC1 & QC1",
@@ -139,7 +152,14 @@ def contours() -> tuple[Entry, ...]:
         example = f"{_NAMED}\n{_DATA}\n{body}\nCYCL CALL"
         wrong = f"{_NAMED}\n{_DATA}\n{body.replace(before, after)}\nCYCL CALL"
         return Entry(
-            f"CYCL DEF {number}", name, what, example, wrong, why, behind=_POCKET + _ISLAND, insert=body
+            Message("CYCL DEF {number}", number=number),
+            name,
+            what,
+            example,
+            wrong,
+            why,
+            behind=_POCKET + _ISLAND,
+            insert=body,
         )
 
     train = _told(25, "CONTOUR TRAIN", "Q1=-5 Q3=+0 Q5=+0 Q7=+50 Q10=-5 Q11=100 Q12=400 Q15=+1")
@@ -147,7 +167,7 @@ def contours() -> tuple[Entry, ...]:
         Entry(
             "CYCL DEF 14",
             ".0 CONTOUR",
-            "Names the subprograms of pockets (clockwise with RR) and islands (clockwise with RL).",
+            "Lists the subprograms that define pockets (clockwise with RR) and islands (clockwise with RL).",
             f"{_NAMED}\n{_DATA}\n{_ROUGH}\nCYCL CALL",
             f"CYCL DEF 14.0 CONTOUR\nCYCL DEF 14.1 CONTOUR LABEL7\n{_DATA}\n{_ROUGH}\nCYCL CALL",
             "LBL 7",
@@ -158,7 +178,7 @@ def contours() -> tuple[Entry, ...]:
             "CONTOUR DEF",
             "P1 = LBL n I2 = LBL n",
             (
-                "Names pockets (P) and islands (I), as cycle 14 does: LBL n, a program name in "
+                "Lists the pockets (P) and islands (I), as cycle 14 does: LBL n, a program name in "
                 "quotes, or QC n."
             ),
             f"CONTOUR DEF P1 = LBL 1 I2 = LBL 2\n{_DATA}\n{_ROUGH}\nCYCL CALL",

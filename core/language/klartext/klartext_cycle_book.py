@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.language.code_book import Entry
+from core.message import Message
 
 
 def transformations() -> tuple[Entry, ...]:
@@ -11,7 +12,7 @@ def transformations() -> tuple[Entry, ...]:
 
     def older(number: int, name: str, line: str, what: str, refused: str, why: str) -> Entry:
         return Entry(
-            f"CYCL DEF {number}",
+            Message("CYCL DEF {number}", number=number),
             f".0 {name}",
             what,
             f"CYCL DEF {number}.0 {name}\nCYCL DEF {number}.1 {line}{go}",
@@ -48,20 +49,27 @@ def transformations() -> tuple[Entry, ...]:
         Entry(
             "TRANS SCALE",
             "SCL..",
-            "Enlarges or reduces; RESET cancels the scaling.",
+            "Enlarges or reduces the contour; RESET cancels the scaling.",
             f"TRANS SCALE SCL0.5{go}\nTRANS SCALE RESET",
             "TRANS SCALE 0.5",
             "SCL",
         ),
         older(7, "DATUM SHIFT", "X+10", "Shifts the datum, axis by axis.", "W+10", "W"),
-        older(8, "MIRRORING", "X", "Mirrors axes; without an axis, the mirroring is canceled.", "W", "W"),
+        older(8, "MIRRORING", "X", "Mirrors axes; without an axis, cancels mirroring.", "W", "W"),
         older(10, "ROTATION", "ROT+30", "Rotates the plane; ROT+0 cancels the rotation.", "30", "ROT"),
-        older(11, "SCALING", "SCL0.5", "Enlarges or reduces; SCL1 cancels the scaling.", "SCL0", "SCL"),
+        older(
+            11,
+            "SCALING",
+            "SCL0.5",
+            "Enlarges or reduces the contour; SCL1 cancels the scaling.",
+            "SCL0",
+            "SCL",
+        ),
         older(
             19,
             "WORKING PLANE",
             "A+0 B+0 C+0",
-            "Tilts by spatial or axis angles; the program turns the axes.",
+            "Tilts the plane by spatial or axis angles; the program must turn the axes.",
             "W3",
             "not an axis",
         ),
@@ -82,37 +90,44 @@ _MILL = "Q207=400 Q351=+1 Q201=-10 Q202=5"
 _INFEED = f"Q369=0 Q206=150 Q338=0 Q200=2 {_HEIGHTS} Q370=1"
 _OF_A_CYCLE = {
     200: ("DRILLING", "Drills in several infeeds.", f"{_HOLE} Q202=5 Q210=0 {_HEIGHTS} Q211=0"),
-    201: ("REAMING", "Reams and retracts at a feed.", f"{_HOLE} Q211=0 Q208=300 {_HEIGHTS}"),
+    201: ("REAMING", "Reams a hole and retracts at a feed rate.", f"{_HOLE} Q211=0 Q208=300 {_HEIGHTS}"),
     202: (
         "BORING",
-        "Bores, stops the spindle at Q336, moves the edge off the wall as set in Q214, and retracts.",
+        (
+            "Bores, stops the spindle at the angle Q336, moves the edge off the wall as set in "
+            "Q214, and retracts."
+        ),
         f"{_HOLE} Q211=0 Q208=300 {_HEIGHTS} Q214=0 Q336=+0",
     ),
     203: (
         "UNIVERSAL DRILLING",
-        "Drills in decreasing infeeds, with chip breaks.",
+        "Drills with decreasing infeeds and chip breaking.",
         f"{_HOLE} Q202=5 Q210=0 {_HEIGHTS} Q212=0.2 Q213=3 Q205=1 Q211=0 Q208=500 Q256=0.2",
     ),
     205: (
         "UNIVERSAL PECKING",
-        "Drills deep holes in pecks, with chip breaks and a start point below the surface.",
+        "Drills deep holes in pecks, with chip breaking and a start point below the surface.",
         f"{_HOLE} Q202=8 {_HEIGHTS} Q212=0.5 Q205=2 Q258=0.5 Q259=1 Q257=4 Q256=0.2 Q211=0 Q379=0 Q253=750",
     ),
     206: ("TAPPING", "Taps with a floating tap holder.", f"{_HOLE} Q211=0 {_HEIGHTS}"),
-    207: ("RIGID TAPPING", "Taps with feed set by pitch and speed.", f"Q200=2 Q201=-20 Q239=+1 {_HEIGHTS}"),
+    207: (
+        "RIGID TAPPING",
+        "Taps at a feed calculated from pitch and speed.",
+        f"Q200=2 Q201=-20 Q239=+1 {_HEIGHTS}",
+    ),
     208: (
         "BORE MILLING",
-        "Mills a hole along a helix.",
+        "Mills a hole on a helical path.",
         f"{_HOLE} Q334=0.5 {_HEIGHTS} Q335=20 Q342=0 Q351=+1",
     ),
     209: (
         "TAPPING W/ CHIP BRKG",
-        "Taps with feed set by pitch and speed, with chip breaks.",
+        "Taps at a feed calculated from pitch and speed, with chip breaking.",
         f"Q200=2 Q201=-20 Q239=+1 {_HEIGHTS} Q257=5 Q256=0 Q336=+0",
     ),
     241: (
         "SINGLE-LIP D.H.DRLNG",
-        "Drills deep holes: moves in slowly to a start point, then drills at speed with coolant.",
+        ("Drills deep holes: moves slowly to a start point in the hole, then drills at speed with coolant."),
         f"{_HOLE} Q211=0 {_HEIGHTS} Q379=5 Q253=750 Q208=1000 Q426=3 Q427=50 Q428=500 Q429=8 Q430=9 Q435=0",
     ),
     251: (
@@ -168,10 +183,14 @@ _OF_AN_OLDER = {
         "Mills a circular pocket around the current tool position.",
         ("SET UP 2", "DEPTH -5", "PECKG 2.5 F100", "RADIUS 20", "F300 DR+"),
     ),
-    17: ("RIGID TAPPING", "Taps with feed set by pitch and speed.", ("SET UP 2", "DEPTH -20", "PITCH +1")),
+    17: (
+        "RIGID TAPPING",
+        "Taps at a feed calculated from pitch and speed.",
+        ("SET UP 2", "DEPTH -20", "PITCH +1"),
+    ),
     18: (
         "THREAD CUTTING",
-        "Cuts a thread from the current tool position; the spindle stops.",
+        "Cuts a thread from the current tool position and stops the spindle.",
         ("DEPTH -20", "PITCH +1"),
     ),
 }
@@ -185,7 +204,7 @@ def cycles() -> tuple[Entry, ...]:
         body = f"CYCL DEF {number} {name} ~\n  " + parameters.replace(" Q", " ~\n  Q")
         call = "\nL X+10 Y+20 R0 FMAX M99"
         return Entry(
-            f"CYCL DEF {number}",
+            Message("CYCL DEF {number}", number=number),
             name,
             what,
             body + call,
@@ -198,12 +217,15 @@ def cycles() -> tuple[Entry, ...]:
         head = f"CYCL DEF {number}.0"
         told = [
             f"{head} {name}",
-            *(f"CYCL DEF {number}.{part} {line}" for part, line in enumerate(lines, start=1)),
+            *(
+                Message("CYCL DEF {number}.{part} {line}", number=number, part=part, line=line)
+                for part, line in enumerate(lines, start=1)
+            ),
         ]
         body = "\n".join(told)
         without = "\n".join(told[:-1])
         return Entry(
-            f"CYCL DEF {number}",
+            Message("CYCL DEF {number}", number=number),
             f".0 {name}",
             what,
             f"{above}{body}\nCYCL CALL",
@@ -224,7 +246,7 @@ def cycles() -> tuple[Entry, ...]:
         Entry(
             "CYCL DEF 220",
             "POLAR PATTERN",
-            "Runs the cycle defined before it at positions on a circle.",
+            "Runs the previously defined cycle at positions on a circle.",
             drill + circle,
             circle,
             "cycle",
@@ -233,7 +255,7 @@ def cycles() -> tuple[Entry, ...]:
         Entry(
             "CYCL DEF 221",
             "CARTESIAN PATTERN",
-            "Runs the cycle defined before it at positions in rows.",
+            "Runs the previously defined cycle at positions that are arranged in rows.",
             drill + square,
             square,
             "cycle",
@@ -269,15 +291,18 @@ def cycles() -> tuple[Entry, ...]:
         Entry(
             "CYCL DEF 32",
             ".0 TOLERANCE",
-            "Permitted deviation from the path; this control stays on the path.",
+            (
+                "Tolerance: the permitted deviation from the path. This value has no effect "
+                "because the control always follows the path exactly."
+            ),
             "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.02",
         ),
         Entry(
             "PATTERN DEF",
             "POS1 (X.. Y.. Z..) ROW1 PAT1 FRAME1 CIRC1 PITCHCIRC1",
             (
-                "The points for CYCL CALL PAT: single points, a row, a grid or a frame, a circle or "
-                "part of a circle."
+                "Defines the points for CYCL CALL PAT: single points, a row, a grid or a frame, a "
+                "circle or part of a circle."
             ),
             drill + "PATTERN DEF ROW1 (X+0 Y+0 D+10 NUM3 ROT+30 Z+0)\nCYCL CALL PAT FMAX",
             "PATTERN DEF ROW1 (X+0 Y+0 D+10)",
@@ -324,23 +349,26 @@ def m_functions() -> tuple[Entry, ...]:
             f"M{number}", "", what, example or f"M{number}", refused or f"M{number} M{number}", why or "twice"
         )
 
-    ignored = "Has no effect on this control, and a message reports this."
+    ignored = "Has no effect on this control; the control shows a message."
     drill = "CYCL DEF 200 DRILLING ~\n  " + _OF_A_CYCLE[200][2].replace(" Q", " ~\n  Q") + "\n"
     return (
-        code(0, "Program stop; the spindle stops and the coolant turns off."),
+        code(0, "Stops the program and the spindle, and turns the coolant off."),
         code(1, "Optional stop."),
         code(2, "End of the program."),
         code(3, "Spindle on, clockwise.", "M3", "M3 M4", "spindle"),
         code(4, "Spindle on, counterclockwise."),
         code(5, "Spindle stop."),
-        code(6, "Tool change: stops and asks for the tool."),
-        code(8, "Coolant on."),
-        code(9, "Coolant off."),
+        code(6, "Tool change; the program stops and asks for the tool."),
+        code(8, "Turns the coolant on."),
+        code(9, "Turns the coolant off."),
         code(13, "Spindle on, clockwise, and coolant on."),
         code(14, "Spindle on, counterclockwise, and coolant on."),
         code(
             19,
-            ("Stops the spindle and holds it at the angle of cycle 13, or at 0 without that cycle."),
+            (
+                "Stops the spindle and holds it at the angle of cycle 13, or at 0 degrees if cycle "
+                "13 is not defined."
+            ),
             "M19",
             "M19 M3",
             "spindle",
@@ -378,14 +406,14 @@ def m_functions() -> tuple[Entry, ...]:
         code(
             101,
             (
-                "Changes to a replacement tool at the end of tool life: no tool is changed on this "
-                "control, and a message reports this."
+                "Changes to a replacement tool when tool life is used up. This control does "
+                "not change the tool; it shows a message."
             ),
         ),
         code(102, "Ends M101."),
         code(
             103,
-            ("With F in percent: when Z moves down, it moves at no more than this percentage of the feed."),
+            ("When Z moves down, limits the feed to F percent of the programmed feed."),
             "M103 F20\nL X+10 Z-2 R0 F500\nM103",
             "M103 FMAX",
             "its factor",
@@ -394,39 +422,44 @@ def m_functions() -> tuple[Entry, ...]:
         code(
             116,
             (
-                "In moves of rotary axes alone, F is measured in mm along the path of the tool tip "
-                "on the workpiece, based on its distance from the axes."
+                "When only rotary axes move, F is measured in mm along the path of the tool tip on "
+                "the workpiece, based on the distance of the tool tip from the axes."
             ),
             "M116\nL X+40 Y+0 R0 FMAX\nL C+30 R0 F500\nM117",
         ),
-        code(117, "Ends M116: F of rotary axes is measured in degrees."),
+        code(117, "Ends M116; F of rotary axes is measured in degrees again."),
         code(
             126,
             (
-                "Rotary axes without limits take the shortest path, which is the default unless M127 "
-                "comes before."
+                "Rotary axes without limits take the shortest path. This is the default unless M127 "
+                "is programmed first."
             ),
         ),
         code(
             127,
             (
-                "Rotary axes without limits follow their position values: from 350 to 10 they turn "
-                "back through 340 degrees."
+                "Rotary axes without limits turn to their position values directly: from 350 to 10, "
+                "they turn back through 340 degrees."
             ),
         ),
         code(
             136,
             (
-                "F is a feed per spindle revolution, based on the programmed S; the feed programmed "
-                "before no longer applies."
+                "F is the feed per spindle revolution, based on the programmed S; the previously "
+                "programmed feed no longer applies."
             ),
             "M136\nL X+10 R0 F0.2\nM137\nL X+20 R0 F500",
             "L X+5 R0 F500\nM136\nL X+10",
             "No feed",
         ),
-        code(137, "Ends M136; the feed programmed before no longer applies."),
+        code(137, "Ends M136; the previously programmed feed no longer applies."),
         code(
-            128, "The tool tip stays at its point while the rotary axes move.", "M128\nL IA+5 R0 F300\nM129"
+            128,
+            (
+                "The position of the tool tip relative to the workpiece does not change while "
+                "the rotary axes move."
+            ),
+            "M128\nL IA+5 R0 F300\nM129",
         ),
         code(129, "Ends M128."),
         code(145, "Ends M144, which is not supported."),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.language.diagnostics import ProgramError, program_error
+from core.message import Message
 
 SYNTAX = "Syntax error"
 NOT_SUPPORTED = "Not supported"
@@ -29,7 +30,7 @@ COMPENSATION = "Radius compensation not permitted here"
 ROUNDING = "Rounding not possible"
 ARITHMETIC = "Arithmetical error"
 CYCLE_MISSING = "Cycle incomplete"
-OWN_ERROR = "Error of the program"
+OWN_ERROR = "Error raised by the program"
 TOOL_UNKNOWN = "Tool not defined"
 FILE_MISSING = "Program not found"
 M_UNDEFINED = "M function not defined"
@@ -40,7 +41,7 @@ NO_TABLE = "Datum table missing"
 
 def fault(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
     """The error to raise; the message begins with the code, which is what the control would show."""
-    text = message if message.startswith(code) else f"{code}: {message}"
+    text = message if message.startswith(code) else Message("{code}: {message}", code=code, message=message)
     return program_error(line, column, code, text, hint)
 
 
@@ -50,7 +51,11 @@ class MissingValueError(ProgramError):
     def __init__(self, line: int, column: int, parameter: tuple[str, int]) -> None:
         name = f"{parameter[0]}{parameter[1]}"
         made = fault(
-            line, column, Q_UNDEFINED, f"{name} has no value yet.", (f"Write {name} = … in an earlier block.")
+            line,
+            column,
+            Q_UNDEFINED,
+            Message("{name} has no value yet.", name=name),
+            (Message("Write {name} = … in an earlier block.", name=name)),
         )
         super().__init__(made.diagnostic)
         self.parameter = parameter
@@ -64,4 +69,4 @@ def syntax(line: int, column: int, message: str, hint: str = "") -> ProgramError
 def unsupported(line: int, column: int, what: str) -> ProgramError:
     """What the control may know and this one does not, by name."""
     hint = "Use L moves and PLANE instead, or run the program on a control that supports this function."
-    return fault(line, column, NOT_SUPPORTED, f"{what} is not supported here.", hint)
+    return fault(line, column, NOT_SUPPORTED, Message("{what} is not supported here.", what=what), hint)

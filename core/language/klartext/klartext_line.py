@@ -28,6 +28,7 @@ from core.language.klartext.klartext_nodes import (
     Value,
 )
 from core.language.klartext.line_cursor import Cursor
+from core.message import Message
 
 # --- L moves of plain numbers: nearly all lines of a long program, read by two patterns
 
@@ -96,7 +97,7 @@ def read_line(number: int, text: str) -> KlartextLine:
         problem = syntax(
             number,
             1,
-            f"The line is too long ({len(text)} characters).",
+            Message("The line is too long ({text_count} characters).", text_count=len(text)),
             ("Split the line into shorter lines."),
         )
         return KlartextLine(number, error=problem.diagnostic)
@@ -182,7 +183,10 @@ _KEYWORDS: dict[str, Callable[[Cursor, int], Node]] = {
     "CALL LBL": lambda cursor, _: structure_blocks.call(cursor),
     "CALL PGM": structure_blocks.call_program,
     "CALL SELECTED": structure_blocks.call_selected,
-    **{f"SEL {kind}": structure_blocks.selection(kind) for kind in ("PGM", "TABLE", "PATTERN")},
+    **{
+        Message("SEL {kind}", kind=kind): structure_blocks.selection(kind)
+        for kind in ("PGM", "TABLE", "PATTERN")
+    },
     "LBL": lambda cursor, _: structure_blocks.label(cursor),
     "FUNCTION": structure_blocks.function,
     "DECLARE STRING": text_blocks.declare,
@@ -218,6 +222,6 @@ def _no_block(cursor: Cursor) -> ProgramError:
             if name == "TCH PROBE":
                 return structure_blocks.touch_probe(cursor, column)
             return unsupported(cursor.line, column, _TOGETHER.get(name, name))
-    text = f"'{cursor.next_word}' cannot begin a block."
+    text = Message("'{next_word}' cannot begin a block.", next_word=cursor.next_word)
     hint = cursor.advice("Begin the block with a word such as L, PLANE, TOOL CALL or LBL.")
     return syntax(cursor.line, column, text, hint)

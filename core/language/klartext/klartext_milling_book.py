@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.language.code_book import Entry
+from core.message import Message
 
 _HEIGHTS = "Q203=+0 Q204=30"
 _THREAD = "Q335=16 Q239=+1.5 Q201=-16"
@@ -15,7 +16,7 @@ _OF_A_CYCLE = {
     204: (
         "BACK BORING",
         (
-            "Bores from below: the tool passes through the hole with the spindle at angle Q336, "
+            "Bores from below: with the spindle at angle Q336, the tool goes through the hole, "
             "offset from the center by Q251."
         ),
         "Q200=2 Q249=+5 Q250=20 Q251=3.5 Q252=15 Q253=750 Q254=200 Q255=0 Q203=+0 Q204=50 Q214=1 Q336=+0",
@@ -93,20 +94,20 @@ _OF_A_CYCLE = {
     ),
     230: (
         "MULTIPASS MILLING",
-        "Mills a face in Q240 rows.",
+        "Mills a face in Q240 passes.",
         "Q225=+0 Q226=+0 Q227=+2 Q218=80 Q219=60 Q240=12 Q206=150 Q207=500 Q209=200 Q200=2",
         _RAPID,
     ),
     231: (
         "RULED SURFACE",
-        "Mills the surface between two lines in Q240 rows, with the tool tip.",
+        "Mills the surface between two lines in Q240 passes, with the tool tip.",
         "Q225=+0 Q226=+0 Q227=-2 Q228=+80 Q229=+0 Q230=-2 Q231=+80 Q232=+50 Q233=-5 Q234=+0 Q235=+50 Q236=-5 "
         "Q240=20 Q207=500",
         ("Q240=20", "Q240=1", "number of cuts"),
     ),
     232: (
         "FACE MILLING",
-        "Mills a face from Q227 down to Q386; Q389 selects the milling strategy for the rows.",
+        "Mills a face from Q227 down to Q386; Q389 selects the milling strategy for the passes.",
         f"Q389=0 Q225=+0 Q226=+0 Q227=+2 Q386=-3 Q218=80 Q219=60 {_FACE}",
         _RAPID,
     ),
@@ -132,9 +133,16 @@ def milling() -> tuple[Entry, ...]:
 
     def entry(number: int, name: str, what: str, parameters: str, spoilt: tuple[str, str, str]) -> Entry:
         before, after, why = spoilt
-        body = f"CYCL DEF {number} {name}" + "".join(f" ~\n  {each}" for each in parameters.split())
+        body = Message(
+            "CYCL DEF {number} {name}{item}",
+            number=number,
+            name=name,
+            item="".join(f" ~\n  {each}" for each in parameters.split()),
+        )
         call = "\nL X+40 Y+40 R0 FMAX M99"
         wrong = body.replace(before, after) + call
-        return Entry(f"CYCL DEF {number}", name, what, body + call, wrong, why, insert=body)
+        return Entry(
+            Message("CYCL DEF {number}", number=number), name, what, body + call, wrong, why, insert=body
+        )
 
     return tuple(entry(number, *told) for number, told in sorted(_OF_A_CYCLE.items()))

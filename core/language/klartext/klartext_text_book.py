@@ -32,7 +32,7 @@ def texts() -> tuple[Entry, ...]:
             "QS",
             'n = "text"',
             (
-                "Assigns a string to a string parameter; || joins parts. TOOL CALL, CALL PGM, SEL "
+                "Assigns a string to a string parameter; || joins strings. TOOL CALL, CALL PGM, SEL "
                 "PGM, CALL LBL and GOTO LBL accept QSn as a name."
             ),
             'QS1 = "SIDE"\nCALL LBL QS1',
@@ -59,8 +59,8 @@ def texts() -> tuple[Entry, ...]:
             "SYSSTR",
             "( ID10321 NR0 )",
             (
-                "Reads a string of the control, such as its time. TurnDesk does not know the string: "
-                "it can be printed, but nothing can depend on it."
+                "Reads a string from the control, such as the time. TurnDesk does not know the "
+                "value of this string, so the program can print it but cannot depend on it."
             ),
             "( ID10321 NR0 )\nCALL PGM QS5",
             "QS5",
@@ -69,7 +69,7 @@ def texts() -> tuple[Entry, ...]:
         reads(
             "STRLEN",
             "( SRC_QS1 )",
-            "Returns the length of a string; -1 if the string is not set.",
+            "Returns the length of a string, or -1 if the string is not set.",
             "( QS1 )",
             "SRC_",
         ),
@@ -83,14 +83,17 @@ def texts() -> tuple[Entry, ...]:
         reads(
             "STRCOMP",
             "( SRC_QS1 SEA_QS2 )",
-            "Compares two strings: 0 if they are equal, -1 or 1 by alphabetical order.",
+            "Compares two strings. The result is 0 if they are equal, or -1 or 1 by alphabetical order.",
             "( SRC_QS1 )",
             "SEA_",
         ),
         Entry(
             "FN 20",
             ": WAIT FOR SYNC",
-            ("Waits for the blocks that are read ahead. TurnDesk has nothing to wait for and reports this."),
+            (
+                "Waits for the blocks that are read ahead. TurnDesk does not need this wait and "
+                "reports the block."
+            ),
             "FN 20: WAIT FOR SYNC",
             "FN 20: WAIT FOR I95==0",
             "PLC",
@@ -108,8 +111,8 @@ def texts() -> tuple[Entry, ...]:
             "FN 27",
             ': TABWRITE n/"X,DEPTH" = Q5',
             (
-                "Writes Q5, Q6, ... into cells of a row for this run only: the file does not change, "
-                "and TurnDesk reports this."
+                "Writes Q5, Q6, ... into the cells of a table row for this run only. TurnDesk "
+                "reports that the table file does not change."
             ),
             f'Q5 = 1\nQ6 = 2\n{_OPEN}\nFN 27: TABWRITE 1/"X,DEPTH" = Q5',
             'Q5 = 1\nFN 27: TABWRITE 1/"X" = Q5',
@@ -128,7 +131,7 @@ def texts() -> tuple[Entry, ...]:
         Entry(
             "FN 38",
             ": SEND",
-            "Sends a string to the control's log. TurnDesk ignores it and reports this.",
+            "Sends a string to the control's log. TurnDesk ignores this block and reports it.",
             'FN 38: SEND /"DEPTH %f" / +5',
         ),
     )

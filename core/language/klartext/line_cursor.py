@@ -9,6 +9,7 @@ from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import INPUT_VALUE, fault, syntax, unsupported
 from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, TextName, Value
 from core.language.typography import ascii_upper, typed
+from core.message import Message
 
 _NUMBER = r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)"
 _VALUE = re.compile(rf"([+-]?)\s*(?:({_NUMBER})|(Q[LR]?)\s*([0-9]+))(?![0-9.,])")
@@ -85,7 +86,9 @@ class Cursor:
         """A signed number or Q parameter. Raises ProgramError naming ``what`` lacks one."""
         column, match = self.column, self.take(_VALUE)
         if match is None:
-            raise self.expected(f"{what} has no value", "Write a number such as +10, or a Q parameter.")
+            raise self.expected(
+                Message("{what} has no value", what=what), "Write a number such as +10, or a Q parameter."
+            )
         sign, number, kind, q = match.groups()
         if q is not None:
             high = self._q(int(q) if len(q) <= 4 else _HIGHEST_Q + 1, column)
@@ -96,17 +99,17 @@ class Cursor:
         """A number; no Q parameter here."""
         column, match = self.column, self.take(_PLAIN)
         if match is None:
-            raise self.expected(f"{what} has no number", "Enter a number.")
+            raise self.expected(Message("{what} has no number", what=what), "Enter a number.")
         return Value(_number(*match.groups()), column=column)
 
     def whole(self, what: str, most: int) -> int:
         """A whole number without a sign, up to ``most``."""
         column, match = self.column, self.take(_WHOLE)
         if match is None:
-            raise self.expected(f"{what} needs a whole number")
+            raise self.expected(Message("{what} needs a whole number", what=what))
         digits = match.group()
         if len(digits) > 9 or int(digits) > most:
-            text = f"{what} accepts numbers up to {most}."
+            text = Message("{what} accepts numbers up to {maximum}.", what=what, maximum=most)
             raise fault(self.line, column, INPUT_VALUE, text, "Correct the number.")
         return int(digits)
 
@@ -114,13 +117,19 @@ class Cursor:
         """A number, or a name in quotes."""
         start = self.at
         if text := _TEXT_PARAMETER.match(self.upper, self.at):
-            raise unsupported(self.line, start + 1, f"{what} with the name in {text.group()}")
+            raise unsupported(
+                self.line,
+                start + 1,
+                Message("{what} with a name from string parameter {word}", what=what, word=text.group()),
+            )
         match = self.take(_QUOTED)
         if match is None:
             return self.whole(what, most)
         name = self.text[start + 1 : start + len(match.group(1)) + 1]
         if not name.strip():
-            raise syntax(self.line, start + 1, f"{what} has an empty name.", "Write the name.")
+            raise syntax(
+                self.line, start + 1, Message("{what} has an empty name.", what=what), "Write the name."
+            )
         return name
 
     def name_or_text(self, what: str, most: int) -> int | str | TextName:
@@ -140,8 +149,17 @@ class Cursor:
 
     def expected(self, message: str, hint: str = "") -> ProgramError:
         """A syntax error here, saying what stands in the place."""
-        here = f"; found '{self.next_word}'" if not self.done else "; the line ends here"
-        return syntax(self.line, self.column, f"{message}{here}.", self.advice(hint))
+        here = (
+            Message("; found '{next_word}'", next_word=self.next_word)
+            if not self.done
+            else "; the line ends here"
+        )
+        return syntax(
+            self.line,
+            self.column,
+            Message("{message}{position}.", message=message, position=here),
+            self.advice(hint),
+        )
 
     def advice(self, hint: str) -> str:
         """A hint, and what to do where text or a typographic character stands in the place."""
@@ -149,11 +167,15 @@ class Cursor:
         instead = next(filter(None, map(typed, word)), None)
         if instead is not None:
             return instead[1]
-        return f"{hint} A comment begins with ;.".lstrip() if _TEXT.match(word) else hint
+        return (
+            Message(("{hint} A comment begins with a semicolon (;)."), hint=hint).lstrip()
+            if _TEXT.match(word)
+            else hint
+        )
 
     def _q(self, number: int, column: int) -> int:
         if number > _HIGHEST_Q:
-            text = f"Q parameters go up to Q{_HIGHEST_Q}."
+            text = Message("Q parameters go up to Q{highest_q}.", highest_q=_HIGHEST_Q)
             raise fault(self.line, column, INPUT_VALUE, text, "Use another parameter.")
         return number
 
@@ -180,7 +202,7 @@ def feed(cursor: Cursor) -> Feed | None:
     if fixed is not None:
         return Feed(fixed.group(1).lower(), None, column)
     if _FEED_TIME.match(cursor.upper, cursor.at):
-        raise unsupported(cursor.line, column, "Feed programmed as a time (FT, FMAXT)")
+        raise unsupported(cursor.line, column, "Feed programmed as a time for the move (FT, FMAXT)")
     if match := cursor.take(_FEED_VALUE):
         return Feed("value", cursor.value(match.group()), column, match.group(1))
     if cursor.take(_FEED_WORD):
@@ -219,4 +241,9 @@ def axis_words(cursor: Cursor, letters: str, *, incremental: bool = True) -> tup
 
 def doubled(cursor: Cursor, column: int, what: str) -> ProgramError:
     """The error for a word that stands twice."""
-    return syntax(cursor.line, column, f"{what} is programmed twice in the block.", "Remove one of them.")
+    return syntax(
+        cursor.line,
+        column,
+        Message("{word} is programmed twice in the block.", word=what),
+        "Remove one of the two.",
+    )

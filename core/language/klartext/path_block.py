@@ -9,6 +9,7 @@ from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import syntax
 from core.language.klartext.klartext_nodes import AxisWord, Codes, Corner, Feed, MCode, Move, Pole
 from core.language.klartext.line_cursor import Cursor, axis_words, doubled, feed, retract
+from core.message import Message
 
 MOST_CODES = 4
 AXES = "XYZABCUVW"
@@ -106,7 +107,7 @@ def paraxial(cursor: Cursor, column: int) -> Move:
 def _demand_paraxial(cursor: Cursor, column: int, kind: str, axes: tuple[AxisWord, ...]) -> None:
     """R+ and R- make a move along one axis longer or shorter by the tool's radius."""
     if kind in {"+", "-"} and len(axes) != 1:
-        text = f"R{kind} is allowed only in a block that moves one axis."
+        text = Message("R{kind} is allowed only in a block that moves one axis.", kind=kind)
         raise syntax(cursor.line, column, text, "For a contour, write RL or RR.")
 
 
@@ -135,10 +136,15 @@ def _demand_whole(cursor: Cursor, made: Move) -> None:
     form = _FORMS[made.form]
     missing = [name for name in form.needs if made.word(name) is None]
     if missing:
-        raise cursor.expected(f"{made.form} needs {' and '.join(missing)}")
+        raise cursor.expected(
+            Message("{form} needs {missing}", form=made.form, missing=" and ".join(missing))
+        )
     if made.turn and not form.turn and made.form not in {"CT", "CTP"}:
         raise syntax(
-            cursor.line, made.column, f"{made.form} does not accept DR.", ("Remove it from the program.")
+            cursor.line,
+            made.column,
+            Message("{form} does not accept DR.", form=made.form),
+            ("Remove this text from the program."),
         )
 
 
@@ -159,7 +165,7 @@ def corner(cursor: Cursor, form: str, column: int) -> Corner:
     size = cursor.value(form)
     speed = feed(cursor)
     if not cursor.done:
-        raise cursor.expected(f"{form} accepts only a size and a feed")
+        raise cursor.expected(Message("{form} accepts only a size and a feed", form=form))
     return Corner(form, size, speed, column)
 
 
@@ -234,16 +240,16 @@ def _joined(cursor: Cursor, axes: tuple[AxisWord, ...], words: tuple[AxisWord, .
 
 def _demand_few(cursor: Cursor, codes: list[MCode]) -> None:
     if len(codes) > MOST_CODES:
-        text = f"There are more than {MOST_CODES} M functions in the block."
-        raise syntax(cursor.line, codes[-1].column, text, "Split the block into separate blocks.")
+        text = Message("There are more than {most_codes} M functions in the block.", most_codes=MOST_CODES)
+        raise syntax(cursor.line, codes[-1].column, text, "Split the block into two or more blocks.")
 
 
 def _strange(cursor: Cursor, form: str) -> ProgramError:
     if cursor.take(_AXIS_ALONE):
-        return cursor.expected("The axis has no value", "Write a number such as +10.")
+        return cursor.expected("No value is programmed for the axis", "Write a number such as +10.")
     article = "an" if form[0] in "AL" else "a"
     takes = ", ".join(("axes", *_FORMS[form].takes, *(("DR",) if _FORMS[form].turn else ())))
     return cursor.expected(
-        f"Unexpected word in {article} {form} block",
-        (f"Use only {takes}, R0, RL or RR, a feed and M functions."),
+        Message("Unexpected word in {article} {form} block", article=article, form=form),
+        (Message("Use only {takes}, R0, RL or RR, a feed and M functions.", takes=takes)),
     )

@@ -6,6 +6,7 @@ import re
 
 from core.language.klartext.klartext_nodes import AxisWord, PatternDef, PatternPart
 from core.language.klartext.line_cursor import Cursor, doubled
+from core.message import Message
 
 _KIND = re.compile(r"(PITCHCIRC|CIRC|FRAME|PAT|ROW|POS)\s*[0-9]{1,2}\s*\(")
 _WORD = re.compile(r"(NUMX|NUMY|NUM|ROTX|ROTY|ROT|START|STEP|DX|DY|D|X|Y|Z)(?=\s*[+\-0-9.,Q])")
@@ -42,12 +43,14 @@ def _words(cursor: Cursor, form: str) -> tuple[AxisWord, ...]:
     while not cursor.take(_CLOSED):
         at, match = cursor.column, cursor.take(_WORD)
         if match is None:
-            raise cursor.expected(f"Unexpected word in {form}", "Close the parenthesis after the words.")
+            raise cursor.expected(
+                Message("Unexpected word in {form}", form=form), "Close the parenthesis after the words."
+            )
         name = match.group(1)
         if name in found:
             raise doubled(cursor, at, name)
         found[name] = AxisWord(name, cursor.value(name), column=at)
     missing = [name for name in NEEDS[form] if name not in found]
     if missing:
-        raise cursor.expected(f"{form} needs {' and '.join(missing)}")
+        raise cursor.expected(Message("{form} needs {missing}", form=form, missing=" and ".join(missing)))
     return tuple(found.values())

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from core.language.klartext.klartext_faults import syntax
 from core.language.klartext.klartext_nodes import AxisWord, Plane, Positioning
 from core.language.klartext.line_cursor import Cursor, axis_words, doubled, feed, retract
+from core.message import Message
 
 POINT_WORDS = tuple(f"P{point}{axis}" for point in "123" for axis in "XYZ")
 SPATIAL_WORDS = ("SPA", "SPB", "SPC")
@@ -29,7 +30,9 @@ def plane(cursor: Cursor, column: int) -> Plane:
     """Behind ``PLANE``. Raises ProgramError for what is missing, unknown, doubled or out of the subset."""
     form = cursor.keyword(*FORMS)
     if form is None:
-        raise cursor.expected(f"PLANE needs {', '.join(FORMS[:-1])} or {FORMS[-1]}")
+        raise cursor.expected(
+            Message("PLANE needs {forms} or {forms2}", forms=", ".join(FORMS[:-1]), forms2=FORMS[-1])
+        )
     words = _WORDS[form](cursor) if form in _WORDS else ()
     return Plane(form, words, _positioning(cursor, form), column)
 
@@ -80,7 +83,8 @@ def _all_of(cursor: Cursor, names: tuple[str, ...], words: tuple[AxisWord, ...])
     if missing:
         verb = "are" if len(missing) > 1 else "is"
         raise cursor.expected(
-            f"{', '.join(missing)} {verb} missing", ("Write all of these words, even with the value 0.")
+            Message("{missing} {verb} missing", missing=", ".join(missing), verb=verb),
+            ("Write all of these words, even if a value is 0."),
         )
     return tuple(found[name] for name in names)
 
@@ -108,11 +112,11 @@ def _with_word(cursor: Cursor, form: str, made: Positioning) -> Positioning:
         return dataclasses.replace(made, side="".join(side.groups()))
     if form != "RESET" and (rotation := cursor.take(_ROTATION)):
         _once(cursor, column, made.rotation, "COORD ROT or TABLE ROT")
-        return dataclasses.replace(made, rotation=f"{rotation.group(1)} ROT")
+        return dataclasses.replace(made, rotation=Message("{word} ROT", word=rotation.group(1)))
     if cursor.keyword("DIST", "ABST", "SETUP"):  # as German controls write it
         if made.way != "MOVE":
-            text = f"DIST is allowed only with MOVE, not with {made.way}."
-            raise syntax(cursor.line, column, text, "Remove it from the program.")
+            text = Message("DIST is allowed only with MOVE, not with {word}.", word=made.way)
+            raise syntax(cursor.line, column, text, "Remove this text from the program.")
         _once(cursor, column, made.distance, "DIST")
         return dataclasses.replace(made, distance=cursor.number("DIST"))
     return _with_motion(cursor, made, column)
@@ -128,7 +132,9 @@ def _with_motion(cursor: Cursor, made: Positioning, column: int) -> Positioning:
         _once(cursor, column, made.feed, "F")
         return dataclasses.replace(made, feed=speed)
     if second := cursor.keyword(*_WAYS):
-        text = f"A PLANE block cannot contain both {made.way} and {second}."
+        text = Message(
+            "A PLANE block cannot contain both {first} and {second}.", first=made.way, second=second
+        )
         raise syntax(cursor.line, column, text, "Remove one of the two words.")
     raise cursor.expected("Unexpected word in a PLANE block")
 
@@ -143,6 +149,6 @@ def _demand_motion(cursor: Cursor, made: Positioning, column: int, what: str) ->
         raise syntax(
             cursor.line,
             column,
-            f"STAY does not move any axis, so {what} is not allowed.",
-            ("Remove it from the program."),
+            Message("STAY does not move any axis, so {what} is not allowed.", what=what),
+            ("Remove this text from the program."),
         )

@@ -29,6 +29,7 @@ from core.language.klartext.klartext_nodes import (
     Unheeded,
 )
 from core.language.klartext.line_cursor import Cursor
+from core.message import Message
 
 _NUMBER = re.compile(r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:E[+-]?[0-9]{1,3})?")
 _PARAMETER = re.compile(r"(Q[LR]?)\s*([0-9]{1,4})(?![0-9])")
@@ -91,9 +92,9 @@ WHETHER = "?"
 """Behind the letters of a parameter: 1 where it has a value, else 0."""
 _UNHEEDED = {15: "PRINT", 16: "F-PRINT", 38: "SEND"}
 _OF_THE_BUILDER = {
-    19: "PLC, which sends values to the machine builder's PLC,",
-    29: "PLC, which sends values to the machine builder's PLC,",
-    37: "EXPORT, which belongs in cycles of the machine builder,",
+    19: "PLC (sends values to the machine builder's PLC)",
+    29: "PLC (sends values to the machine builder's PLC)",
+    37: "EXPORT (for machine-builder cycles)",
 }
 MOST_LABEL = 65535
 
@@ -106,7 +107,9 @@ def formula(cursor: Cursor, what: str) -> Formula:
     except FormulaError as problem:
         cursor.at = problem.at
         cursor.blanks()
-        raise cursor.expected(f"{what}: {problem}", problem.hint) from None
+        raise cursor.expected(
+            Message("{what}: {problem}", what=what, problem=problem), problem.hint
+        ) from None
     cursor.at = reader.at
     cursor.blanks()
     return made
@@ -128,15 +131,19 @@ def function(cursor: Cursor, number: int, column: int) -> Node:
     cursor.take(_COLON)
     if number in _UNHEEDED:
         cursor.rest()
-        return Unheeded(f"FN {number} {_UNHEEDED[number]}", column)
+        return Unheeded(Message("FN {number} {unheeded}", number=number, unheeded=_UNHEEDED[number]), column)
     if number in _JUMPS:
         return _jump(cursor, number, column)
     if number in _READERS:
         return _READERS[number](cursor, column)
     if number == 0 or number in _TWO or number in _ONE or number == _ANGLE:
         return _arithmetic(cursor, number, column)
-    what = f" {_OF_THE_BUILDER[number]}" if number in _OF_THE_BUILDER else ""
-    raise unsupported(cursor.line, column, f"FN {number}{what}")
+    what = (
+        Message(" {of_the_builder}", of_the_builder=_OF_THE_BUILDER[number])
+        if number in _OF_THE_BUILDER
+        else ""
+    )
+    raise unsupported(cursor.line, column, Message("FN {number}{what}", number=number, what=what))
 
 
 def parameter(cursor: Cursor) -> tuple[str, int]:
@@ -146,7 +153,9 @@ def parameter(cursor: Cursor) -> tuple[str, int]:
         raise cursor.expected("Expected a Q parameter")
     kind, number = match.group(1), int(match.group(2)[:6])
     if number > HIGHEST[kind]:
-        text = f"{kind} parameters go up to {kind}{HIGHEST[kind]}."
+        text = Message(
+            "{kind} parameters go up to {kind2}{highest}.", kind=kind, kind2=kind, highest=HIGHEST[kind]
+        )
         raise syntax(cursor.line, column, text, "Use another parameter.")
     return kind, number
 
@@ -154,7 +163,7 @@ def parameter(cursor: Cursor) -> tuple[str, int]:
 def _target(cursor: Cursor) -> tuple[str, int]:
     kind, number = parameter(cursor)
     if cursor.take(_EQUALS) is None:
-        raise cursor.expected(f"Expected '=' after {kind}{number}")
+        raise cursor.expected(Message("Expected '=' after {kind}{number}", kind=kind, number=number))
     return kind, number
 
 
@@ -171,7 +180,7 @@ def _arithmetic(cursor: Cursor, number: int, column: int) -> Assign:
             _demand(cursor, word, number)
             made = Operation(name, (made, _operand(cursor, q)), column)
     if not cursor.done:
-        raise cursor.expected(f"Unexpected word in FN {number}")
+        raise cursor.expected(Message("Unexpected word in FN {number}", number=number))
     return Assign(q, made, column, kind)
 
 
@@ -187,13 +196,13 @@ def _demand(cursor: Cursor, word: str, number: int) -> None:
     else:
         found = word if cursor.take(re.compile(re.escape(word))) else None
     if found is None:
-        raise cursor.expected(f"FN {number} needs {word}")
+        raise cursor.expected(Message("FN {number} needs {word}", number=number, word=word))
 
 
 def _jump(cursor: Cursor, number: int, column: int) -> Jump:
     word, name = _JUMPS[number]
     if not cursor.take(re.compile(r"IF")):
-        raise cursor.expected(f"FN {number} needs IF")
+        raise cursor.expected(Message("FN {number} needs IF", number=number))
     if (texts := _texts(cursor, number, word)) is not None:
         condition: Formula = Number(1.0 if number == _EQUAL else 0.0)
         return _whole_jump(cursor, condition, texts)
@@ -270,7 +279,7 @@ def _place(cursor: Cursor, function: int) -> tuple[Formula, Formula, Formula | N
         if cursor.take(re.compile(rf"{word}(?=\s*[+\-0-9Q])")):
             found[word] = _operand(cursor, 0)
     if "ID" not in found or "NR" not in found:
-        raise cursor.expected(f"FN {function} needs ID and NR")
+        raise cursor.expected(Message("FN {function} needs ID and NR", function=function))
     return found["ID"], found["NR"], found.get("IDX")
 
 

@@ -29,6 +29,7 @@ from core.language.klartext.klartext_nodes import (
     Value,
 )
 from core.language.klartext.line_cursor import Cursor, axis_words, doubled
+from core.message import Message
 
 _PROGRAM = re.compile(r"(?:(\S.*?)\s+)?(MM|INCH)\s*$")
 _PART = re.compile(r"0\.([12])(?![0-9])")
@@ -59,7 +60,10 @@ def _named(cursor: Cursor, what: str) -> tuple[str, bool]:
         return cursor.rest(), False
     if match is None:
         raise syntax(
-            cursor.line, cursor.column, f"{what} needs MM or INCH.", "Write the unit after the name."
+            cursor.line,
+            cursor.column,
+            Message("{what} needs MM or INCH.", what=what),
+            "Write the unit after the name.",
         )
     name = cursor.text[cursor.at : cursor.at + len(match.group(1) or "")]
     cursor.rest()
@@ -95,15 +99,15 @@ def blank_form(cursor: Cursor) -> BlankForm | RoundBlank | Unheeded:
         return _round_blank(cursor)
     if form := cursor.keyword("ROTATION", "FILE"):
         cursor.rest()
-        return Unheeded(f"BLK FORM {form}", column)
+        return Unheeded(Message("BLK FORM {rest}", rest=form), column)
     part = cursor.take(_PART)
     if part is None:
-        raise unsupported(cursor.line, cursor.column, f"BLK FORM {cursor.rest()}".strip())
+        raise unsupported(cursor.line, cursor.column, Message("BLK FORM {rest}", rest=cursor.rest()).strip())
     axis = ""
     if part.group(1) == "1":
         found = cursor.take(_AXIS)
         if found is None or found.group(1) not in "XYZ":
-            raise cursor.expected("BLK FORM 0.1 needs the tool axis", "Write Z after 0.1.")
+            raise cursor.expected("BLK FORM 0.1 needs the tool axis", "Write Z after BLK FORM 0.1.")
         axis = found.group(1)
     corner = axis_words(cursor, "XYZ", incremental=part.group(1) == "2")
     _demand_all(cursor, corner)
@@ -113,7 +117,10 @@ def blank_form(cursor: Cursor) -> BlankForm | RoundBlank | Unheeded:
 def _demand_all(cursor: Cursor, corner: tuple[AxisWord, ...]) -> None:
     missing = [axis for axis in "XYZ" if axis not in {word.axis for word in corner}]
     if missing:
-        raise cursor.expected(f"{', '.join(missing)} is missing", "Write X, Y and Z for the corner.")
+        raise cursor.expected(
+            Message("{missing} is missing", missing=", ".join(missing)),
+            ("Write the X, Y and Z coordinates of the corner."),
+        )
     if not cursor.done:
         raise cursor.expected("Unexpected word in BLK FORM")
 
@@ -154,8 +161,12 @@ def tool_call(cursor: Cursor) -> ToolCall:
 def _demand_no_index(cursor: Cursor) -> None:
     """Raises ProgramError for 5.1, another edge of tool 5: the tool table has no such row here."""
     if found := _INDEXED.match(cursor.upper, cursor.at):
-        text = f"The tool table has no tool {found.group()}: it has one row per tool, without an index."
-        hint = "Give this edge its own table row and tool number."
+        text = Message(
+            "The tool table does not contain tool {word} because it has one row per tool and "
+            "does not use an index.",
+            word=found.group(),
+        )
+        hint = "Give this cutting edge its own table row and tool number."
         raise fault(cursor.line, cursor.column, TOOL_UNKNOWN, text, hint)
 
 
@@ -280,7 +291,7 @@ def selection(kind: str) -> Callable[[Cursor, int], Selection]:
     def read(cursor: Cursor, column: int) -> Selection:
         name = cursor.text_name() or cursor.rest().strip('"')
         if not name:
-            raise cursor.expected(f"SEL {kind} needs a file name")
+            raise cursor.expected(Message("SEL {kind} needs a file name", kind=kind))
         return Selection(kind, name, column)
 
     return read
@@ -293,8 +304,8 @@ def touch_probe(cursor: Cursor, column: int) -> ProgramError:
     """The error for ``TCH PROBE``: there is no touch probe on any machine."""
     cursor.keyword("TCH PROBE")
     match = cursor.take(_PROBE)
-    what = f"TCH PROBE {match.group()}" if match else "TCH PROBE"
-    text = f"{what} needs a touch probe, but this machine does not have one."
+    what = Message("TCH PROBE {word}", word=match.group()) if match else "TCH PROBE"
+    text = Message("{what} needs a touch probe, but this machine does not have one.", what=what)
     hint = "Touch off by hand on the Jog page, and remove the block."
     return fault(cursor.line, column, NO_PROBE, text, hint)
 
@@ -348,5 +359,5 @@ def function(cursor: Cursor, column: int) -> TipControl | Unheeded | CycleLine:
     for words in _STEERS_NOTHING:
         if cursor.keyword(words):
             cursor.rest()
-            return Unheeded(f"FUNCTION {words}", column)
-    raise unsupported(cursor.line, column, f"FUNCTION {cursor.rest()}".strip())
+            return Unheeded(Message("FUNCTION {rest}", rest=words), column)
+    raise unsupported(cursor.line, column, Message("FUNCTION {rest}", rest=cursor.rest()).strip())

@@ -15,6 +15,7 @@ from core.language.klartext.klartext_nodes import (
     TextRead,
 )
 from core.language.klartext.line_cursor import Cursor
+from core.message import Message
 
 _HIGHEST = 1999
 _TARGET = re.compile(r"QS\s*([0-9]+)")
@@ -57,7 +58,7 @@ def _one(cursor: Cursor) -> tuple[int, tuple[TextPart, ...]]:
     """The number of a text and its parts."""
     number = _number(cursor)
     if cursor.take(_EQUALS) is None:
-        raise cursor.expected(f"Expected '=' after QS{number}")
+        raise cursor.expected(Message("Expected '=' after QS{number}", number=number))
     parts = [part(cursor)]
     while cursor.take(_AND):
         parts.append(part(cursor))
@@ -70,7 +71,7 @@ def _number(cursor: Cursor) -> int:
         raise cursor.expected("Expected a string parameter", "Write QS and a number.")
     number = int(match.group(1)[:6])
     if number > _HIGHEST:
-        message = f"QS parameters go up to QS{_HIGHEST}."
+        message = Message("The highest QS parameter is QS{highest}.", highest=_HIGHEST)
         raise syntax(cursor.line, column, message, "Use another parameter.")
     return number
 
@@ -90,7 +91,9 @@ def part(cursor: Cursor) -> TextPart:
 def _made(cursor: Cursor, name: str, column: int) -> TextPart:
     if name not in {"TOCHAR", "SUBSTR"}:
         if cursor.take(_REST_OF_BRACKETS) is None:
-            raise cursor.expected(f"The closing parenthesis of {name} is missing", "Write ) at the end.")
+            raise cursor.expected(
+                Message("The closing parenthesis of {name} is missing", name=name), "Write ) at the end."
+            )
         return TextPart(name, column=column)
     _bracket(cursor, name, _OPEN)
     if name == "TOCHAR":
@@ -108,12 +111,12 @@ def _made(cursor: Cursor, name: str, column: int) -> TextPart:
 
 def _bracket(cursor: Cursor, name: str, sign: re.Pattern[str]) -> None:
     if cursor.take(sign) is None:
-        raise cursor.expected(f"{name} needs its arguments in parentheses")
+        raise cursor.expected(Message("{name} needs its arguments in parentheses", name=name))
 
 
 def _named(cursor: Cursor, word: re.Pattern[str], name: str, written: str) -> int:
     if cursor.take(word) is None:
-        raise cursor.expected(f"{name} needs {written}QS and a number")
+        raise cursor.expected(Message("{name} needs {written}QS and a number", name=name, written=written))
     return _number(cursor)
 
 
@@ -134,7 +137,8 @@ def read(cursor: Cursor, kind: str, q: int) -> TextRead | None:
     _bracket(cursor, name, _CLOSED)
     if not cursor.done:
         raise cursor.expected(
-            f"{name} cannot be part of a longer formula", "Continue the calculation in a separate block."
+            Message("{name} cannot be part of a longer formula", name=name),
+            "Continue the calculation in a separate block.",
         )
     return TextRead(kind, q, name, source, sought, begin, column)
 
@@ -149,7 +153,7 @@ _RESULT = re.compile(r"(QS|Q[LR]?)\s*([0-9]{1,4})")
 def open_table(cursor: Cursor, column: int) -> TableOpen:
     """Behind ``FN 26:``: ``TABOPEN TNC:\\DIR\\TAB1.TAB``."""
     if not cursor.keyword("TABOPEN"):
-        raise cursor.expected("FN 26 needs TABOPEN and the file")
+        raise cursor.expected("FN 26 needs TABOPEN and a file name")
     name = cursor.rest().strip('"')
     if not name:
         raise cursor.expected("TABOPEN needs a table name")
@@ -162,7 +166,7 @@ def read_table(cursor: Cursor, column: int) -> TableRead:
         raise cursor.expected("FN 28 needs TABREAD")
     kind, number = _result(cursor)
     if cursor.take(_EQUALS) is None:
-        raise cursor.expected("TABREAD needs = and a row")
+        raise cursor.expected("TABREAD needs = and a row number")
     return TableRead(kind, number, *_cells(cursor), column)
 
 
@@ -186,9 +190,9 @@ def _result(cursor: Cursor) -> tuple[str, int]:
 
 def _cells(cursor: Cursor) -> tuple[Formula, tuple[str, ...]]:
     """A row and the names of its columns."""
-    row = cursor.value("The row").formula
+    row = cursor.value("The row number").formula
     if cursor.take(_SLASH) is None or not (names := cursor.quoted()):
         raise cursor.expected(
-            "The column names are missing", ('Write the column names after the row, as in 6/"X,Y".')
+            "The column names are missing", ('Write the column names after the row number, as in 6/"X,Y".')
         )
     return row, tuple(name.strip().upper() for name in names.split(","))

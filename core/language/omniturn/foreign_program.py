@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from core.language.diagnostics import Diagnostic, Severity
+from core.message import Message
 
 _COMMENT = re.compile(r"\([^)]*\)?")
 _MOST_LINES = 400  # a program shows on its first lines for which control it was written
@@ -39,6 +40,8 @@ def recognize(lines: Sequence[str]) -> Diagnostic | None:
         control = "Fanuc"
     if not control:
         return None
-    message = f"This program was written for a {control} control. TurnDesk runs OmniTurn programs."
+    message = Message(
+        "This program was written for a {control} control. TurnDesk runs OmniTurn programs.", control=control
+    )
     hint = "Rewrite the program with the codes of this control; each finding below names the code to use."
     return Diagnostic(1, 0, Severity.WARNING, "other-control-program", message, hint)

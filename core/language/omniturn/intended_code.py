@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from core.language.omniturn import other_controls
+from core.message import Message
 
 _NUMBER = r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))"
 
@@ -39,7 +40,7 @@ def _always(hint: str) -> Callable[[re.Match[str]], str]:
 def _dwell(match: re.Match[str]) -> str:
     """P counts milliseconds, X and U count seconds."""
     seconds = float(match[2]) / (1000.0 if match[1] == "P" and "." not in match[2] else 1.0)
-    return f"Write G04F{_plain(seconds)}."
+    return Message("Write G04F{seconds}.", seconds=_plain(seconds))
 
 
 def _plain(value: float) -> str:
@@ -50,7 +51,7 @@ def _plain(value: float) -> str:
 
 def _decimal(match: re.Match[str]) -> str:
     letter, value = match.string[match.start() - 1], int(match[1]) / max(int(match[2]), 1)
-    return f"Write {letter}{_plain(value)}."
+    return Message("Write {letter}{plain}.", letter=letter, plain=_plain(value))
 
 
 _ROUGHING = "Write G75InUnFn, then the contour and RF."
@@ -58,7 +59,10 @@ _THREAD = "Write G33XnZnInKn."
 _PATTERNS = (
     _Pattern(
         re.compile(r"^(?=O(?:<|[0-9]+(?:SUB|CALL|IF|WHILE|REPEAT|ENDSUB|ENDIF|ENDWHILE|ENDREPEAT|RETURN)))"),
-        ("LinuxCNC O words are not supported; on this control a subroutine is }n … M99, and M98Pn calls it."),
+        (
+            "LinuxCNC O words are not supported. On this control, write a subroutine as }n … M99 "
+            "and call it with M98Pn."
+        ),
         _always("Write }n, M99 and M98Pn."),
     ),
     _Pattern(
@@ -69,7 +73,7 @@ _PATTERNS = (
     _Pattern(
         re.compile(r"(?=G[78](?![0-9]))"),
         "LinuxCNC codes G7 and G8 are G72 (diameters) and G73 (radii) on this control.",
-        lambda match: f"Write {'G72' if match.string[match.end() + 1] == '7' else 'G73'}.",
+        lambda match: Message("Write {name}.", name="G72" if match.string[match.end() + 1] == "7" else "G73"),
     ),
     _Pattern(
         re.compile(rf"(?<=G04)([PXU]){_NUMBER}"),
@@ -79,7 +83,7 @@ _PATTERNS = (
     _Pattern(
         re.compile(r"(?<=G70)(?=.*[PQ])"),
         "On this control, G70 selects inches; the last pass of G75 finishes a contour.",
-        _always("Delete the line: G75 ends with a pass along the contour."),
+        _always("Delete the line, because G75 ends with a pass along the contour."),
     ),
     _Pattern(
         re.compile(r"(?<=G71)(?=.*[UWPQ])"),
@@ -93,7 +97,7 @@ _PATTERNS = (
     ),
     _Pattern(
         re.compile(r"(?<=G73)(?=.*[UWPQ])"),
-        "On this control, G73 selects radii; G75 roughs to a contour.",
+        "On this control, G73 selects radius programming; G75 roughs to a contour.",
         _always(_ROUGHING),
     ),
     _Pattern(
@@ -114,17 +118,17 @@ _PATTERNS = (
     _Pattern(
         re.compile(rf"(?<=G8[13])[^Q]*Q{_NUMBER}"),
         "The peck depth is K here.",
-        lambda match: f"Write K{match[1]} in G83.",
+        lambda match: Message("Write K{word} in G83.", word=match[1]),
     ),
     _Pattern(
         re.compile(r"(?<=G92)(?=S[0-9.]+$)"),
         ("G92 presets the position here; the maximum rpm for constant surface speed is G77."),
-        lambda match: f"Write G77{match.string[match.end() :]}.",
+        lambda match: Message("Write G77{string}.", string=match.string[match.end() :]),
     ),
     _Pattern(
         re.compile(r"(?<=M98)P[0-9]+L([0-9]+)"),
         "M98 has no repeat count.",
-        lambda match: f"Write LS{match[1]} before the call and LF after it.",
+        lambda match: Message("Write LS{word} before the call and LF after it.", word=match[1]),
     ),
     _Pattern(
         re.compile(r"(?<=[XZIKRFU])([0-9]+)/([0-9]+)(?![0-9])"),
@@ -143,7 +147,9 @@ def intent_of(code: str) -> Intent | None:
     for found in _CODE.finditer(code):
         habit = other_controls.meaning_here(found[0])
         if habit is not None:
-            message = f"{found[0]} is not a code of this control. {habit[0]}"
+            message = Message(
+                ("{word} is not a valid code on this control. {habit}"), word=found[0], habit=habit[0]
+            )
             return Intent(found.start(), "g-unknown", message, habit[1])
     return None
 

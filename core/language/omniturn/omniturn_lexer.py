@@ -11,6 +11,7 @@ from core.language.omniturn import other_controls, word_faults
 from core.language.omniturn.intended_code import intent_of, with_digit_one
 from core.language.omniturn.omniturn_words import BARE, Line, Word
 from core.language.typography import ascii_upper
+from core.message import Message
 
 LONGEST_LINE = 8192
 
@@ -90,8 +91,8 @@ def _letter_l(number: int, text: str) -> Diagnostic | None:
         return None
     at = next(i for i, (was, now) in enumerate(zip(code, fixed, strict=True)) if was != now)
     word = next(found for found in _WORD.finditer(ascii_upper(fixed)) if found.start() <= at < found.end())
-    message = f"{code[word.start() : word.end()]}: letter l in a number."
-    return refusal(number, at + 1, "letter-l", message, f"Write {word[0]}.")
+    message = Message("{code}: letter l in a number.", code=code[word.start() : word.end()])
+    return refusal(number, at + 1, "letter-l", message, Message("Write {name}.", name=word[0]))
 
 
 def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:

@@ -5,60 +5,61 @@ from __future__ import annotations
 import re
 
 from core.language.typography import typed
+from core.message import Message
 
-LOOK_UP = "See the list of codes: Shift+F1 in the editor."
+LOOK_UP = "For the list of codes, press Shift+F1 in the editor."
 """The remedy where no other one can be named; in the editor, Shift+F1 opens the list."""
 
 _HERE: dict[str, tuple[str, str]] = {
-    "G05": ("This control has no code for high-speed modes.", "Remove it from the program."),
+    "G05": ("This control has no code for high-speed modes.", "Remove this text from the program."),
     "G07": ("On this control, (~PLZC) starts milling around the part.", "Write (~PLZC) … (END)."),
     "G12": ("On this control, (~PLXC) starts face milling.", "Write (~PLXC) … (END)."),
     "G13": ("On this control, (END) ends face milling.", "Write (END)."),
-    "G17": ("On this control, the plane is always XZ.", "Remove it from the program."),
-    "G18": ("On this control, the plane is always XZ.", "Remove it from the program."),
-    "G19": ("On this control, the plane is always XZ.", "Remove it from the program."),
+    "G17": ("On this control, the plane is always XZ.", "Remove this text from the program."),
+    "G18": ("On this control, the plane is always XZ.", "Remove this text from the program."),
+    "G19": ("On this control, the plane is always XZ.", "Remove this text from the program."),
     "G20": ("On this control, G70 selects inches.", "Write G70."),
     "G21": ("On this control, G71 selects metric units.", "Write G71."),
     "G27": (
-        "This control has no reference point to move to.",
+        "This control has no code that moves to a reference point.",
         ("Move to an X and Z position clear of the part."),
     ),
     "G28": (
-        "This control has no reference point to move to.",
+        "This control has no code that moves to a reference point.",
         ("Move to an X and Z position clear of the part."),
     ),
     "G30": (
-        "This control has no reference point to move to.",
+        "This control has no code that moves to a reference point.",
         ("Move to an X and Z position clear of the part."),
     ),
-    "G32": ("On this control, G33 cuts a thread with all its passes.", "Write G33XnZnInKn."),
-    "G43": ("On this control, T selects the tool offset.", "Write T and the tool's number."),
+    "G32": ("On this control, one G33 line cuts all passes of a thread.", "Write G33XnZnInKn."),
+    "G43": ("On this control, T selects the tool offset.", "Write T and the tool number."),
     "G49": ("On this control, T0 cancels the tool offset.", "Write T0."),
     "G50": (
         "On this control, G77Sn sets the maximum rpm under G96, and G92 presets the position.",
         "Write G77Sn or G92.",
     ),
-    "G53": ("On this control, machine coordinates are active with T0.", "Write T0 before the move."),
+    "G53": ("On this control, T0 selects machine coordinates.", "Write T0 before the move."),
     "G54": (
         "On this control, part zero is in the tool offset, and G10 sets a work shift.",
-        "Write T, with G10XnZn before it for a work shift.",
+        "Write T; for a work shift, write G10XnZn before T.",
     ),
-    "G61": ("This control has no code for the cornering mode.", "Remove it from the program."),
-    "G64": ("This control has no code for the cornering mode.", "Remove it from the program."),
+    "G61": ("This control has no code for the cornering mode.", "Remove this text from the program."),
+    "G64": ("This control has no code for the cornering mode.", "Remove this text from the program."),
     "G65": ("This control has no macros; M98Pn calls a subroutine.", "Write M98Pn."),
     "G66": ("This control has no macros; M98Pn calls a subroutine.", "Write M98Pn."),
     "G80": (
         "On this control, a cycle acts only on its own line and needs no cancel code.",
-        ("Remove it from the program."),
+        ("Remove this text from the program."),
     ),
     "G82": ("On this control, G81 drills, G83 drills in pecks and G04 dwells.", "Write G81 or G83."),
     "G84": (
         ("This control has no tapping cycle; tapping is programmed as G95, feed in, M04 and feed out."),
-        "Write the separate moves.",
+        "Write separate moves instead.",
     ),
     "G85": (
         "This control has no boring cycle; boring is programmed as separate moves.",
-        "Write the separate moves.",
+        "Write separate moves instead.",
     ),
     "G98": ("On this control, G94 selects feed per minute.", "Write G94."),
     "G99": ("On this control, G95 selects feed per revolution.", "Write G95."),
@@ -67,7 +68,7 @@ _HERE: dict[str, tuple[str, str]] = {
     "M17": ("On this control, M99 ends a subroutine.", "Write M99."),
     "M29": (
         ("This control has no tapping cycle; tapping is programmed as G95, feed in, M04 and feed out."),
-        "Remove it from the program.",
+        "Remove this text from the program.",
     ),
     "M60": ("On this control, M00 stops the program.", "Write M00."),
     "H": ("On this control, T selects the tool offset, and D selects a second one.", "Write T or D."),
@@ -87,16 +88,28 @@ _SIGNS: dict[str, tuple[str, str]] = {
         "the character that other controls use for a comment or the end of a line",
         "Put the comment in parentheses.",
     ),
-    "#": ("for variables, which this control does not support", "Write the number instead."),
-    "[": ("for calculations, which this control does not support", "Write the number instead."),
-    "]": ("for calculations, which this control does not support", "Write the number instead."),
-    "*": ("for calculations, which this control does not support", "Write the number instead."),
-    "=": ("for calculations, which this control does not support", "Write the number instead."),
+    "#": ("a character for variables; this control does not support variables", "Write the actual number."),
+    "[": (
+        ("a character for calculations; this control does not support calculations"),
+        "Write the actual number.",
+    ),
+    "]": (
+        ("a character for calculations; this control does not support calculations"),
+        "Write the actual number.",
+    ),
+    "*": (
+        ("a character for calculations; this control does not support calculations"),
+        "Write the actual number.",
+    ),
+    "=": (
+        ("a character for calculations; this control does not support calculations"),
+        "Write the actual number.",
+    ),
     "%": ("the mark at the start and end of a program transfer", "Delete the character."),
-    "$": ("a character that only other controls use", "Remove it from the program."),
+    "$": ("a character that only other controls use", "Remove this text from the program."),
     ":": (
         ("the character that other controls use for program numbers; this control uses the file name"),
-        ("Remove it from the program."),
+        ("Remove this text from the program."),
     ),
 }
 
@@ -127,8 +140,11 @@ def whole_line(code: str) -> tuple[str, str, str] | None:
         shown = code.strip()
         return (
             "program-number",
-            f"{shown} is a program number for other controls; this control uses the file name.",
-            "Remove it from the program.",
+            Message(
+                "{value} is a program number for other controls; this control uses the file name.",
+                value=shown,
+            ),
+            "Remove this text from the program.",
         )
     return None
 
@@ -141,8 +157,14 @@ def tool(text: str) -> tuple[str, str] | None:
     number, wear = int(match[1]), int(match[2])
     if not 1 <= number <= 32:
         return None
-    also = f", and D{wear} selects a second offset" if wear not in {0, number} else ""
+    also = Message(", and D{wear} selects a second offset", wear=wear) if wear not in {0, number} else ""
     return (
-        f"{text}: on this control, T{number} selects tool {number} with its offset{also}.",
-        f"Write T{number}.",
+        Message(
+            "{text}: on this control, T{number} selects tool {number2} with its offset{also}.",
+            text=text,
+            number=number,
+            number2=number,
+            also=also,
+        ),
+        Message("Write T{number}.", number=number),
     )

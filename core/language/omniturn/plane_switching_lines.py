@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from core.language.diagnostics import program_error
 from core.language.omniturn.omniturn_words import Word
+from core.message import Message
 
 _ENTRY = re.compile(r"\s*\(\s*~\s*(PLXC|PLZC)\s*\)\s*", re.IGNORECASE)
 _BARE_ENTRY = re.compile(r"\s*\(\s*PL[XZ]C\s*\)\s*", re.IGNORECASE)
@@ -21,7 +22,7 @@ _END = re.compile(r"\s*M(?:30|02)\s*(?:\([^()]*\)\s*)?", re.IGNORECASE)
 _LETTERS = frozenset("XYZFGIJHD")
 _MOST = 10_000.0
 _MOST_FEED = 100_000.0
-_HINT = "Between the entry and (END), write only (X Y Z F), (G02 or G03 X Y I J), (H) and (D)."
+_HINT = "Between (~PLXC) or (~PLZC) and (END), write only (X Y Z F), (G02 or G03 X Y I J), (H) and (D)."
 
 
 class PlaneLine(NamedTuple):
@@ -73,12 +74,12 @@ def lex_plane(number: int, text: str) -> PlaneLine:
         word_match = _WORD.match(inside, at)
         if word_match is None:
             shown = inside[at : at + 8].strip()
-            message = f"'{shown}' is not allowed in plane switching."
+            message = Message("'{value}' is not allowed in a plane switching statement.", value=shown)
             raise program_error(number, base + at, "plane-word", message, _HINT)
         word = _word(number, base + at, word_match)
         if word.letter in words:
-            message = f"The line contains {word.letter} twice."
-            raise program_error(number, word.column, "word-twice", message, "Remove one of them.")
+            message = Message("The line contains {letter} twice.", letter=word.letter)
+            raise program_error(number, word.column, "word-twice", message, "Remove one of the two.")
         words[word.letter] = word
         at = word_match.end()
     return _sorted(number, words)
@@ -89,18 +90,24 @@ def _word(number: int, column: int, match: re.Match[str]) -> Word:
     word = Word(letter, float(digits[:32]), column, letter + digits)
     if letter not in _LETTERS:
         raise program_error(
-            number, column, "plane-word", f"{word.text} is not allowed in plane switching.", _HINT
+            number,
+            column,
+            "plane-word",
+            Message("{word} is not allowed in plane switching.", word=word.text),
+            _HINT,
         )
     value = word.value or 0.0
     if letter == "G" and digits not in {"02", "03"}:
-        message = f"{word.text}: the only G codes allowed in plane switching are G02 and G03."
+        message = Message(
+            "{word}: the only G codes allowed in plane switching are G02 and G03.", word=word.text
+        )
         raise program_error(number, column, "plane-word", message, _HINT)
     if len(digits) > 16 or abs(value) > (_MOST_FEED if letter == "F" else _MOST):
         raise program_error(
             number,
             column,
             "out-of-range",
-            f"{word.text} is out of range.",
+            Message("{word} is out of range.", word=word.text),
             ("Look for a missing decimal point."),
         )
     return word
@@ -111,14 +118,20 @@ def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
         raise program_error(number, 1, "plane-word", "The statement is empty.", _HINT)
     for letter in ("H", "D"):
         if letter in words and len(words) > 1:
-            message = f"{letter} cannot be combined with other words."
+            message: str = Message("{letter} cannot be combined with other words.", letter=letter)
             raise program_error(
-                number, words[letter].column, "not-alone", message, (f"Write ({letter}n) alone on a line.")
+                number,
+                words[letter].column,
+                "not-alone",
+                message,
+                (Message("Write ({letter}n) alone on a line.", letter=letter)),
             )
     code = words.get("G")
     for letter in ("I", "J"):
         if letter in words and code is None:
-            message = f"{words[letter].text} belongs to an arc, but the line has no G02 or G03."
+            message = Message(
+                "{words} is an arc center word, but the line has no G02 or G03.", words=words[letter].text
+            )
             raise program_error(
                 number,
                 words[letter].column,
@@ -127,10 +140,18 @@ def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
                 ("Write G02 or G03 on the line; both are one-shot codes."),
             )
         if code is not None and letter not in words:
-            message = f"{letter} is missing: I and J are the coordinates of the arc center."
-            raise program_error(number, code.column, "arc-coordinate-missing", message, f"Add {letter}.")
+            message = Message(
+                "{letter} is missing: I and J are the coordinates of the arc center.", letter=letter
+            )
+            raise program_error(
+                number,
+                code.column,
+                "arc-coordinate-missing",
+                message,
+                Message("Add {letter}.", letter=letter),
+            )
     if code is not None and "Z" in words:
-        message = "An arc in plane switching moves only X and Y."
+        message = "With plane switching active, an arc can move only X and Y."
         raise program_error(
             number, words["Z"].column, "word-unused", message, ("Write the Z move on another line.")
         )

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from core.language.diagnostics import Diagnostic, refusal
 from core.language.omniturn import other_controls
 from core.language.omniturn.omniturn_words import COUNTING, RANGES, Word
+from core.message import Message
 
 _MOST_DIGITS = 15
 _MOST_SHOWN = 40  # characters of a text
@@ -20,7 +21,7 @@ _SIGNS = {
     ),
 }
 _AFTER_NUMBER = {
-    ".": ("two-points", "The number has two decimal points.", "Remove one of them."),
+    ".": ("two-points", "The number has two decimal points.", "Remove one of the two."),
     "+": ("sign-inside", "A sign is in the middle of a number.", "Split the number into two words."),
     "-": ("sign-inside", "A sign is in the middle of a number.", "Split the number into two words."),
 }
@@ -42,7 +43,7 @@ def too_long(line: int, length: int) -> Diagnostic:
         line,
         0,
         "line-too-long",
-        f"The line is too long ({length} characters).",
+        Message("The line is too long ({text_count} characters).", text_count=length),
         ("Split the line into shorter lines."),
     )
 
@@ -50,8 +51,8 @@ def too_long(line: int, length: int) -> Diagnostic:
 def text_outside(line: int, column: int, text: str) -> Diagnostic:
     """Words for a reader that stand among those for the control."""
     shown = text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}…"
-    message = f"'{shown}' is text outside parentheses."
-    return refusal(line, column, "text-outside", message, f"Write ({shown}).")
+    message = Message("'{value}' is text outside parentheses.", value=shown)
+    return refusal(line, column, "text-outside", message, Message("Write ({value}).", value=shown))
 
 
 def slip(line: int, column: int, code: str) -> Diagnostic:
@@ -61,8 +62,10 @@ def slip(line: int, column: int, code: str) -> Diagnostic:
 
 def letter_o(line: int, column: int, word: str) -> Diagnostic:
     """A letter O for a zero: GO2, MO5, XO."""
-    message = f"{word}: letter O in a number."
-    return refusal(line, column, "letter-o", message, f"Write {word.upper().replace('O', '0')}.")
+    message = Message("{word}: letter O in a number.", word=word)
+    return refusal(
+        line, column, "letter-o", message, Message("Write {name}.", name=word.upper().replace("O", "0"))
+    )
 
 
 def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
@@ -72,7 +75,7 @@ def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
             line,
             column,
             "lone-sign",
-            f"{letter} has a sign but no number.",
+            Message("{letter} has a sign but no number.", letter=letter),
             ("Write a number after the sign."),
         )
     if follower == ".":
@@ -80,13 +83,17 @@ def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
             line,
             column,
             "lone-point",
-            f"{letter} has a decimal point but no digits.",
+            Message("{letter} has a decimal point but no digits.", letter=letter),
             ("Write the digits of the number."),
         )
     if letter not in RANGES and letter not in {"LF", "RF", "O"}:
         return _unknown_letter(line, column, letter)
     return refusal(
-        line, column, "number-missing", f"{letter} has no number.", (f"Write a number after {letter}.")
+        line,
+        column,
+        "number-missing",
+        Message("{letter} has no number.", letter=letter),
+        (Message("Write a number after {letter}.", letter=letter)),
     )
 
 
@@ -107,12 +114,14 @@ def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnos
     habit = other_controls.sign(sign)
     if habit is not None:
         what, hint = habit
-        return refusal(line, column, "character", f"'{shown}' is {what}.", hint)
+        return refusal(
+            line, column, "character", Message("'{value}' is {what}.", value=shown, what=what), hint
+        )
     return refusal(
         line,
         column,
         "character",
-        f"'{shown}' is not part of this control's language.",
+        Message("'{value}' is not valid in a program for this control.", value=shown),
         ("Put comments in parentheses."),
     )
 
@@ -131,15 +140,15 @@ def of_word(line: int, word: Word, digits: str | None) -> Diagnostic | None:
             line,
             column,
             "number-unwanted",
-            f"{letter} does not accept a number.",
-            ("Remove it from the program."),
+            Message("{letter} does not accept a number.", letter=letter),
+            ("Remove this text from the program."),
         )
     if sum(sign.isdigit() for sign in digits) > _MOST_DIGITS:
         return refusal(
             line,
             column,
             "number-too-long",
-            f"{letter} has more than {_MOST_DIGITS} digits.",
+            Message("{letter} has more than {most_digits} digits.", letter=letter, most_digits=_MOST_DIGITS),
             "Round the number.",
         )
     return _size(line, word, digits)
@@ -149,26 +158,36 @@ def _tool(text: str, _value: float) -> tuple[str, str, str]:
     habit = other_controls.tool(text)
     return (
         "tool-number",
-        *(habit or (f"{text}: tools are T1 to T32.", "Correct the tool number; T0 cancels the tool.")),
+        *(
+            habit
+            or (
+                Message("{text}: tools are T1 to T32.", text=text),
+                "Correct the tool number; T0 cancels the tool.",
+            )
+        ),
     )
 
 
 def _offset(text: str, _value: float) -> tuple[str, str, str]:
     return (
         "offset-number",
-        f"{text}: offset numbers are 1 to 32.",
+        Message("{text}: offset numbers are 1 to 32.", text=text),
         ("Correct the offset number; D0 cancels the offset."),
     )
 
 
 def _no_feed(text: str, value: float) -> tuple[str, str, str] | None:
     if value < 0:
-        return "out-of-range", f"{text}: a feed rate cannot be negative.", "Remove the sign."
+        return (
+            "out-of-range",
+            Message("{text}: a feed rate cannot be negative.", text=text),
+            "Remove the sign.",
+        )
     if value:
         return None
     return (
         "out-of-range",
-        f"{text}: with a feed of 0 nothing moves; G00 is the rapid.",
+        Message("{text}: the axes do not move at a feed rate of 0; G00 programs a rapid.", text=text),
         ("Write the feed rate."),
     )
 
@@ -188,7 +207,7 @@ def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
             line,
             column,
             "whole-number",
-            f"{text} must be a whole number without a sign.",
+            Message("{text} must be a whole number without a sign.", text=text),
             ("Round the number and remove any sign."),
         )
     if value is None or least <= value <= most:
@@ -197,13 +216,24 @@ def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
     if special is not None and (fault := special(text, value)) is not None:
         return refusal(line, column, *fault)
     if letter == "LS":
-        message = f"{text} is out of range: the loop count must be from {least:g} to {most:,.0f}."
+        message = Message(
+            "{text} is out of range: the loop count must be from {minimum} to {maximum}.",
+            text=text,
+            minimum=f"{least:g}",
+            maximum=f"{most:,.0f}",
+        )
         return refusal(line, column, "loop-count", message, "Correct the loop count.")
     return refusal(
         line,
         column,
         "out-of-range",
-        f"{text} is out of range: {letter} must be from {least:g} to {most:g}.",
+        Message(
+            "{text} is out of range: {letter} must be from {minimum} to {maximum}.",
+            text=text,
+            letter=letter,
+            minimum=f"{least:g}",
+            maximum=f"{most:g}",
+        ),
         "Look for a missing decimal point.",
     )
 
@@ -214,12 +244,16 @@ def _two_digits(line: int, word: Word, digits: str) -> Diagnostic | None:
     code = f"{word.letter.lower()}-digits"
     value = word.value if word.value is not None and 0 <= word.value < 10 else None
     hint = (
-        f"Write {word.letter}{int(value):02d}."
+        Message("Write {letter}{plain}.", letter=word.letter, plain=f"{int(value):02d}")
         if value is not None and digits.isdigit()
         else "Write two digits."
     )
     return refusal(
-        line, word.column, code, (f"{word.text}: {word.letter} must have exactly two digits."), hint
+        line,
+        word.column,
+        code,
+        (Message("{word}: {letter} must have exactly two digits.", word=word.text, letter=word.letter)),
+        hint,
     )
 
 
@@ -235,7 +269,11 @@ def _unknown_letter(line: int, column: int, letter: str) -> Diagnostic:
     habit = other_controls.meaning_here(letter)
     if habit is not None:
         return refusal(
-            line, column, "unknown-letter", f"{letter} is not a word of this control. {habit[0]}", habit[1]
+            line,
+            column,
+            "unknown-letter",
+            Message("{letter} is not a valid word on this control. {habit}", letter=letter, habit=habit[0]),
+            habit[1],
         )
-    said = f"{letter} is not a word of this control."
+    said = Message("{letter} is not a valid word on this control.", letter=letter)
     return refusal(line, column, "unknown-letter", said, other_controls.LOOK_UP)

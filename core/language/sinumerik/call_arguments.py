@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from core.language.formulas import Formula, FormulaError, FormulaReader
 from core.language.sinumerik.sinumerik_formulas import GRAMMAR
+from core.message import Message
 
 _QUOTED = re.compile(r'\s*"([^"]*)"\s*(?=[,)])')
 _AXIS = re.compile(r"\s*([A-CU-Z][0-9]?)\s*(?=[,)])")
@@ -61,11 +62,13 @@ def read_arguments(text: str, written: str, at: int) -> tuple[tuple[Argument, ..
         match = _NEXT.match(text, at)
         if match is None:
             what = (
-                "has no closing parenthesis"
-                if at >= len(text)
-                else ("contains something that is not an argument")
+                "has no closing parenthesis" if at >= len(text) else ("contains text that is not an argument")
             )
-            raise FormulaError(at if at < len(text) else start, f"The argument list {what}", "Write ( , , ).")
+            raise FormulaError(
+                at if at < len(text) else start,
+                Message("The argument list {what}", what=what),
+                "Write ( , , ).",
+            )
         at = match.end()
         if match[1] == ")":
             return (() if len(found) == 1 and not found[0].given else tuple(found)), at

@@ -40,13 +40,16 @@ CYCLES: Mapping[str, tuple[str, ...]] = {
 }
 """Parameters as the maker's manuals name them, in the order of the call; what begins with _ is newer."""
 
-_MASK = "newer controls generate this cycle from an input form, and its digits differ between versions"
+_MASK = (
+    "newer controls generate this cycle from an input form, and the coding of its "
+    "parameters differs between software versions"
+)
 _MILL = "pockets and slots are not supported; write their path as moves of X, Z and C"
 _PROBE = "this lathe has no probe for measuring cycles"
 _SWIVEL = "this lathe has no swivel head; remove this cycle"
 
 CYCLES_OUTSIDE: Mapping[str, str] = {
-    "CYCLE62": f"{_MASK}; name the contour in CYCLE95",
+    "CYCLE62": f"{_MASK}; specify the contour in CYCLE95",
     "CYCLE930": f"{_MASK}; write the groove with CYCLE93",
     **dict.fromkeys(("CYCLE950", "CYCLE951", "CYCLE952"), f"{_MASK}; write the contour with CYCLE95"),
     **dict.fromkeys(("LONGHOLE", "SLOT1", "SLOT2", "POCKET1", "POCKET2", "POCKET3", "POCKET4"), _MILL),

@@ -6,6 +6,8 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple
 
+from core.message import Message
+
 
 class Habit(NamedTuple):
     """Something that is written otherwise here: where it begins (an index), what it is, what to write."""
@@ -32,84 +34,107 @@ def _seconds(letter: str, number: str) -> str:
 
 def _dwell(match: re.Match[str]) -> tuple[str, str]:
     letter, number = match["letter"], match["number"]
-    text = f"{letter}{number} is the dwell time in ISO programs; on this control it is F, in seconds."
-    return text, f"Write G4 F{_seconds(letter, number)}."
+    text = Message(
+        "{letter}{number} is the dwell time in ISO programs; on this control, F is the dwell "
+        "time in seconds.",
+        letter=letter,
+        number=number,
+    )
+    return text, Message("Write G4 F{letter}.", letter=_seconds(letter, number))
 
 
 def _radius(match: re.Match[str]) -> tuple[str, str]:
     number = match["number"].rstrip(".")
-    return f"R{number}: on this control, CR={number} is the radius of an arc.", f"Write CR={number}."
+    return Message(
+        "R{number}: on this control, CR={number2} is the radius of an arc.", number=number, number2=number
+    ), Message("Write CR={number}.", number=number)
 
 
 def _corner(match: re.Match[str]) -> tuple[str, str]:
     number = match["number"].rstrip(".")
     word = f"CHR={number}" if match["letter"] == "C" else f"RND={number}"
-    return f"{match['word']}: on this control, {word} programs the corner.", f"Write {word}."
+    return Message(
+        "{match}: on this control, {word} programs the corner.", match=match["word"], word=word
+    ), Message("Write {name}.", name=word)
 
 
 def _variable(match: re.Match[str]) -> tuple[str, str]:
-    return f"#{match['number']}: on this control, variables are R parameters.", f"Write R{match['number']}."
+    return Message("#{word}: on this control, variables are R parameters.", word=match["number"]), Message(
+        "Write R{word}.", word=match["number"]
+    )
 
 
 def _home(match: re.Match[str]) -> tuple[str, str]:
     return (
-        f"{match['word']}: on this control, G74 moves to home and G75 to a fixed point.",
+        Message("{word}: on this control, G74 moves to home and G75 to a fixed point.", word=match["word"]),
         "Write G74 X1=0 Z1=0.",
     )
 
 
 def _speed_limit(match: re.Match[str]) -> tuple[str, str]:
     return (
-        f"{match['word']}: on this control, LIMS= sets the maximum spindle speed.",
-        f"Write LIMS={match['number'].rstrip('.')}.",
+        Message("{word}: on this control, LIMS= sets the maximum spindle speed.", word=match["word"]),
+        Message("Write LIMS={word}.", word=match["number"].rstrip(".")),
     )
 
 
 def _preset(match: re.Match[str]) -> tuple[str, str]:
     return (
-        f"{match['word']} presets a position in ISO programs; on this control, TRANS shifts the zero point."
+        Message(
+            "{word} presets a position in ISO programs; on this control, TRANS shifts the zero point.",
+            word=match["word"],
+        )
     ), "Write TRANS."
 
 
 def _cycle(match: re.Match[str]) -> tuple[str, str]:
     code = int(match["code"])
     name = {74: "CYCLE83", 75: "CYCLE93", 76: "CYCLE97", 32: "G33", 92: "CYCLE97"}.get(code, "CYCLE95")
-    return f"On this control, ISO code G{code} is {name}.", f"Write {name}."
+    return Message("On this control, ISO code G{code} is {name}.", code=code, name=name), Message(
+        "Write {name}.", name=name
+    )
 
 
 def _inches(match: re.Match[str]) -> tuple[str, str]:
     name = "G70" if match["code"] == "20" else "G71"
-    return f"G{match['code']}: on this control, {name} sets the unit.", f"Write {name}."
+    return Message("G{word}: on this control, {name} sets the unit.", word=match["code"], name=name), Message(
+        "Write {name}.", name=name
+    )
 
 
 def _feed(match: re.Match[str]) -> tuple[str, str]:
     name = "G94" if match["code"] == "98" else "G95"
-    return f"G{match['code']}: on this control, {name} sets the feed type.", f"Write {name}."
+    return Message(
+        "G{word}: on this control, {name} sets the feed type.", word=match["code"], name=name
+    ), Message("Write {name}.", name=name)
 
 
 def _call(match: re.Match[str]) -> tuple[str, str]:
     number = match["number"]
-    return f"{match['word']}: on this control, a subprogram is called by name.", f"Write L{number}."
+    return Message("{word}: on this control, a subprogram is called by name.", word=match["word"]), Message(
+        "Write L{number}.", number=number
+    )
 
 
 def _program(match: re.Match[str]) -> tuple[str, str]:
-    return f"{match['word']}: on this control, the file name is the program name.", (
-        "Remove it from the program."
+    return Message("{word}: on this control, the file name is the program name.", word=match["word"]), (
+        "Remove this text from the program."
     )
 
 
 def _comment(match: re.Match[str]) -> tuple[str, str]:
     del match
-    return "comments in parentheses are for ISO programs; on this control a comment begins with ;.", (
-        "Write ; before the comment."
-    )
+    return (
+        "comments in parentheses are for ISO programs; on this control, a comment begins "
+        "with a semicolon (;)."
+    ), ("Write ; before the comment.")
 
 
 def _jump(match: re.Match[str]) -> tuple[str, str]:
     number = match["number"]
     return (
-        f"GOTO {number}: on this control, a jump needs a label or a block number.",
-        f"Write GOTO N{number}.",
+        Message("GOTO {number}: on this control, a jump needs a label or a block number.", number=number),
+        Message("Write GOTO N{number}.", number=number),
     )
 
 
@@ -118,10 +143,14 @@ def _distance(match: re.Match[str]) -> tuple[str, str]:
     word = f"{axis}=IC({match['number']})"
     return (
         (
-            f"{match['word']}: on this control, the incremental move is {word}; this lathe has no "
-            f"axis {match['letter']}."
+            Message(
+                "{match}: on this control, use {word} for incremental moves; this lathe has no {word2} axis.",
+                match=match["word"],
+                word=word,
+                word2=match["letter"],
+            )
         ),
-        f"Write {word}.",
+        Message("Write {name}.", name=word),
     )
 
 

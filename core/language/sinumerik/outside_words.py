@@ -23,10 +23,10 @@ _SPLINE = "this type of curve is not supported; write lines and arcs"
 _FILES = "programs cannot read or write files"
 _FRAMES = "this frame function is not supported; write TRANS, ROT, SCALE or MIRROR"
 _PUNCHES = "this lathe has no punching unit"
-_LOOKS_AHEAD = "the whole program is read before it starts; remove this word"
+_LOOKS_AHEAD = "the control reads the whole program before the program starts; remove this word"
 _OSCILLATES = "oscillation is not supported"
 _TOOLS = "tools are managed on the tool offset page (F8)"
-_CONTOURS = "contour tables are not supported; name the contour in CYCLE95"
+_CONTOURS = "contour tables are not supported; specify the contour in CYCLE95"
 _RETRACTS = "automatic retraction is not supported"
 
 _BY_REASON = {
@@ -69,19 +69,21 @@ _BY_REASON = {
         "DELTOOLENV TOOLENV GETTCOR SETTCOR DELDL"
     ),
     _CONTOURS: "CONTPRON CONTDCON EXECUTE INTERSEC CALCDAT",
-    "not supported; write SPOS, or M3 and M4": "SPCOF SPCON ASPOS",
+    "this word is not supported; write SPOS, or M3 and M4": "SPCOF SPCON ASPOS",
 }
 
 OUTSIDE: Mapping[str, str] = {
-    "G63": "not supported; write CYCLE840, which feeds the tap at its lead and reverses the spindle",
-    "G93": "inverse time feed is not supported; write G94 or G95 with F",
-    "G931": "feed given as the time of the move is not supported; write G94 or G95 with F",
+    "G63": (
+        "this word is not supported; write CYCLE840, which feeds the tap at its lead and reverses the spindle"
+    ),
+    "G93": "inverse-time feed is not supported; write G94 or G95 with F",
+    "G931": "feed specified by travel time is not supported; write G94 or G95 with F",
     "G5": "G5 is not supported; write the arc with CIP",
     "KONTC": "approach on a curve is not supported; write KONT or NORM",
     "KONTT": "approach on a curve is not supported; write KONT or NORM",
     "TURN": "a helix needs a third linear axis",
-    "DIAMCYCOF": "not supported; write DIAMON, DIAMOF or DIAM90",
-    "DISC": "not supported; write G450 or G451",
+    "DIAMCYCOF": "this word is not supported; write DIAMON, DIAMOF or DIAM90",
+    "DISC": "this word is not supported; write G450 or G451",
     "EXTCALL": (
         "external calls are not supported. Put the file in the main program's folder and call it by name"
     ),
@@ -91,7 +93,7 @@ OUTSIDE: Mapping[str, str] = {
     "FCUB": "this feed profile is not supported; write G1 with F in each block",
     "FPO": "this feed profile is not supported; write G1 with F in each block",
     "SAVE": "SAVE is only allowed after PROC",
-    "GOTOC": "not supported; write GOTO, GOTOF or GOTOB",
+    "GOTOC": "this word is not supported; write GOTO, GOTOF or GOTOB",
     "ACC": "accelerations are set in the machine file; remove this word",
     "ACCLIMA": "accelerations are set in the machine file; remove this word",
     "FGREF": "F always applies to the path of the tool tip; remove this word",

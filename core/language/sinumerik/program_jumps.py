@@ -10,6 +10,7 @@ from core.language.formulas import INDICES, Formula, FormulaError, FormulaReader
 from core.language.sinumerik.array_values import Values, read_values
 from core.language.sinumerik.call_arguments import Parameter, read_parameters
 from core.language.sinumerik.sinumerik_formulas import GRAMMAR
+from core.message import Message
 
 
 class Steering(StrEnum):
@@ -168,7 +169,9 @@ class _Reader:
         if rest.strip():
             at = self._at + len(rest) - len(rest.lstrip())
             raise FormulaError(
-                at, f"Unexpected text after {self._steering}", ("Put the extra text in a separate block.")
+                at,
+                Message("Unexpected text after {steering}", steering=self._steering),
+                ("Put the extra text in a separate block."),
             )
 
     def _if(self) -> Jump:
@@ -240,8 +243,8 @@ class _Reader:
         if match is None:
             raise FormulaError(self._at, "DEF needs REAL, INT, BOOL or STRING", "Write DEF REAL NAME = 0.")
         if match[1] not in _NUMBERS | {"STRING"}:
-            raise FormulaError(self._at, f'Variables of type {match[1]} are not supported',
-                               "Use REAL, INT, BOOL or STRING.")  # fmt: skip
+            text = Message("Variables of type {name} are not supported", name=match[1])
+            raise FormulaError(self._at, text, "Use REAL, INT, BOOL or STRING.")
         self._at = match.end()
         found: list[Defined] = []
         while True:
@@ -304,7 +307,11 @@ class _Reader:
     def _heading(self) -> tuple[str, tuple[Parameter, ...]]:
         match = _PROCEDURE.match(self._text, self._at)
         if match is None:
-            raise FormulaError(self._at, f"{self._steering} needs a name", "Write PROC NAME(REAL LENGTH).")
+            raise FormulaError(
+                self._at,
+                Message("{steering} needs a subprogram name", steering=self._steering),
+                "Write PROC NAME(REAL LENGTH).",
+            )
         self._at = match.end()
         parameters = tuple[Parameter, ...]()
         if self._text.startswith("(", self._at):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.language.diagnostics import Diagnostic, refusal
+from core.message import Message
 
 SYNTAX = 12080
 TWICE = 12010
@@ -21,8 +22,14 @@ def fault(
     line: int, column: int, code: int | str, block: str, text: str, hint: str, *, axis: str = ""
 ) -> Diagnostic:
     """An error: an alarm of the control by its number, or by a word one of ours that has none there."""
-    where = f"channel {CHANNEL} block {block}"
-    where = f"{where} axis {axis}" if axis else where
+    where = Message("channel {channel} block {block}", channel=CHANNEL, block=block)
+    where = Message("{place} axis {axis}", place=where, axis=axis) if axis else where
     if isinstance(code, int):
-        return refusal(line, column, str(code), f"Alarm {code}: {where}: {text}", hint)
-    return refusal(line, column, code, f"{where}: {text}", hint)
+        return refusal(
+            line,
+            column,
+            str(code),
+            Message("Alarm {code}: {where}: {what}", code=code, where=where, what=text),
+            hint,
+        )
+    return refusal(line, column, code, Message("{where}: {what}", where=where, what=text), hint)

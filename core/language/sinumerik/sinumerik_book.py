@@ -10,6 +10,7 @@ from core.language.sinumerik.calls_book import CALLS
 from core.language.sinumerik.cycle_words import MEANINGS
 from core.language.sinumerik.cycles_book import STANDARD_CYCLES
 from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, WORDS
+from core.message import Message
 
 HEAD = "G0 X60 Z10\n"
 """Before every example: tool 1 is in, its offsets are 0, and the spindle stands."""
@@ -129,7 +130,11 @@ def _of_table(table: Iterable[tuple[str, word_table.Entry]]) -> tuple[tuple[str,
     groups: dict[str, list[Entry]] = {}
     for name, told in table:
         refused, why = _REFUSED.get(name) or (f"{name} {name}", "12060")  # twice is two of a group
-        meaning = f"{told.meaning} No effect: {told.idle}." if told.idle else told.meaning
+        meaning = (
+            Message("{meaning} This word has no effect because {idle}.", meaning=told.meaning, idle=told.idle)
+            if told.idle
+            else told.meaning
+        )
         entry = Entry(name, "", meaning, told.example.replace("|", "\n"), refused, why)
         groups.setdefault(told.group, []).append(entry)
     return tuple((group.capitalize(), tuple(entries)) for group, entries in groups.items())
@@ -157,7 +162,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "IF",
             "condition",
-            "Runs the blocks up to ELSE or ENDIF, or a jump, only if the condition is true.",
+            "Runs the blocks up to ELSE or ENDIF, or makes a jump, only if the condition is true.",
             "R1=2\nIF R1==2\nG0 Z5\nELSE\nG0 Z6\nENDIF",
             "IF R1==2\nG0 Z5",
             "12640",
@@ -165,7 +170,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "ELSE",
             "",
-            "Runs the blocks after it if the condition is not true.",
+            "Runs the blocks that follow ELSE if the condition is not true.",
             "R1=2\nIF R1==2\nG0 Z5\nELSE\nG0 Z6\nENDIF",
             "ELSE",
             "ELSE",
@@ -174,7 +179,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "WHILE",
             "condition",
-            "Repeats while the condition is true.",
+            "Repeats the blocks while the condition is true.",
             "R1=0\nWHILE R1<3\nR1=R1+1\nENDWHILE",
             "WHILE R1<3",
             "12640",
@@ -183,7 +188,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "FOR",
             "R1 = 1 TO 5",
-            "Repeats while counting up.",
+            "Repeats the blocks while a counter counts up.",
             "FOR R1=1 TO 3\nG0 Z=IC(-1)\nENDFOR",
             "FOR R1=1",
             "FOR needs TO",
@@ -192,7 +197,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "LOOP",
             "",
-            "Repeats until a jump leaves the loop.",
+            "Repeats the blocks until a jump leaves the loop.",
             "R1=0\nLOOP\nR1=R1+1\nIF R1>3 GOTOF OUT\nENDLOOP\nOUT:",
             "LOOP",
             "12640",
@@ -208,7 +213,8 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "REPEAT",
             "",
-            "Repeats up to UNTIL; with a label, repeats from the label to here, P=2 times.",
+            "Repeats the blocks up to UNTIL; with a label, repeats the blocks from the label to "
+            "this block, for example twice with P=2.",
             "R1=0\nREPEAT\nR1=R1+1\nUNTIL R1>3",
             "REPEAT",
             "12640",
@@ -224,8 +230,9 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "DEF",
             "REAL name = ..",
-            "Variables of the program: REAL, INT, BOOL, CHAR, STRING; REAL name[5] is an array, REAL "
-            "name[2,3] one of two dimensions (three at most). A name begins with two letters or _.",
+            "Defines variables of the program: REAL, INT, BOOL, CHAR, STRING. REAL name[5] is an "
+            "array, and REAL name[2,3] an array with two dimensions (the maximum is three). A "
+            "name begins with two letters or _.",
             "DEF REAL DEPTH = 2.5\nG0 Z=-DEPTH",
             "DEF AXIS NAME",
             "AXIS",
@@ -234,9 +241,9 @@ def _flow() -> tuple[Entry, ...]:
             "SET",
             "(.., .., ..)",
             (
-                "Values for the elements of an array in order, with the last index first; an omitted "
-                "element retains its value. After DEF, SET may be omitted and the parentheses "
-                "written alone."
+                "Sets the values of the elements of an array in order, with the last index first; an "
+                "omitted element retains its value. After DEF, SET may be omitted and only the "
+                "parentheses written."
             ),
             "DEF REAL DEPTHS[2,2]\nDEPTHS[0,1]=SET(-3, , -5)\nG0 Z=DEPTHS[1,1]",
             "DEF REAL DEPTHS[2]=(1, 2, 3)",
@@ -245,7 +252,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "REP",
             "(value, n)",
-            "Assigns one value to n elements of an array; without n, to all remaining elements.",
+            "Assigns one value to n elements of an array, or to all remaining elements if n is omitted.",
             "DEF REAL DEPTHS[3]=REP(-2)\nDEPTHS[1]=REP(-4, 1)\nG0 Z=DEPTHS[1]+DEPTHS[2]",
             "DEF REAL DEPTHS[3]=REP()",
             "REP accepts only a value",
@@ -265,8 +272,8 @@ def _flow() -> tuple[Entry, ...]:
             "$P_TOOLNO",
             "",
             (
-                "Number of the active tool; $P_TOOL is its D number, $P_TOOLR its nose radius in mm. "
-                "Other system variables are rejected."
+                "Number of the active tool; $P_TOOL is the active D number, and $P_TOOLR is the nose "
+                "radius in mm. Other system variables are rejected."
             ),
             "T1 D1\nR1=$P_TOOLNO",
             "R1=$AA_IM[X]",
@@ -286,7 +293,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "MSG",
             '("text")',
-            "Shows a message to the operator; an empty text clears it.",
+            "Shows a message to the operator; an empty text clears the message.",
             'MSG("FINISH")\nMSG()',
             "MSG FINISH",
             "MSG",

@@ -18,6 +18,7 @@ from core.language.sinumerik.sinumerik_formulas import GRAMMAR
 from core.language.sinumerik.sinumerik_words import LONGEST_LINE, Form, Line, Word
 from core.language.sinumerik.third_axis_name import OWN, words_as_c
 from core.language.typography import ascii_upper, typed
+from core.message import Message
 
 # --- values: a number, or an R parameter that gives it
 
@@ -55,8 +56,8 @@ def _demand_parameters(formula: Formula, at: int) -> None:
         case Parameter("R", int(number), column) if number > known.MOST_R:
             raise FormulaError(
                 column - 1,
-                f"R{number} is not a valid parameter",
-                (f"Use a parameter from R0 to R{known.MOST_R}."),
+                Message("R{number} is not a valid parameter", number=number),
+                (Message("Use a parameter from R0 to R{most_r}.", most_r=known.MOST_R)),
             )
         case Operation(_, operands):
             for each in operands:
@@ -76,13 +77,22 @@ def beyond(word: Word) -> tuple[str, str] | None:
         digits = word.text.rpartition("=")[2] if "=" in word.text else word.text[1:]
         if digits.isdigit() and len(digits) <= _LONGEST_CODE:
             return None
-        return f"{word.text} is not a valid code", "Write a whole number of up to four digits."
+        return Message(
+            "{word} is not a valid code", word=word.text
+        ), "Write a whole number of up to four digits."
     if word.name in {"T", "D"} and not word.value.is_integer():
-        return f"{word.text} is not a valid tool or edge number", "Enter a whole number."
+        return Message("{word} is not a valid tool or edge number", word=word.text), "Enter a whole number."
     low, high = known.REACH["R" if variable(word.name) else word.name]
     if low <= word.value <= high:
         return None
-    return f"{word.text} is out of range", (f"Use a value of {word.name} between {low:g} and {high:g}.")
+    return Message("{word} is out of range", word=word.text), (
+        Message(
+            "Use a value of {word} between {low} and {high}.",
+            word=word.name,
+            low=f"{low:g}",
+            high=f"{high:g}",
+        )
+    )
 
 
 _HEAD = re.compile(r"\s*(?:/([0-9]?))?\s*(?:([N:])([0-9]+))?\s*(?:([A-Z_][A-Z_][A-Z0-9_]*)\s*:)?\s*")
@@ -120,7 +130,7 @@ def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
     head = _HEAD.match(upper)
     assert head is not None  # every part of it may be missing
     level, kind, count, label = head.groups()
-    block = f"{kind}{count}" if kind else label or f"in line {number}"
+    block = f"{kind}{count}" if kind else label or Message("in line {line}", line=number)
     wrong = -1
     if third_axis != OWN:
         upper, wrong = words_as_c(upper, third_axis)
@@ -130,8 +140,12 @@ def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
     if len(text) > LONGEST_LINE:
         scanner.refuse(
             1,
-            f"the block is too long ({len(text)} characters)",
-            (f"Split the block; the maximum is {LONGEST_LINE} characters."),
+            Message("the block is too long ({text_count} characters)", text_count=len(text)),
+            (
+                Message(
+                    "Split the block; the maximum is {longest_line} characters.", longest_line=LONGEST_LINE
+                )
+            ),
         )
     elif steering := steering_word(upper, head.end()):
         scanner.steer(head.end(), steering)
@@ -210,7 +224,7 @@ class _Scanner:
                 at = self._letter(at)
             else:
                 _, hint = typed(text[at]) or ("", "Remove the character; comments start with ;")
-                at = self._skip(at, f"{text[at]} is not a valid word", hint)
+                at = self._skip(at, Message("{name} is not a valid word", name=text[at]), hint)
 
     def _plain(self, match: re.Match[str]) -> int:
         """A letter and its number, with nothing behind that could belong to it."""
@@ -223,7 +237,12 @@ class _Scanner:
 
     def no_axis(self, at: int, third_axis: str) -> None:
         """A word of C on a machine whose third axis has another name."""
-        self._outside(at, at + 1, OWN, f"this lathe has no axis C; its third axis is {third_axis}")
+        self._outside(
+            at,
+            at + 1,
+            OWN,
+            Message("this lathe has no C axis; its third axis is {third_axis}", third_axis=third_axis),
+        )
 
     def tell_habit(self) -> None:
         """Where the block is one of the ISO mode, what stands for it here, in place of the first mistake."""
@@ -233,7 +252,11 @@ class _Scanner:
 
     def refuse(self, column: int, text: str, hint: str) -> None:
         """A syntax alarm at this column."""
-        self._tell(fault(self._number, column, SYNTAX, self._block, f"syntax error: {text}.", hint))
+        self._tell(
+            fault(
+                self._number, column, SYNTAX, self._block, Message("syntax error: {what}.", what=text), hint
+            )
+        )
 
     def _tell(self, found: Diagnostic) -> None:
         """The first mistake of a block is told; what follows may come of it."""
@@ -247,7 +270,10 @@ class _Scanner:
 
     def _outside(self, at: int, end: int, name: str, why: str) -> int:
         """A word of the language that this control does not execute."""
-        text, hint = f"{name}: {why}.", "Remove it from the program."
+        text, hint = (
+            Message("{word}: {problem}.", word=name, problem=why),
+            ("Remove this text from the program."),
+        )
         self._tell(fault(self._number, at + 1, "not-in-subset", self._block, text, hint))
         rest = _REST_OF_WORD.match(self._text, end)
         return rest.end() if rest and not self._text[end : end + 1].isspace() else end
@@ -262,13 +288,17 @@ class _Scanner:
                 ("Write the block number at the start."),
             )
         if letter not in known.LETTERS:
-            why = known.LETTERS_OUTSIDE.get(letter, "this control has no such word")
+            why = known.LETTERS_OUTSIDE.get(letter, "this word does not exist on this control")
             return self._outside(at, at + 1, letter, why)
         match = NUMBER.match(text, at + 1)
         if match is None:
             instead = typed(self._text[at + 1 : at + 2])
-            hint = instead[1] if instead else f"Write {letter} with a number, or {letter}=…"
-            return self._skip(at, f"{letter} has no number", hint)
+            hint = (
+                instead[1]
+                if instead
+                else Message("Write {letter} with a number, or {letter2}=…", letter=letter, letter2=letter)
+            )
+            return self._skip(at, Message("{what} has no number", what=letter), hint)
         return self._keep(Word(letter, float(match[0]), at + 1, text[at : match.end()]), match.end())
 
     def _named(self, match: re.Match[str]) -> int:
@@ -284,7 +314,9 @@ class _Scanner:
             return self._outside(at, end, name, known.WHY_OUTSIDE[name])
         base = name.rstrip("0123456789")
         if name in known.ASSIGNED or base in known.ASSIGNED - known.LETTERS:
-            return self._skip(at, f"{base} needs = and a value", f"Write {base}=…")
+            return self._skip(
+                at, Message("{base} needs = and a value", base=base), Message("Write {base}=…", base=base)
+            )
         return self._program(name, at, end)
 
     def _program(self, name: str, at: int, end: int) -> int:
@@ -292,10 +324,12 @@ class _Scanner:
             return self._called(name, at, end)
         if name in CYCLES or name in CYCLES_OUTSIDE or name in CYCLES_TAKEN:
             return self._skip(
-                at, f"{name} is not allowed after other words", ("Put the call in a separate block.")
+                at,
+                Message("{name} is not allowed after other words", name=name),
+                ("Put the call in a separate block."),
             )
-        hint = "Begin a comment with ;, and put a subprogram name alone in its block."
-        return self._skip(at, f"{name} is not a valid word", hint)
+        hint = "Begin a comment with a semicolon (;). Put a subprogram name alone in its block."
+        return self._skip(at, Message("{name} is not a valid word", name=name), hint)
 
     def _key(self, name: str, at: int, end: int) -> int:
         """A word without a value, or with what stands in its brackets."""
@@ -312,7 +346,9 @@ class _Scanner:
             try:
                 arguments, end = read_arguments(self._text, self._written, bracket.end() - 1)
             except FormulaError as problem:
-                self.refuse(problem.at + 1, f"{name}: {problem}", problem.hint)
+                self.refuse(
+                    problem.at + 1, Message("{name}: {problem}", name=name, problem=problem), problem.hint
+                )
                 return len(self._text)
         self.words.append(Word(name, None, at + 1, name, arguments=arguments))
         return end
@@ -332,7 +368,11 @@ class _Scanner:
         if match is not None:
             return self._called(match[1], match.start(1), match.end())
         if word == "CALL" or self._text[end:].strip():
-            self.refuse(end + 1, f"{word} needs a program name", f"Write {word} NAME.")
+            self.refuse(
+                end + 1,
+                Message("{word} needs a program name", word=word),
+                Message("Write {word} NAME.", word=word),
+            )
         return len(self._text)
 
     def _called(self, name: str, at: int, end: int) -> int:
@@ -341,7 +381,9 @@ class _Scanner:
             try:
                 self.arguments, end = read_arguments(self._text, self._written, bracket.end() - 1)
             except FormulaError as problem:
-                self.refuse(problem.at + 1, f"{name}: {problem}", problem.hint)
+                self.refuse(
+                    problem.at + 1, Message("{name}: {problem}", name=name, problem=problem), problem.hint
+                )
                 return len(self._text)
         passes = _PASSES.match(self._text, end)
         if passes is not None:
@@ -349,10 +391,16 @@ class _Scanner:
             self.passes = int(passes[1][:9])
             if not 1 <= self.passes <= _MOST_PASSES:
                 self.refuse(
-                    end, f"P{passes[1]} is not a valid number of passes", f"Write P1 to P{_MOST_PASSES}."
+                    end,
+                    Message("P{passes} is not a valid repeat count", passes=passes[1]),
+                    Message("Write a repeat count from P1 to P{most_passes}.", most_passes=_MOST_PASSES),
                 )
         if rest := self._text[end:].strip():
-            self.refuse(end + 1, f"{rest} is not allowed after {name}", "Put the call alone in its block.")
+            self.refuse(
+                end + 1,
+                Message("{rest} is not allowed after {name}", rest=rest, name=name),
+                "Put the call alone in its block.",
+            )
         return len(self._text)
 
     def _element(self, match: re.Match[str]) -> int:
@@ -367,11 +415,17 @@ class _Scanner:
             _demand_parameters(place, at)
             sign = _SET.match(self._text, reader.at)
             if sign is None:
-                return self._skip(at, f"{name}[ ] needs = and a value", f"Write {name}[1]=…")
+                return self._skip(
+                    at,
+                    Message("{name}[ ] needs = and a value", name=name),
+                    Message("Write {name}[1]=…", name=name),
+                )
             listed = read_values(self._text, sign.end(), bare=False)
             value = value_at(self._text, sign.end()) if listed is None else Value(0.0, None, listed[1])
         except FormulaError as problem:
-            return self._skip(at, f"{name}[ ]= has no value: {problem}", problem.hint)
+            return self._skip(
+                at, Message("{name}[ ]= has no value: {problem}", name=name, problem=problem), problem.hint
+            )
         written = "".join(self._text[at : value.end].split())
         named = "R0" if name == "R" else name
         word = Word(named, value.number, at + 1, written, Form.PLAIN, value.formula, element=place)
@@ -384,7 +438,11 @@ class _Scanner:
         if of := _OF_SPINDLE.fullmatch(name):
             name, index = of[1], of[2]
         if index is not None and not index.isdigit():
-            return self._skip(at, f"{name} needs a spindle number as its index", f"Write {name}[1]=…")
+            return self._skip(
+                at,
+                Message("{name} needs a spindle number as its index", name=name),
+                Message("Write {name}[1]=…", name=name),
+            )
         before = len(self.words)
         end = self._with_value(name, at, end)
         if index is not None and len(self.words) > before:
@@ -402,7 +460,9 @@ class _Scanner:
             why = known.LETTERS_OUTSIDE.get(name) or known.WHY_OUTSIDE.get(name)
             return self._outside(at, end, name, why or "this control does not support this word")
         if is_r is not None and int(is_r[1][:9]) > known.MOST_R:
-            return self._outside(at, end, name, f"R parameters are R0 to R{known.MOST_R}")
+            return self._outside(
+                at, end, name, Message("R parameters are R0 to R{most_r}", most_r=known.MOST_R)
+            )
         found = _FORM.match(self._text, end)
         if found is not None and found[1] in _FORMS:
             return self._target(name, at, found)
@@ -412,7 +472,9 @@ class _Scanner:
         try:
             value = value_at(self._text, end)
         except FormulaError as problem:
-            return self._skip(at, f"{name}= has no value: {problem}", problem.hint)
+            return self._skip(
+                at, Message("{name}= has no value: {problem}", name=name, problem=problem), problem.hint
+            )
         written = "".join(self._text[at : value.end].split())
         return self._keep(Word(name, value.number, at + 1, written, Form.PLAIN, value.formula), value.end)
 
@@ -421,20 +483,34 @@ class _Scanner:
         form, bracket = found[1], found[2]
         if form not in known.FORMS.get(name, frozenset()):
             allowed = ", ".join(sorted(known.FORMS.get(name, ()))) or "a number or a formula"
-            return self._skip(at, f"{name}= does not accept {form}", f"Use {allowed}.")
+            return self._skip(
+                at,
+                Message("{name}= does not accept {form}", name=name, form=form),
+                Message("Use {allowed}.", allowed=allowed),
+            )
         if bracket is None:
-            return self._skip(at, f"{form} needs parentheses", f"Write {name}={form}(…).")
+            return self._skip(
+                at,
+                Message("{form} needs parentheses", form=form),
+                Message("Write {name}={form}(…).", name=name, form=form),
+            )
         try:
             value = value_at(self._text, found.end())
         except FormulaError as problem:
             return self._skip(
-                at, f"{form} has no value in its parentheses: {problem}", f"Write {name}={form}(…)."
+                at,
+                Message("{form} has no value in its parentheses: {problem}", form=form, problem=problem),
+                Message("Write {name}={form}(…).", name=name, form=form),
             )
         close = value.end
         while self._text[close : close + 1].isspace():
             close += 1
         if self._text[close : close + 1] != ")":
-            return self._skip(at, f"the closing parenthesis of {form} is missing", f"Write {name}={form}(…).")
+            return self._skip(
+                at,
+                Message("the closing parenthesis of {form} is missing", form=form),
+                Message("Write {name}={form}(…).", name=name, form=form),
+            )
         written = "".join(self._text[at : close + 1].split())
         word = Word(name, value.number, at + 1, written, Form(form), value.formula)
         return self._keep(word, close + 1)
@@ -443,7 +519,9 @@ class _Scanner:
         after = self._text[end : end + 1]
         if after in {".", "+", "-", "*", "=", "(", ")", ","}:
             return self._skip(
-                word.column - 1, f"{word.text}{after} is not a valid number", "Correct the number."
+                word.column - 1,
+                Message("{word}{after} is not a valid number", word=word.text, after=after),
+                "Correct the number.",
             )
         if wrong := beyond(word):
             self.refuse(word.column, *wrong)

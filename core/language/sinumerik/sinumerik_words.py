@@ -146,12 +146,12 @@ REACH: dict[str, tuple[float, float]] = {
 
 MOST_R = 299
 LETTERS_OUTSIDE = {
-    "H": "H functions are not part of this control's SINUMERIK subset",
-    "L": "L calls a subprogram only with a whole number",
-    "A": "this lathe has no axis A",
-    "B": "this lathe has no axis B",
-    "U": "this lathe has no axis U; write incremental values with IC( ), as in X=IC(1)",
-    "W": "this lathe has no axis W; write incremental values with IC( ), as in Z=IC(1)",
+    "H": "this control does not support the H functions of SINUMERIK",
+    "L": "L needs a whole number to call a subprogram",
+    "A": "this lathe has no A axis",
+    "B": "this lathe has no B axis",
+    "U": "this lathe has no U axis; write incremental values with IC( ), as in X=IC(1)",
+    "W": "this lathe has no W axis; write incremental values with IC( ), as in Z=IC(1)",
     "P": "P is allowed only after a subprogram name",
     "R": (
         "an R parameter must follow = or be assigned with =, as in R1=10; a radius is CR=, a rounding is RND="

@@ -51,28 +51,34 @@ class Entry(NamedTuple):
     idle: str = ""
 
 
-_BLANK = "the proof uses the stock from --stock, the PART page or the moves"
-_BUFFERED = "the whole program is read before it starts"
-_EXACT_PATH = "the path is never rounded, so corners are never cut off"
+_BLANK = (
+    "the proof uses the stock that is set by --stock or on the PART page, or that is assumed from the moves"
+)
+_BUFFERED = "the control reads the whole program before the program starts"
+_EXACT_PATH = "the programmed path is followed exactly and corners are never rounded"
 _TIP = "on this control, F always applies to the path of the tool tip"
 _ARC_IK = "G1 X20 Z0 F200|G3 X30 Z-5 I0 K-5"
 _ARC_THROUGH = "G1 X20 Z0 F200|CIP X20 Z-20 I1=30 K1=-10"
-_LAW = "the velocity profile always stays within the axis accelerations of this machine"
+_LAW = "the velocity profile always stays within the axis acceleration limits of this machine"
 
 FUNCTIONS: Mapping[str, Entry] = {
     "G0": Entry(MOTION, "Rapid; all axes arrive at the same time.", "G0 X40 Z2"),
-    "G1": Entry(MOTION, "Straight line at feed.", "G1 X40 Z-10 F200"),
-    "G2": Entry(MOTION, "Arc clockwise: I K, CR=, AR=.", "G1 X20 Z0 F200|G2 X30 Z-5 CR=5"),
-    "G3": Entry(MOTION, "Arc counterclockwise.", "G1 X20 Z0 F200|G3 X30 Z-5 I0 K-5"),
-    "CIP": Entry(MOTION, "Arc through the point I1= K1=.", "G1 X20 Z0 F200|CIP X20 Z-20 I1=30 K1=-10"),
+    "G1": Entry(MOTION, "Straight line at the feed rate.", "G1 X40 Z-10 F200"),
+    "G2": Entry(
+        MOTION, "Clockwise arc, defined by I and K, by CR= or by AR=.", "G1 X20 Z0 F200|G2 X30 Z-5 CR=5"
+    ),
+    "G3": Entry(MOTION, "Counterclockwise arc.", "G1 X20 Z0 F200|G3 X30 Z-5 I0 K-5"),
+    "CIP": Entry(
+        MOTION, "Arc through the intermediate point I1= K1=.", "G1 X20 Z0 F200|CIP X20 Z-20 I1=30 K1=-10"
+    ),
     "CT": Entry(
         MOTION, "Arc that continues tangentially from the previous path.", "G1 X20 Z0 F200|Z-10|CT X30 Z-15"
     ),
     "G33": Entry(
         MOTION,
         (
-            "Thread with constant lead: K along Z, I along X; SF= is the start angle. Further "
-            "thread blocks may follow."
+            "Cuts a thread of constant lead: K along Z, I along X; SF= is the start angle. "
+            "Further thread blocks may follow."
         ),
         "S400 M3|G0 X18 Z8|G33 Z-20 K2|G0 X24",
     ),
@@ -87,36 +93,44 @@ FUNCTIONS: Mapping[str, Entry] = {
     "G331": Entry(
         MOTION,
         (
-            "Tapping into the hole: the spindle runs as the C axis and turns with Z at the lead "
-            "K (negative: left-hand)."
+            "Taps into the hole: the spindle runs as the C axis and turns with Z at the lead K "
+            "(a negative K cuts a left-hand thread)."
         ),
         "SPOS=0|S100|G331 Z-10 K1|G332 Z10 K1",
     ),
     "G332": Entry(
         MOTION,
-        "Tapping out of the hole: the tap retracts and the spindle reverses.",
+        "Retracts the tap from the hole with the spindle in reverse.",
         "SPOS=0|S100|G331 Z-10 K1|G332 Z10 K1",
     ),
-    "G4": Entry(DWELL, "Dwell: F in seconds, S in revolutions.", "G4 F0.5"),
+    "G4": Entry(DWELL, "Dwell, with F in seconds or S in revolutions.", "G4 F0.5"),
     "G9": Entry(EXACT_ONCE, "Exact stop at the end of this block.", "G9 G1 X30 F200|Z-5"),
     "G60": Entry(EXACT, "Exact stop at the end of every block.", "G60 G1 X30 F200|Z-5"),
     "G64": Entry(
-        EXACT, "Continuous path: the acceleration of the axes determines the corners.", "G64 G1 X30 F200|Z-5"
+        EXACT,
+        "Continuous-path mode; the axis accelerations determine the speed in corners.",
+        "G64 G1 X30 F200|Z-5",
     ),
     **{
-        f"G{code}": Entry(EXACT, "Same as G64: no corner is rounded.", f"G{code} G1 X30 F200")
+        f"G{code}": Entry(EXACT, "Same as G64; corners are not rounded.", f"G{code} G1 X30 F200")
         for code in (641, 642, 643, 644, 645)
     },
     **{
         f"G{code}": Entry(
-            EXACT_WHEN, "Accepted: an exact stop always waits for the position.", f"G{code} G60"
+            EXACT_WHEN,
+            ("Accepted. On this control, an exact stop always waits until the axes are in position."),
+            f"G{code} G60",
         )
         for code in (601, 602, 603)
     },
-    "G17": Entry(PLANE, "Plane X Y: no arcs and no radius compensation on this lathe.", "G17|G18"),
-    "G18": Entry(PLANE, "Plane Z X, the turning plane.", "G18"),
-    "G19": Entry(PLANE, "Plane Y Z: no arcs and no radius compensation on this lathe.", "G19|G18"),
-    "G40": Entry(COMPENSATION, "Radius compensation off from the next move.", "G40"),
+    "G17": Entry(
+        PLANE, "Plane X Y; this lathe supports neither arcs nor radius compensation in this plane.", "G17|G18"
+    ),
+    "G18": Entry(PLANE, "Plane Z X, the plane for turning.", "G18"),
+    "G19": Entry(
+        PLANE, "Plane Y Z; this lathe supports neither arcs nor radius compensation in this plane.", "G19|G18"
+    ),
+    "G40": Entry(COMPENSATION, "Turns radius compensation off, starting with the next move.", "G40"),
     "G41": Entry(
         COMPENSATION,
         "The tool stays left of the contour.",
@@ -128,32 +142,34 @@ FUNCTIONS: Mapping[str, Entry] = {
         "T1 D1|G0 X60 Z10|G42 G1 X20 Z0 F200|Z-20|X40|G40 X60 Z10",
     ),
     "NORM": Entry(
-        APPROACH, ("Approaches and leaves the contour on a straight line perpendicular to its end."), "NORM"
+        APPROACH,
+        ("Approaches and leaves the contour on a straight line, perpendicular to the contour."),
+        "NORM",
     ),
-    "KONT": Entry(APPROACH, "Approaches and leaves the contour around its end point.", "KONT"),
+    "KONT": Entry(APPROACH, "Approaches and leaves the contour on a path around its end point.", "KONT"),
     "G450": Entry(CORNER, "Goes around outside corners on an arc.", "G450"),
     "G451": Entry(CORNER, "Goes around outside corners through the intersection point.", "G451"),
-    "G500": Entry(SETTABLE, "No settable offset active.", "G500"),
+    "G500": Entry(SETTABLE, "Turns the settable offset off.", "G500"),
     **{
         f"G{code}": Entry(SETTABLE, f"Settable offset {code - 53}.", f"G{code} G0 X40 Z2")
         for code in range(54, 60)
     },
     "G505": Entry(SETTABLE, "The fifth settable offset, stored as G58.", "G505 G0 X40 Z2"),
     "G506": Entry(SETTABLE, "The sixth settable offset, stored as G59.", "G506 G0 X40 Z2"),
-    "G53": Entry(SUPPRESSION, "Without settable and programmed offsets; D remains active.", "G53 G0 X80"),
+    "G53": Entry(SUPPRESSION, "Suppresses settable and programmed offsets; D remains active.", "G53 G0 X80"),
     "G153": Entry(SUPPRESSION, "Same as G53.", "G153 G0 X80"),
     "SUPA": Entry(SUPPRESSION, "Same as G53.", "SUPA G0 X80 D0"),
-    "G70": Entry(UNIT, "Inches; F remains in mm.", "G70 G0 X1.5 Z0.1"),
+    "G70": Entry(UNIT, "Positions are in inches; F remains in mm.", "G70 G0 X1.5 Z0.1"),
     "G71": Entry(UNIT, "Millimeters.", "G71 G0 X40 Z2"),
-    "G700": Entry(UNIT, "Inches, including F.", "G700 G1 X1.5 F8"),
-    "G710": Entry(UNIT, "Millimeters, including F.", "G710 G1 X40 F200"),
+    "G700": Entry(UNIT, "Positions and F are in inches.", "G700 G1 X1.5 F8"),
+    "G710": Entry(UNIT, "Positions and F are in millimeters.", "G710 G1 X40 F200"),
     "G90": Entry(ABSOLUTE, "Absolute positions.", "G90 G0 X40"),
     "G91": Entry(ABSOLUTE, "Incremental distances.", "G91 G0 X4"),
-    "G94": Entry(FEED_AND_SPEED, "F in mm/min; cancels constant surface speed.", "G94 G1 X40 F200"),
-    "G95": Entry(FEED_AND_SPEED, "F in mm/rev.", "S500 M3|G95 G1 X40 F0.2"),
+    "G94": Entry(FEED_AND_SPEED, "Feed F in mm/min; cancels constant surface speed.", "G94 G1 X40 F200"),
+    "G95": Entry(FEED_AND_SPEED, "Feed F in mm/rev.", "S500 M3|G95 G1 X40 F0.2"),
     "G96": Entry(
         FEED_AND_SPEED,
-        "Constant surface speed, S in m/min, and F in mm/rev.",
+        "Constant surface speed, with S in m/min and F in mm/rev.",
         "G96 S150 LIMS=2000 M3|G1 X40 F0.2",
     ),
     "G961": Entry(FEED_AND_SPEED, "Same as G96, with F in mm/min.", "G961 S150 LIMS=2000 M3|G1 X40 F200"),
@@ -164,7 +180,7 @@ FUNCTIONS: Mapping[str, Entry] = {
     ),
     "G97": Entry(
         FEED_AND_SPEED,
-        "Constant spindle speed, S in rpm, F in mm/rev.",
+        "Constant spindle speed, with S in rpm and F in mm/rev.",
         "G96 S150 LIMS=2000 M3|G97|G1 X40 F0.2",
     ),
     "G971": Entry(FEED_AND_SPEED, "Same as G97, with F in mm/min.", "G971 S500 M3|G1 X40 F200"),
@@ -178,8 +194,8 @@ FUNCTIONS: Mapping[str, Entry] = {
     "BRISK": Entry(ACCELERATION, "Accepted.", "BRISK", idle=_LAW),
     "SOFT": Entry(ACCELERATION, "Accepted.", "SOFT", idle=_LAW),
     "DRIVE": Entry(ACCELERATION, "Accepted.", "DRIVE", idle=_LAW),
-    "FFWON": Entry(FEED_FORWARD, "Accepted.", "FFWON", idle="feedforward is done in the drives"),
-    "FFWOF": Entry(FEED_FORWARD, "Accepted.", "FFWOF", idle="feedforward is done in the drives"),
+    "FFWON": Entry(FEED_FORWARD, "Accepted.", "FFWON", idle="the drives perform the feedforward control"),
+    "FFWOF": Entry(FEED_FORWARD, "Accepted.", "FFWOF", idle="the drives perform the feedforward control"),
     "WALIMON": Entry(AREA, "Turns on the working area limits of G25 and G26.", "WALIMON"),
     "WALIMOF": Entry(AREA, "Turns off the working area limits of G25 and G26.", "WALIMOF"),
     "DIAMON": Entry(TRANSVERSE, "X is a diameter.", "DIAMON G0 X40"),
@@ -198,61 +214,78 @@ FUNCTIONS: Mapping[str, Entry] = {
         name: Entry(DYNAMICS, "Accepted.", name, idle=_LAW)
         for name in ("DYNNORM", "DYNPOS", "DYNROUGH", "DYNSEMIFIN", "DYNFINISH")
     },
-    "CUT2D": Entry(CONTOUR_PLANE, "Accepted: compensation acts in the plane.", "CUT2D"),
+    "CUT2D": Entry(CONTOUR_PLANE, "Accepted. Tool radius compensation acts in the active plane.", "CUT2D"),
     "CUT2DF": Entry(CONTOUR_PLANE, "Same as CUT2D.", "CUT2DF"),
-    "FNORM": Entry(FEED_PROFILE, "Accepted: F is constant throughout a block.", "FNORM"),
+    "FNORM": Entry(FEED_PROFILE, "Accepted. The feed F is constant throughout a block.", "FNORM"),
     "STOPFIFO": Entry(BUFFER, "Accepted.", "STOPFIFO", idle=_BUFFERED),
     "STARTFIFO": Entry(BUFFER, "Accepted.", "STARTFIFO", idle=_BUFFERED),
     "FIFOCTRL": Entry(BUFFER, "Accepted.", "FIFOCTRL", idle=_BUFFERED),
     "WORKPIECE": Entry(
         PICTURE,
-        "Blank for the simulation picture of the original control; accepted.",
+        "Defines the blank for the original control's simulation; accepted.",
         'WORKPIECE(,,,"CYLINDER",0,0,-80,-60,40)',
         idle=_BLANK,
     ),
     "TRANSMIT": Entry(
         TRANSFORMATION,
         (
-            "X and Y mill the face of the part, and C turns the part under the tool; under "
-            "DIAMON, X is a diameter and Y is not. Arcs and radius compensation are in G17. "
-            "TRANS and ROT start from zero."
+            "X and Y moves mill the face of the part, and C turns the part under the tool. With "
+            "DIAMON, X is a diameter, but Y is not. Arcs and radius compensation are programmed "
+            "in the plane G17. TRANS and ROT start from zero."
         ),
         "T1 D1|G0 X40 Z2|DIAMOF|G17|TRANSMIT|G1 X15 Y0 F200|G3 X0 Y15 I-15 J0|G0 Z5|TRAFOOF|G18",
     ),
     "TRACYL": Entry(
         TRANSFORMATION,
         (
-            "TRACYL(40): Y is measured around the part on a diameter of 40 mm, Z along the part, "
-            "and X is the radial position of the tool. Arcs and radius compensation are in G19."
+            "With TRACYL(40), Y is measured around the part on a diameter of 40 mm, Z is "
+            "measured along the part, and X is the radial position of the tool. Arcs and radius "
+            "compensation are programmed in the plane G19."
         ),
         "T1 D1|G0 X44 Z-5|G19|TRACYL(40)|G1 X38 F200|G1 Y10 Z-15|G0 X44|TRAFOOF|G18",
     ),
     "TRAFOOF": Entry(TRANSFORMATION, "Turns TRANSMIT or TRACYL off.", "TRAFOOF"),
-    "G290": Entry(LANGUAGE_MODE, "The language of this control; accepted.", "G290"),
+    "G290": Entry(LANGUAGE_MODE, "Selects the SINUMERIK language mode; accepted.", "G290"),
     "CPRECOF": Entry(PRECISION, "Accepted.", "CPRECOF"),
     "CPRECON": Entry(PRECISION, "Accepted.", "CPRECON", idle=_EXACT_PATH),
-    "G74": Entry(BLOCKWISE, "Rapid to home in the axes programmed with 0: X1=0 Z1=0.", "G74 X1=0 Z1=0"),
+    "G74": Entry(
+        BLOCKWISE, "Moves the axes that are programmed with 0 to home at rapid: X1=0 Z1=0.", "G74 X1=0 Z1=0"
+    ),
     "G75": Entry(
         BLOCKWISE,
         (
-            "Rapid to a fixed point of the machine file in the programmed axes; the axis values "
-            "have no meaning."
+            "Moves the programmed axes at rapid to a fixed point that is defined in the "
+            "machine file; the axis values are ignored."
         ),
         "G75 X1=0 Z1=0|G0 X60|G75 X0",
     ),
     "G110": Entry(BLOCKWISE, "Pole relative to the current tool position.", "G110 X0 Z0"),
     "G111": Entry(BLOCKWISE, "Pole in workpiece coordinates.", "G111 X20 Z0|G0 RP=10 AP=30"),
     "G112": Entry(BLOCKWISE, "Pole relative to the last pole.", "G111 X20 Z0|G112 X4 Z1"),
-    "G25": Entry(BLOCKWISE, "Minimum spindle speed S, or lower limit X Z of the working area.", "G25 S50"),
-    "G26": Entry(BLOCKWISE, "Maximum spindle speed S, or upper limit X Z of the working area.", "G26 S2000"),
-    "TRANS": Entry(BLOCKWISE, "Shifts the zero; alone, it cancels the programmed frame.", "TRANS X2 Z-10"),
+    "G25": Entry(
+        BLOCKWISE,
+        "Sets the minimum spindle speed S, or the lower limits X and Z of the working area.",
+        "G25 S50",
+    ),
+    "G26": Entry(
+        BLOCKWISE,
+        "Sets the maximum spindle speed S, or the upper limits X and Z of the working area.",
+        "G26 S2000",
+    ),
+    "TRANS": Entry(
+        BLOCKWISE, "Shifts the zero; TRANS without an axis cancels the programmed frame.", "TRANS X2 Z-10"
+    ),
     "ATRANS": Entry(BLOCKWISE, "Adds a zero shift to the current frame.", "TRANS Z-10|ATRANS Z-5"),
-    "ROT": Entry(BLOCKWISE, "Rotates the coordinates by RPL=, from Z toward X.", "ROT RPL=30|G0 X20 Z5|ROT"),
+    "ROT": Entry(
+        BLOCKWISE, "Rotates the coordinates by the angle RPL=, from Z toward X.", "ROT RPL=30|G0 X20 Z5|ROT"
+    ),
     "AROT": Entry(BLOCKWISE, "Adds a rotation to the current frame.", "ROT RPL=30|AROT RPL=-30"),
-    "SCALE": Entry(BLOCKWISE, "Scales the coordinates by a factor per axis.", "SCALE X2 Z2|G0 X20 Z5|SCALE"),
-    "ASCALE": Entry(BLOCKWISE, "Adds a scaling to the current frame.", "SCALE Z2|ASCALE Z0.5"),
+    "SCALE": Entry(
+        BLOCKWISE, "Scales the coordinates by a separate factor for each axis.", "SCALE X2 Z2|G0 X20 Z5|SCALE"
+    ),
+    "ASCALE": Entry(BLOCKWISE, "Adds scaling to the current frame.", "SCALE Z2|ASCALE Z0.5"),
     "MIRROR": Entry(BLOCKWISE, "Mirrors an axis.", "MIRROR Z0|G0 X20 Z5|MIRROR"),
-    "AMIRROR": Entry(BLOCKWISE, "Adds a mirroring to the current frame.", "MIRROR Z0|AMIRROR Z0"),
+    "AMIRROR": Entry(BLOCKWISE, "Adds mirroring to the current frame.", "MIRROR Z0|AMIRROR Z0"),
 }
 """G functions and words without a value, by the group in which each excludes the others."""
 
@@ -260,8 +293,8 @@ WORDS: Mapping[str, Entry] = {
     "X": Entry(
         "axis",
         (
-            "Position across the spindle axis; X=AC( ) is absolute and X=IC( ) incremental, for "
-            "this word only."
+            "Position perpendicular to the spindle axis; X=AC( ) is absolute and X=IC( ) "
+            "incremental, for this word only."
         ),
         "G0 X40",
     ),
@@ -273,100 +306,115 @@ WORDS: Mapping[str, Entry] = {
     ),
     "C": Entry(
         "axis",
-        ("Angle; C=DC( ) takes the shortest path, C=ACP( ) and C=ACN( ) a given direction."),
+        ("Angle; C=DC( ) takes the shortest path, and C=ACP( ) and C=ACN( ) set the direction."),
         "G0 C=DC(90)",
     ),
     "I": Entry(
         "arc",
         (
-            "Center relative to the start point along X, as a radius; absolute with I=AC( ). "
-            "With G33, the lead along X."
+            "Arc center along X relative to the start point, given as a radius; I=AC( ) is "
+            "absolute. With G33, the lead along X."
         ),
         _ARC_IK,
     ),
     "K": Entry(
         "arc",
-        ("Center relative to the start point along Z; absolute with K=AC( ). With G33, the lead along Z."),
+        ("Arc center along Z relative to the start point; K=AC( ) is absolute. With G33, the lead along Z."),
         _ARC_IK,
     ),
     "J": Entry(
         "arc",
-        "Center relative to the start point along Y, in TRANSMIT and TRACYL.",
+        "Arc center along Y relative to the start point, with TRANSMIT and TRACYL.",
         "T1 D1|G0 X40 Z2|DIAMOF|G17|TRANSMIT|G1 X15 Y0 F200|G3 X0 Y15 I-15 J0|G0 Z5|TRAFOOF|G18",
     ),
     "CR": Entry(
         "arc", "Radius; a negative value means more than half a circle.", "G1 X20 Z0 F200|G2 X30 Z-5 CR=5"
     ),
     "AR": Entry("arc", "Opening angle of an arc.", "G1 X20 Z0 F200|G3 X30 Z-5 AR=90"),
-    "I1": Entry("arc", "X of the intermediate point of CIP.", _ARC_THROUGH),
-    "K1": Entry("arc", "Z of the intermediate point of CIP.", _ARC_THROUGH),
-    "RP": Entry("polar", "Distance from the pole of G110 to G112.", "G111 X20 Z0|G1 RP=10 AP=90 F200"),
-    "AP": Entry("polar", "Angle about the pole, from Z towards X.", "G111 X20 Z0|G1 RP=10 AP=90 F200"),
+    "I1": Entry("arc", "X coordinate of the intermediate point for CIP.", _ARC_THROUGH),
+    "K1": Entry("arc", "Z coordinate of the intermediate point for CIP.", _ARC_THROUGH),
+    "RP": Entry(
+        "polar", "Distance from the pole that G110, G111 or G112 sets.", "G111 X20 Z0|G1 RP=10 AP=90 F200"
+    ),
+    "AP": Entry(
+        "polar", "Angle about the pole, measured from Z toward X.", "G111 X20 Z0|G1 RP=10 AP=90 F200"
+    ),
     "ANG": Entry(
         "line",
         ("Angle of a line, measured from Z toward X and given with one end coordinate."),
         "G1 X40 ANG=150 F200",
     ),
-    "CHF": Entry("corner", "Chamfer by its length.", "G1 X40 CHF=2 F200|Z-10"),
-    "CHR": Entry("corner", "Chamfer by the length of its leg.", "G1 X40 CHR=2 F200|Z-10"),
-    "RND": Entry("corner", "Corner rounding by its radius.", "G1 X40 RND=2 F200|Z-10"),
-    "RNDM": Entry("corner", "Rounds every corner until RNDM=0.", "G1 RNDM=1 X40 F200|Z-10|RNDM=0"),
+    "CHF": Entry("corner", "Chamfer with a given length.", "G1 X40 CHF=2 F200|Z-10"),
+    "CHR": Entry("corner", "Chamfer with a given leg length.", "G1 X40 CHR=2 F200|Z-10"),
+    "RND": Entry("corner", "Corner rounding with a given radius.", "G1 X40 RND=2 F200|Z-10"),
+    "RNDM": Entry(
+        "corner", "Rounds every corner until RNDM=0 is programmed.", "G1 RNDM=1 X40 F200|Z-10|RNDM=0"
+    ),
     "FRC": Entry("feed", "Feed for the corner of this block.", "G1 X40 CHF=2 FRC=80 F200|Z-10"),
-    "FRCM": Entry("feed", "Feed for all corners until FRCM=0.", "G1 FRCM=80 X40 CHF=2 F200|Z-10"),
+    "FRCM": Entry(
+        "feed", "Feed for all corners until FRCM=0 is programmed.", "G1 FRCM=80 X40 CHF=2 F200|Z-10"
+    ),
     "F": Entry("feed", "Feed: mm/min under G94, mm/rev under G95.", "G1 X40 F200"),
     "FB": Entry("feed", "Feed for this block only.", "G1 X40 F200|Z-10 FB=50|X44"),
-    "OVR": Entry("feed", "Feed in percent of F, 1 to 200.", "OVR=50 G1 X40 F200|OVR=100"),
-    "S": Entry("spindle", "Speed: rpm, or m/min under G96.", "S500 M3"),
-    "LIMS": Entry("spindle", "Highest speed under G96, G961, G97.", "LIMS=2000"),
+    "OVR": Entry("feed", "Feed as a percentage of F, from 1 to 200.", "OVR=50 G1 X40 F200|OVR=100"),
+    "S": Entry("spindle", "Spindle speed in rpm, or surface speed in m/min with G96.", "S500 M3"),
+    "LIMS": Entry("spindle", "Maximum spindle speed with G96, G961 and G97.", "LIMS=2000"),
     "SPOS": Entry(
         "spindle",
         ("The spindle stops and remains at this angle, held by its drive or as the C axis."),
         "SPOS=90",
     ),
-    "SPOSA": Entry("spindle", "Same as SPOS: the block ends when the spindle is at its angle.", "SPOSA=90"),
+    "SPOSA": Entry(
+        "spindle", "Same as SPOS; the block ends when the spindle has reached its angle.", "SPOSA=90"
+    ),
     "WAITS": Entry(
         "spindle",
-        ("Waits for SPOSA, although SPOSA already waits until the spindle is at its angle."),
+        (
+            "Waits for SPOSA. This is not necessary here, because SPOSA itself waits until the "
+            "spindle is at its angle."
+        ),
         "SPOSA=90|WAITS(1)",
     ),
     "SETMS": Entry("spindle", "Selects the master spindle; only spindle 1 is possible.", "SETMS(1)"),
     "SF": Entry(
         "thread",
-        "Start angle of a thread: the tool starts farther back by this fraction of the lead.",
+        "Start angle of a thread; the tool starts farther back by the corresponding fraction of the lead.",
         "S400 M3|G0 X18 Z8|G33 Z-20 K2 SF=180|G0 X24",
     ),
     **{name: Entry("thread", "Accepted.", f"{name}=2", idle=_LAW) for name in ("DITS", "DITE")},
-    "T": Entry("tool", 'Tool by number, or by name T="ROUGHER"; D1 becomes active.', "T1 D1"),
-    "D": Entry("tool", "Cutting edge 1 to 9 of the tool; D0: no tool offset.", "T1|D1|D0"),
+    "T": Entry(
+        "tool", 'Selects the tool by number, or by name with T="ROUGHER"; D1 becomes active.', "T1 D1"
+    ),
+    "D": Entry("tool", "Cutting edge 1 to 9 of the tool; D0 turns the tool offset off.", "T1|D1|D0"),
     "RPL": Entry("frame", "Rotation angle for ROT and AROT.", "ROT RPL=30|ROT"),
     "OFFN": Entry(
         "path",
-        "Allowance to the contour of G41 and G42, in TRANSMIT.",
+        "Stock allowance on the contour for G41 and G42, with TRANSMIT.",
         "T1 D1|G0 X60 Z2|DIAMOF|G17|TRANSMIT|OFFN=1|G42 G1 X15 Y-15 F200|Y15|G40 X40|TRAFOOF|G18",
     ),
     "ADIS": Entry("path", "Accepted.", "G641 ADIS=0.5", idle=_EXACT_PATH),
     "ADISPOS": Entry("path", "Accepted.", "G641 ADISPOS=0.5", idle=_EXACT_PATH),
-    "X1": Entry("axis", "Machine axis X, with G74 and G75.", "G74 X1=0"),
-    "Z1": Entry("axis", "Machine axis Z, with G74 and G75.", "G74 Z1=0"),
+    "X1": Entry("axis", "Machine axis X, for G74 and G75.", "G74 X1=0"),
+    "Z1": Entry("axis", "Machine axis Z, for G74 and G75.", "G74 Z1=0"),
     "FP": Entry("axis", "Fixed point for G75, 1 to 4; 1 if FP is omitted.", "G75 X1=0 FP=1"),
 }
 """Words with a value."""
 
 M_FUNCTIONS: Mapping[int, Entry] = {
-    0: Entry("stop", "Stop until Cycle Start.", "M0"),
-    1: Entry("stop", "Stop if the optional stop switch is on.", "M1"),
+    0: Entry("stop", "Stops the program until Cycle Start.", "M0"),
+    1: Entry("stop", "Stops the program if the optional stop switch is on.", "M1"),
     2: Entry("end", "End of the program.", "M2"),
     30: Entry("end", "End of the program.", "M30"),
     17: Entry("end", "End of a subprogram.", "M17"),
-    3: Entry("spindle", "Spindle clockwise; also M1=3.", "S500 M3"),
-    4: Entry("spindle", "Spindle counterclockwise; also M1=4.", "S500 M4"),
-    5: Entry("spindle", "Spindle stops; also M1=5.", "S500 M3|M5"),
+    3: Entry("spindle", "Turns the spindle on clockwise; also M1=3.", "S500 M3"),
+    4: Entry("spindle", "Turns the spindle on counterclockwise; also M1=4.", "S500 M4"),
+    5: Entry("spindle", "Stops the spindle; also M1=5.", "S500 M3|M5"),
     19: Entry("spindle", "The spindle stops at 0 degrees, like SPOS=0.", "M19"),
     70: Entry("spindle", "The spindle becomes the C axis.", "M70|G0 C90"),
-    6: Entry("tool", "Tool change: T has already changed the tool.", "T1|M6"),
-    7: Entry("coolant", "Coolant on.", "M7"),
-    8: Entry("coolant", "Coolant on.", "M8"),
-    9: Entry("coolant", "Coolant off.", "M9"),
+    6: Entry("tool", "Tool change; on this control, T has already changed the tool.", "T1|M6"),
+    7: Entry("coolant", "Turns the coolant on.", "M7"),
+    8: Entry("coolant", "Turns the coolant on.", "M8"),
+    9: Entry("coolant", "Turns the coolant off.", "M9"),
     **{
         code: Entry("gear", "Gear selection; accepted.", f"M{code}", idle="this spindle has only one gear")
         for code in range(40, 46)

@@ -17,6 +17,7 @@ from core.table_schema import (
     FileReading,
     Finding,
     Kind,
+    TableReference,
     Unit,
     read_axes_and_spindle,
 )
@@ -26,53 +27,162 @@ KINDS = (SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT)
 _AXES, _SPINDLE = "board.axis", "board.spindle"
 C = "C"
 _FIELDS = (
-    Field("kind", Kind.CHOICE, choices=KINDS),
-    Field("address", Kind.TEXT, default=""),
-    Field("base_us", Kind.WHOLE, low=10, high=500, default=50),  # period of a parallel port's steps
+    Field(
+        "kind",
+        Kind.CHOICE,
+        choices=KINDS,
+        meaning="Board for which `turndesk machine hal` writes the HAL file.",
+    ),
+    Field(
+        "address",
+        Kind.TEXT,
+        default="",
+        meaning=(
+            'Address of the board: an IP address for a Mesa card, a port address such as "0x378" '
+            "for a parallel port."
+        ),
+    ),
+    Field(
+        "base_us",
+        Kind.WHOLE,
+        low=10,
+        high=500,
+        default=50,
+        meaning="Period of the base thread of a parallel port, in µs; longer than the worst latency.",
+    ),
 )
 
 
-def _channel(key: str) -> Field:
-    """The place of something on the board; -1 where the file does not say it."""
-    return Field(key, Kind.WHOLE, low=0, high=63, default=-1)
+def _channel(key: str, meaning: str) -> Field:
+    """Return the field of a channel of the board; -1 where the file does not specify it."""
+    return Field(key, Kind.WHOLE, low=0, high=63, default=-1, meaning=meaning)
 
 
-def _pulse(key: str, default: int) -> Field:
-    """A time of a step pulse, nanoseconds."""
-    return Field(key, Kind.WHOLE, low=100, high=1_000_000, default=default)
+def _pulse(key: str, default: int, meaning: str) -> Field:
+    """Return the field of a time of a step pulse, nanoseconds."""
+    return Field(key, Kind.WHOLE, low=100, high=1_000_000, default=default, meaning=meaning)
 
 
-def _gain(key: str) -> Field:
-    """A gain of LinuxCNC's ``pid``."""
-    return Field(key, Kind.NUMBER, low=0.0, high=100_000.0, default=0.0)
+def _gain(key: str, meaning: str) -> Field:
+    """Return the field of a gain of LinuxCNC's ``pid``."""
+    return Field(key, Kind.NUMBER, low=0.0, high=100_000.0, default=0.0, meaning=meaning)
 
 
-_HEX = (Field("vendor", Kind.TEXT, default=""), Field("product", Kind.TEXT, default=""))
+def _encoder_pin(signal: str) -> Field:
+    """Return the field of an encoder signal at a parallel port."""
+    meaning = f"Parallel port: pin of encoder signal {signal.upper()}."
+    return Field(f"phase_{signal}", Kind.TEXT, default="", meaning=meaning)
+
+
+_HEX = (
+    Field(
+        "vendor",
+        Kind.TEXT,
+        default="",
+        meaning="EtherCAT: vendor ID of the drive, 0x…, as `ethercat slaves -v` shows it.",
+    ),
+    Field("product", Kind.TEXT, default="", meaning="EtherCAT: product code of the drive, 0x…."),
+)
 _AXIS = (
-    _channel("channel"),
-    Field("reversed", Kind.FLAG, default=False),
-    Field("mode", Kind.CHOICE, choices=("velocity", "position"), default="velocity"),
-    _pulse("step_ns", 5000),
-    _pulse("space_ns", 5000),
-    _pulse("setup_ns", 10_000),
-    _pulse("hold_ns", 10_000),
-    Field("step", Kind.TEXT, default=""),
-    Field("direction", Kind.TEXT, default=""),
-    Field("fault_input", Kind.TEXT, default=""),
-    Field("full_speed", Kind.NUMBER, Unit.FEED, 0.1, 10_000.0, default=0.0),
-    Field("full_rpm", Kind.NUMBER, Unit.RPM, 0.1, 100_000.0, default=0.0),  # of C's own drive
-    *map(_gain, ("p", "i", "d", "ff2")),
+    _channel(
+        "channel",
+        "7I76E: step generator, 0 to 4. 7I97: analog output and encoder, 0 to 3. EtherCAT: position of the "
+        "drive on the bus.",
+    ),
+    Field(
+        "reversed",
+        Kind.FLAG,
+        default=False,
+        meaning=("true: the sign of the scale of the axis is reversed; on a 7I97 that of its encoder only."),
+    ),
+    Field(
+        "mode",
+        Kind.CHOICE,
+        choices=("velocity", "position"),
+        default="velocity",
+        meaning=(
+            '7I76E: "velocity" closes a position loop around the step generator; "position" sends '
+            "positions to it."
+        ),
+    ),
+    _pulse("step_ns", 5000, "Length of a step pulse, in ns."),
+    _pulse("space_ns", 5000, "7I76E: shortest time between two step pulses, in ns."),
+    _pulse("setup_ns", 10_000, "Time from a change of direction to the next step, in ns."),
+    _pulse("hold_ns", 10_000, "Time from a step to the next change of direction, in ns."),
+    Field("step", Kind.TEXT, default="", meaning="Parallel port: pin of the step signal."),
+    Field("direction", Kind.TEXT, default="", meaning="Parallel port: pin of the direction signal."),
+    Field(
+        "fault_input",
+        Kind.TEXT,
+        default="",
+        meaning="7I97: input at which the drive reports a fault. Default: none.",
+    ),
+    Field(
+        "full_speed",
+        Kind.NUMBER,
+        Unit.FEED,
+        0.1,
+        10_000.0,
+        default=0.0,
+        meaning="7I97: speed of the axis at 10 V, not below `vmax`.",
+    ),
+    Field(
+        "full_rpm",
+        Kind.NUMBER,
+        Unit.RPM,
+        0.1,
+        100_000.0,
+        default=0.0,
+        meaning="7I97: speed of the separate C drive at 10 V.",
+    ),
+    _gain("p", "P gain of the position loop, in 1/s. On a 7I76E, 0 means 1 ÷ `period_ms` of [hal]."),
+    _gain("i", "I gain of the position loop."),
+    _gain("d", "D gain of the position loop."),
+    _gain("ff2", "Feed-forward of the acceleration, FF2 of the position loop."),
     *_HEX,
 )
 _TURNS = (
-    _channel("channel"),
-    _channel("encoder"),
-    Field("reversed", Kind.FLAG, default=False),
-    Field("full_speed", Kind.NUMBER, Unit.RPM, 1.0, 100_000.0, default=0.0),
-    Field("pwm", Kind.TEXT, default=""),
-    Field("pwm_hz", Kind.WHOLE, low=10, high=50_000, default=1000),
-    *(Field(key, Kind.TEXT, default="") for key in ("phase_a", "phase_b", "phase_z")),
-    Field("velocity_per_rpm", Kind.NUMBER, low=1e-6, high=1e7, default=0.0),
+    _channel(
+        "channel",
+        "7I97: analog output with its own enable, 4 or 5. EtherCAT: position of the drive on the bus.",
+    ),
+    _channel("encoder", "Encoder input of the board: 0 on a 7I76E, 0 to 5 on a 7I97."),
+    Field(
+        "reversed",
+        Kind.FLAG,
+        default=False,
+        meaning=(
+            "true: the sign of the scale of the spindle encoder is reversed; on EtherCAT also that "
+            "of the speed."
+        ),
+    ),
+    Field(
+        "full_speed",
+        Kind.NUMBER,
+        Unit.RPM,
+        1.0,
+        100_000.0,
+        default=0.0,
+        meaning="Spindle speed at 10 V, or at the full PWM signal. Default: the board outputs no speed.",
+    ),
+    Field("pwm", Kind.TEXT, default="", meaning="Parallel port: pin of the PWM speed signal."),
+    Field(
+        "pwm_hz",
+        Kind.WHOLE,
+        low=10,
+        high=50_000,
+        default=1000,
+        meaning="Parallel port: frequency of the PWM signal in Hz.",
+    ),
+    *map(_encoder_pin, "abz"),
+    Field(
+        "velocity_per_rpm",
+        Kind.NUMBER,
+        low=1e-6,
+        high=1e7,
+        default=0.0,
+        meaning="EtherCAT: value of object 60FF at 1 rpm.",
+    ),
     *_HEX,
 )
 
@@ -156,7 +266,7 @@ def _table(file: FileReading) -> BoardTable:
 _ADDRESS = {
     PARPORT: (
         re.compile(r"0x[0-9a-fA-F]{3,4}"),
-        'expected the port\'s address, "0x378" for the first on board',
+        'expected the port address, for example "0x378" for the first on-board port',
     ),
     MESA_STEP: (
         re.compile(r"\d{1,3}(\.\d{1,3}){3}"),
@@ -166,9 +276,11 @@ _ADDRESS = {
 }
 _CHANNELS = {MESA_STEP: range(5), MESA_SERVO: range(4), ETHERCAT: range(64)}
 _WHAT = {
-    MESA_STEP: "a step generator of the 7I76E, 0…4",
-    MESA_SERVO: "an analog output and encoder of the 7I97 with the common enable, 0…3",
-    ETHERCAT: "the drive's place on the bus, from 0",
+    MESA_STEP: "the number of a 7I76E step generator, from 0 to 4",
+    MESA_SERVO: (
+        "the number of a 7I97 channel (analog output and encoder) with the common enable, from 0 to 3"
+    ),
+    ETHERCAT: "the position of the drive on the bus, counted from 0",
 }
 _NUMBER = re.compile(r"0x[0-9a-fA-F]{1,8}")
 
@@ -179,7 +291,14 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         return
     kind = values.text("board.kind")
     if "hal" not in file.tables:
-        yield Finding("hal", "", "missing; [board] is what lies behind the pins that [hal] names")
+        yield Finding(
+            "hal",
+            "",
+            (
+                "missing; [board] needs this table, because [board] describes the hardware "
+                "connected to the pins that [hal] specifies"
+            ),
+        )
     if kind in _ADDRESS and values.has("board.address"):
         form, expected = _ADDRESS[kind]
         if not form.fullmatch(values.text("board.address")):
@@ -198,7 +317,7 @@ def _axis_rules(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
     values, path = file.values, f"{_AXES}.{axis}"
     if axis not in file.names(_AXES):
         if path not in values.wrong:
-            yield Finding(path, "", f"missing; what of the board moves {axis}")
+            yield Finding(path, "", f"missing; specify the board outputs that move axis {axis}")
         return
     if axis == C and _spindle_is_c(file):
         yield from _spindle_as_c(file, kind, path)
@@ -236,12 +355,12 @@ def _spindle_as_c(file: FileReading, kind: str, path: str) -> Iterator[Finding]:
         yield from _step_rate(file, kind, C)
         return
     if values.has("hal.spindle.speed") and not values.text("hal.spindle.speed"):
-        why = "missing; C turns both ways, so its drive takes a signed speed"
+        why = "missing; C turns in both directions, so its drive needs a signed speed"
         yield Finding("hal.spindle.speed", "", why)
     for key in ("channel", "full_speed", "full_rpm", "vendor", "product"):
         place = f"{path}.{key}"
         if values.has(place) and values.found[place] not in ("", 0.0, -1):
-            why = f"leave it out: C is the spindle's drive, which {_SPINDLE} describes"
+            why = f"remove this key: C uses the spindle drive, which is configured in {_SPINDLE}"
             yield Finding(place, str(values.found[place]), why)
 
 
@@ -250,14 +369,14 @@ def _missing(said: str) -> str:
 
 
 _Stated = Mapping[str, tuple[tuple[str, str], ...]]
-_GAIN = ("p", "the gain of its pid, 1/s: measure it")
-_STEPS = (("step", "the pin of its steps"), ("direction", "the pin of its direction"))
+_GAIN = ("p", "the P gain for the axis's pid component in 1/s, as measured on the machine")
+_STEPS = (("step", "the pin for the step signal"), ("direction", "the pin for the direction signal"))
 _STATED: _Stated = {
     PARPORT: _STEPS,
-    MESA_SERVO: (("full_speed", "its speed at 10 V"), _GAIN),
-    ETHERCAT: (("vendor", "the drive's vendor, 0x…"), ("product", "the drive's product code, 0x…")),
+    MESA_SERVO: (("full_speed", "the axis speed at 10 V"), _GAIN),
+    ETHERCAT: (("vendor", "the drive's vendor ID, 0x…"), ("product", "the drive's product code, 0x…")),
 }
-_OWN_C: _Stated = {**_STATED, MESA_SERVO: (("full_rpm", "its speed at 10 V, rpm"), _GAIN)}
+_OWN_C: _Stated = {**_STATED, MESA_SERVO: (("full_rpm", "the speed of the C drive at 10 V, in rpm"), _GAIN)}
 _AS_C: _Stated = {PARPORT: (*_STEPS, _GAIN), **dict.fromkeys((MESA_STEP, MESA_SERVO, ETHERCAT), (_GAIN,))}
 
 
@@ -271,7 +390,11 @@ def _stated(file: FileReading, kind: str, path: str, stated: _Stated = _STATED) 
         if not said:
             yield Finding(place, "", f"missing; expected {what}")
         elif key in ("vendor", "product") and not _NUMBER.fullmatch(str(said)):
-            yield Finding(place, str(said), 'expected a number as `ethercat slaves -v` has it: "0x0000026c"')
+            yield Finding(
+                place,
+                str(said),
+                'expected a hexadecimal number as shown by `ethercat slaves -v`, for example "0x0000026c"',
+            )
 
 
 def _step_rate(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
@@ -292,10 +415,12 @@ def _step_rate(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
         of = f"a parallel port with base_us = {values.whole('board.base_us')}"
     else:
         most = 1e9 / (values.number(needed[3]) + values.number(needed[4]))
-        of = "step_ns and space_ns"
+        of = "the specified step_ns and space_ns"
     if rate * 1.2 > most:  # the limit of what drives it stands a fifth above vmax
         yield Finding(
-            f"axis.{axis}.vmax", "", f"asks for {rate:.0f} steps/s; {of} make {most / 1.2:.0f} at the most"
+            f"axis.{axis}.vmax",
+            "",
+            (f"requires {rate:.0f} steps/s, but the maximum for {of} is {most / 1.2:.0f} steps/s"),
         )
 
 
@@ -304,7 +429,9 @@ def _fast_enough(file: FileReading, axis: str) -> Iterator[Finding]:
     if values.has(path, f"axis.{axis}.vmax") and 0.0 < values.number(path) < values.number(
         f"axis.{axis}.vmax"
     ):
-        yield Finding(path, "", f"expected axis.{axis}.vmax or more: 10 V is all that the board has")
+        yield Finding(
+            path, "", (f"expected at least axis.{axis}.vmax, because the board outputs no more than 10 V")
+        )
 
 
 def _channels_apart(file: FileReading, kind: str) -> Iterator[Finding]:
@@ -317,7 +444,9 @@ def _channels_apart(file: FileReading, kind: str) -> Iterator[Finding]:
     for path in paths:
         channel = values.whole(path) if values.has(path) else -1
         if channel >= 0 and (first := taken.setdefault(channel, path)) != path:
-            yield Finding(path, str(channel), f"expected a channel of its own; {first} has it")
+            yield Finding(
+                path, str(channel), (f"expected an unused channel; {first} already uses this channel")
+            )
 
 
 def _spindle_rules(file: FileReading, kind: str) -> Iterator[Finding]:
@@ -332,14 +461,18 @@ def _spindle_rules(file: FileReading, kind: str) -> Iterator[Finding]:
     scale = "velocity_per_rpm" if kind == ETHERCAT else "full_speed"
     scaled = values.number(f"{_SPINDLE}.{scale}")
     if told and not scaled:
-        what = "what 60FF counts for one rpm" if kind == ETHERCAT else "the speed at 10 V, rpm"
+        what = (
+            "the value of object 60FF at 1 rpm" if kind == ETHERCAT else ("the spindle speed at 10 V, in rpm")
+        )
         yield Finding(f"{_SPINDLE}.{scale}", "", f"missing; expected {what}")
     if scaled and not told:
-        yield Finding(speeds[0], "", f"missing; {_SPINDLE}.{scale} says that there is an output for it")
+        yield Finding(
+            speeds[0], "", (f"missing; {_SPINDLE}.{scale} specifies an output for the spindle speed")
+        )
     channel = values.whole(f"{_SPINDLE}.channel")
     if told and kind == MESA_SERVO and channel not in (4, 5):
         said = "" if channel < 0 else str(channel)
-        why = "an analog output with an enable of its own, 4 or 5"
+        why = "the number of an analog output with a separate enable: 4 or 5"
         yield Finding(f"{_SPINDLE}.channel", said, f"{_missing(said)}expected {why}")
     if told and kind == ETHERCAT:
         if channel < 0:
@@ -355,25 +488,54 @@ def _encoder_rules(file: FileReading, kind: str) -> Iterator[Finding]:
     has, read = values.number("spindle.encoder_ppr"), values.text("hal.spindle.position")
     if read and not has:
         yield Finding(
-            "spindle.encoder_ppr", "0", "expected the lines of the encoder that hal.spindle.position reads"
+            "spindle.encoder_ppr",
+            "0",
+            "expected the line count of the encoder that hal.spindle.position reads",
         )
     most = {MESA_STEP: 0, MESA_SERVO: 5}.get(kind)
     channel = values.whole(f"{_SPINDLE}.encoder")
     for axis in file.names(_AXES) if kind == MESA_SERVO else ():
         path = f"{_AXES}.{axis}.channel"
         if values.has(path) and values.whole(path) == channel >= 0:
-            why = f"expected an encoder of its own; {path} has it"
+            why = f"expected an unused encoder; {path} already uses this encoder"
             yield Finding(f"{_SPINDLE}.encoder", str(channel), why)
     if read and has and most is not None and not 0 <= channel <= most:
         said = "" if channel < 0 else str(channel)
-        what = "0, the one encoder of the 7I76E" if most == 0 else "an encoder of the 7I97, 0…5"
+        what = (
+            ("0, the number of the only encoder on the 7I76E")
+            if most == 0
+            else ("the number of a 7I97 encoder, from 0 to 5")
+        )
         yield Finding(f"{_SPINDLE}.encoder", said, f"{_missing(said)}expected {what}")
     if read and has and kind == PARPORT:
         for key in ("phase_a", "phase_b"):
             if values.has(f"{_SPINDLE}.{key}") and not values.text(f"{_SPINDLE}.{key}"):
                 yield Finding(
-                    f"{_SPINDLE}.{key}", "", "missing; expected the encoder's pin of the parallel port"
+                    f"{_SPINDLE}.{key}", "", "missing; expected the parallel port pin of this encoder signal"
                 )
 
 
-DRIVER = Driver(tables=(DriverTable("board", _FIELDS, _table, ("axis", "spindle"), _read, _rules),))
+DRIVER = Driver(
+    tables=(
+        DriverTable(
+            "board",
+            _FIELDS,
+            _table,
+            ("axis", "spindle"),
+            _read,
+            _rules,
+            purpose="The hardware for which `turndesk machine hal` writes the HAL file. Scales follow from "
+            "`count` of the axes and `encoder_ppr` of the spindle.",
+            parts=(
+                TableReference(
+                    "board.axis.…",
+                    "How an axis, the last word of the heading, is connected to the board.",
+                    _AXIS,
+                ),
+                TableReference(
+                    "board.spindle", "How the spindle and its encoder are connected to the board.", _TURNS
+                ),
+            ),
+        ),
+    )
+)

@@ -18,14 +18,26 @@ _IN = (("6041", 16, "cia-statusword", "u32"), ("6061", 8, "opmode-display", "s32
 
 def ethercat_lathe(lathe: Lathe) -> HalFile:
     """Drives in CSP, a spindle in CSV, one EL1008 and one EL2008 behind them."""
-    hint = "a terminal of the bus: lcec.0.DI.din-0 … din-7 (EL1008), lcec.0.DO.dout-0 … dout-7 (EL2008)"
-    file = HalFile(lathe, "EtherCAT drives in cyclic synchronous position", _terminal, hint)
+    hint = "a bus terminal: lcec.0.DI.din-0 … din-7 (EL1008), lcec.0.DO.dout-0 … dout-7 (EL2008)"
+    file = HalFile(lathe, "EtherCAT drives in cyclic synchronous position mode", _terminal, hint)
     file.notes += [
-        "not in Debian, to be built: the EtherCAT master, linuxcnc-ethercat (lcec) and hal-cia402",
-        "vendor, product, place of every slave: ethercat slaves -v; mapping and clock: the drive's manual",
-        "axis.….count: increments of 6064 against a dial gauge, 10 mm of jog; X counts on the radius",
-        "following error window (6065) in the drive too; what it does when the bus falls silent: quick stop",
-        "spindle: what 60FF counts for one rpm, and the sign; 6064 is 32 bits wide and goes round",
+        ("build the EtherCAT master, linuxcnc-ethercat (lcec) and hal-cia402; Debian does not include them"),
+        (
+            "read the vendor, product and position of each slave with: ethercat slaves -v; "
+            "for the PDO mapping and the clock settings, see the drive manual"
+        ),
+        (
+            "axis.….count: check the increments of object 6064 against a dial gauge over a "
+            "10 mm jog; X positions are radii"
+        ),
+        (
+            "set the following error window (6065) in the drive too, and set the drive to make a "
+            "quick stop when bus communication is lost"
+        ),
+        (
+            "spindle: determine the value of object 60FF at 1 rpm and the sign of that "
+            "value; object 6064 is a 32-bit value and wraps around"
+        ),
     ]
     drives = [axis.name.lower() for axis in lathe.driven]
     if _turned(lathe):
@@ -34,7 +46,7 @@ def ethercat_lathe(lathe: Lathe) -> HalFile:
     file.link("nand", *_healthy(lathe, drives))
     for axis in lathe.driven:
         _axis(file, axis)
-    file.section("Power of the drives")
+    file.section("Drive power")
     file.enable(*(f"cia402.{axis.name.lower()}.enable" for axis in lathe.driven))
     if _turned(lathe):
         _spindle(file)
@@ -63,7 +75,7 @@ def _has_terminals(lathe: Lathe) -> bool:
 def _load(file: HalFile, drives: list[str]) -> None:
     lathe = file.lathe
     file.load(f"loadrt threads name1={lathe.thread} period1={lathe.period * 1e9:.0f}")
-    file.load(f"loadusr -W lcec_conf {XML}", "the bus, as the file beside this one describes it")
+    file.load(f"loadusr -W lcec_conf {XML}", "bus configuration file, in the same folder as this file")
     file.load("loadrt lcec")
     file.load(f"loadrt cia402 names={','.join(f'cia402.{name}' for name in drives)}")
     if "spindle" in drives:
@@ -102,9 +114,9 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     file.section(f"Axis {axis.name}: slave {board.channel}, cyclic synchronous position")
     file.setp(f"{pin}.csp-mode", 1)
     sign = -1.0 if board.reversed else 1.0
-    file.setp(f"{pin}.pos-scale", sign / axis.count, f"increments a {axis.unit}: 1 / count")
+    file.setp(f"{pin}.pos-scale", sign / axis.count, f"increments per {axis.unit}: 1 / count")
     file.setp(
-        f"{pin}.auto-fault-reset", 1, "a fault is reset when power is asked for again, by Reset and DRIVES ON"
+        f"{pin}.auto-fault-reset", 1, "a drive fault is reset when Reset and DRIVES ON request power again"
     )
     _drive(file, name)
     file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.pos-cmd", place=place, needed=True)
@@ -117,10 +129,12 @@ def _spindle(file: HalFile) -> None:
     place, sign = f"slave {board.channel}", -1.0 if board.reversed else 1.0
     file.section(f"Spindle: slave {board.channel}, cyclic synchronous velocity")
     file.setp(f"{pin}.csp-mode", 0)
-    file.setp(f"{pin}.velo-scale", sign * board.velocity_per_rpm, "what 60FF and 606C count for one rpm")
+    file.setp(f"{pin}.velo-scale", sign * board.velocity_per_rpm, "value of objects 60FF and 606C at 1 rpm")
     if file.lathe.encoder_lines:
         file.setp(
-            f"{pin}.pos-scale", sign * 4 * file.lathe.encoder_lines, "increments of 6064 a turn: 4 x lines"
+            f"{pin}.pos-scale",
+            sign * 4 * file.lathe.encoder_lines,
+            "increments of object 6064 per revolution: 4 x encoder lines",
         )
         further = spindle_as_c.turns(file)
         file.role("hal.spindle.position", "spindle-turns", f"{pin}.pos-fb", *further, place=place)

@@ -7,9 +7,15 @@ from drivers.hal.boards.spindle_as_c import turns
 
 _WATCHDOG = 5_000_000  # ns without a word of this computer until the card lets everything fall
 NOTES = (
-    "a real-time kernel and a network port of the card's own; halrun alone must hold 1 ms for an hour",
-    "axis.….count: dial gauge against 10 mm of jog; X counts on the radius",
-    "E-stop must take the drives' power itself; the card's watchdog only ends steps and voltages",
+    (
+        "use a real-time kernel and a separate network port for the card; halrun alone must "
+        "maintain a 1 ms period for an hour"
+    ),
+    "axis.….count: check this value against a dial gauge over a 10 mm jog; X positions are radii",
+    (
+        "E-stop must remove drive power directly; the card's watchdog only stops step pulses "
+        "and analog voltages"
+    ),
 )
 
 
@@ -24,7 +30,7 @@ def load_card(file: HalFile, card: str, config: str, *further: str) -> None:
     address = f'board_ip="{lathe.board.address}" ' if lathe.board.address else ""
     file.load(f'loadrt hm2_eth {address}config="{config}"')
     file.first.append(f"{card}.read")
-    file.section("Watchdog: the card switches its outputs off when the computer is silent")
+    file.section("Watchdog: the card turns its outputs off when it receives nothing from the computer")
     file.setp(f"{card}.watchdog.timeout_ns", _WATCHDOG)
     _link(file, card, further)
 
@@ -55,7 +61,7 @@ def _drive_faults(file: HalFile) -> list[str]:
             file.at_terminal(key, f"{axis.name.lower()}-drive-fault", wired, f"{gate}.in1", drives=False)
         file.role(path, f"{axis.name.lower()}-fault", f"{gate}.out")
     if gates:
-        file.load(f"loadrt or2 names={','.join(gates)}", "a fault of the drive, or the lost card")
+        file.load(f"loadrt or2 names={','.join(gates)}", "drive fault or lost connection to the card")
     return gates
 
 
@@ -81,7 +87,7 @@ def spindle_encoder(file: HalFile, card: str, place: str) -> None:
     pin = f"{card}.encoder.{board.encoder:02d}"
     file.section(f"Spindle: encoder {board.encoder}")
     counts = 4 * file.lathe.encoder_lines * (-1 if board.reversed else 1)
-    encoder(file, pin, counts, "counts a turn: 4 x lines; it rises with M03")
+    encoder(file, pin, counts, "counts per revolution: 4 x encoder lines; the position increases with M03")
     file.role("hal.spindle.position", "spindle-turns", f"{pin}.position", *turns(file), place=place)
     file.role("hal.spindle.velocity", "spindle-rps", f"{pin}.velocity", place=place)
     file.role("hal.spindle.index_enable", "spindle-index", f"{pin}.index-enable", place=place)

@@ -25,10 +25,19 @@ def mesa_servo_lathe(lathe: Lathe) -> HalFile:
     file = HalFile(lathe, "±10 V servo drives on a Mesa 7I97", _terminal, hint)
     file.notes += [
         *NOTES,
-        "direction before power: turn the screw by hand, the place must rise with the axis; first power with"
-        " the belt off: a loop of the wrong sign runs away",
-        "full_speed: the drive's speed at 10 V; p from 5 up until it hums, then half; ff2 last, by the scope",
-        "drift: balance the drive at 0 V until the slide stands with p alone",
+        (
+            "check the direction with drive power off: turn the screw by hand; the position must "
+            "increase when the axis moves in the plus direction. Switch drive power on for the "
+            "first time with the belt off, because an axis with the wrong loop sign runs away"
+        ),
+        (
+            "full_speed: enter the axis speed at 10 V. Increase p from 5 until the axis hums, "
+            "then halve it. Set ff2 last, using the scope"
+        ),
+        (
+            "drift: adjust the balance of the drive at 0 V until the axis stays at rest "
+            "with only the P gain (p) set"
+        ),
     ]
     turns = bool(lathe.encoder_lines and lathe.names.get("hal.spindle.position"))
     spindle = lathe.board.spindle
@@ -42,12 +51,14 @@ def mesa_servo_lathe(lathe: Lathe) -> HalFile:
     file.setp(f"{_CARD}.pwmgen.pwm_frequency", _PWM_HZ)
     for axis in lathe.driven:
         _axis(file, axis)
-    file.section("Power of the drives: the analog outputs 0…3 share one enable")
+    file.section("Drive power: analog outputs 0 to 3 share one enable")
     file.enable(*_enables(lathe))
     if spindle.full_speed:
         _speed(file)
     if turns:
-        spindle_encoder(file, _CARD, f"encoder {spindle.encoder}, A at {_ENCODERS[spindle.encoder]}")
+        spindle_encoder(
+            file, _CARD, (f"encoder {spindle.encoder} (signal A at {_ENCODERS[spindle.encoder]})")
+        )
     file.rest()
     file.last.append(f"{_CARD}.write")
     return file
@@ -68,8 +79,8 @@ def _enables(lathe: Lathe) -> list[str]:
 
 
 def _analog(file: HalFile, pin: str, full: float, what: str) -> None:
-    file.setp(f"{pin}.output-type", 1, "pulse width on one pin")
-    file.setp(f"{pin}.offset-mode", 1, "half of it is 0 V")
+    file.setp(f"{pin}.output-type", 1, "pulse-width modulation on one pin")
+    file.setp(f"{pin}.offset-mode", 1, "a duty cycle of 50 % is 0 V")
     file.setp(f"{pin}.scale", full, what)
 
 
@@ -80,15 +91,15 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
         f"{_CARD}.encoder.{board.channel:02d}",
         f"pid.{name}",
     )
-    place = f"{_ANALOG[board.channel]}, encoder {board.channel} A at {_ENCODERS[board.channel]}"
+    place = f"{_ANALOG[board.channel]}, encoder {board.channel} (signal A at {_ENCODERS[board.channel]})"
     file.section(f"Axis {axis.name}: analog output and encoder {board.channel}")
     full = _DEGREES_RPM * board.full_rpm if axis.name == C else board.full_speed
     _analog(file, out, full, f"{axis.unit}/s at 10 V")
     sign = -1.0 if board.reversed else 1.0
-    encoder(file, counter, sign / axis.count, f"counts a {axis.unit}: 1 / count")
+    encoder(file, counter, sign / axis.count, f"counts per {axis.unit}: 1 / count")
     for key, value in (("Pgain", board.p), ("Igain", board.i), ("Dgain", board.d), ("FF0", 0.0)):
         file.setp(f"{pid}.{key}", value)
-    file.setp(f"{pid}.FF1", 1.0, "the speed that is asked for goes out as it is")
+    file.setp(f"{pid}.FF1", 1.0, "passes the commanded speed through unchanged")
     file.setp(f"{pid}.FF2", board.ff2)
     file.setp(f"{pid}.maxoutput", full, f"{axis.unit}/s: 10 V")
     file.setp(f"{pid}.error-previous-target", 1)
@@ -110,7 +121,7 @@ def _speed(file: HalFile) -> None:
     board = file.lathe.board.spindle
     pin, place = f"{_CARD}.pwmgen.{board.channel:02d}", _ANALOG[board.channel]
     file.section(f"Spindle: analog output {board.channel}")
-    _analog(file, pin, board.full_speed, "rpm at 10 V")
+    _analog(file, pin, board.full_speed, "spindle speed at 10 V, in rpm")
     speed = "speed" if file.lathe.names.get("hal.spindle.speed") else "speed_abs"
     value, enable = spindle_as_c.chosen_speed(file, f"{pin}.value", f"{pin}.enable")
     file.role(f"hal.spindle.{speed}", "spindle-rpm-cmd", value, place=place, needed=True)

@@ -22,9 +22,15 @@ def mesa_step_lathe(lathe: Lathe) -> HalFile:
     file = HalFile(lathe, "step drives on a Mesa 7I76E", _terminal, hint)
     file.notes += [
         *NOTES,
-        "step_ns, space_ns, setup_ns, hold_ns: the drive's manual; what it does not see is lost, untold",
-        "spindle: full_speed is what the inverter makes of 10 V",
-        "firmware 7i76e_7i76x1D.bit, as delivered: mesaflash --device 7i76e --addr ADDRESS --readhmid",
+        (
+            "step_ns, space_ns, setup_ns, hold_ns: use the values in the drive manual; a "
+            "drive that misses step pulses does not report a fault"
+        ),
+        "spindle: full_speed is the spindle speed when the inverter input is at 10 V",
+        (
+            "firmware 7i76e_7i76x1D.bit, as delivered; to check it: mesaflash --device 7i76e "
+            "--addr ADDRESS --readhmid"
+        ),
     ]
     encoder = bool(lathe.encoder_lines and lathe.names.get("hal.spindle.position"))
     steps = 1 + max((board.channel for board in lathe.board.axes.values()), default=0)
@@ -41,7 +47,7 @@ def mesa_step_lathe(lathe: Lathe) -> HalFile:
         _axis(file, axis)
     if lathe.c is not None:
         _spindle_c(file, lathe.c)
-    file.section("Power of the drives")
+    file.section("Drive power")
     file.enable(*_enables(lathe))
     _speed(file)
     if encoder:
@@ -56,17 +62,27 @@ def _field(file: HalFile) -> None:
     file.load("loadrt conv_u32_float names=field-errors")
     file.load("loadrt wcomp names=field-lost")
     file.first[1:1] = ["field-errors", "field-lost"]
-    file.section("Field I/O: the card reads it over a serial link that can fail by itself")
+    file.section("Field I/O: the serial link to the card can fail while the card itself still works")
     file.net("field-error-count", f"{_CARD}.sserial.port-0.fault-count", "field-errors.in")
     file.net("field-error-level", "field-errors.out", "field-lost.in")
     file.setp("field-lost.min", -1)
-    file.setp("field-lost.max", _FIELD_ERRORS, "each failed transfer counts 10, each good one takes 1 back")
+    file.setp(
+        "field-lost.max",
+        _FIELD_ERRORS,
+        ("error counter: each failed transfer adds 10, each good transfer subtracts 1"),
+    )
 
 
 def _timing(file: HalFile) -> None:
     """Latch the step counts at a fixed time before the read, whatever the delay on Ethernet is."""
-    file.section("Step counts: latched by the card's timer, so that Ethernet jitter is not a movement")
-    file.setp(f"{_CARD}.dpll.01.timer-us", _LATCHED_US, "before the read; more than the worst delay")
+    file.section(
+        "Step counts: latched by the card's timer, so that Ethernet jitter does not appear as axis movement"
+    )
+    file.setp(
+        f"{_CARD}.dpll.01.timer-us",
+        _LATCHED_US,
+        "time between latching and reading the step counts; must be longer than the worst delay",
+    )
     file.setp(f"{_CARD}.stepgen.timer-number", 1)
 
 
@@ -102,7 +118,7 @@ def _steps(file: HalFile, axis: LatheAxis) -> str:
     board = file.lathe.board.axes[axis.name]
     pin = f"{_CARD}.stepgen.{board.channel:02d}"
     sign = -1.0 if board.reversed else 1.0
-    file.setp(f"{pin}.position-scale", sign / axis.count, f"steps a {axis.unit}: 1 / count")
+    file.setp(f"{pin}.position-scale", sign / axis.count, f"steps per {axis.unit}: 1 / count")
     for key, value in (
         ("steplen", "step"),
         ("stepspace", "space"),
@@ -111,7 +127,11 @@ def _steps(file: HalFile, axis: LatheAxis) -> str:
     ):
         file.setp(f"{pin}.{key}", getattr(board, f"{value}_ns"), "ns")
     file.setp(f"{pin}.step_type", 0, "step and direction")
-    file.setp(f"{pin}.maxvel", 1.5 * axis.vmax, "above what is asked for: a limit here loses the place")
+    file.setp(
+        f"{pin}.maxvel",
+        1.5 * axis.vmax,
+        "set higher than any commanded velocity, because a limit here would cause lost position",
+    )
     file.setp(f"{pin}.maxaccel", 2.5 * axis.amax)
     return pin
 
@@ -120,7 +140,8 @@ def _spindle_c(file: HalFile, axis: LatheAxis) -> None:
     """The same drive takes steps once it is changed over; its place is the spindle's encoder."""
     spindle_as_c.load(file, chosen=False)
     file.section(
-        f"C: steps {file.lathe.board.axes[axis.name].channel} of the spindle's drive, by its encoder"
+        f"C: step generator {file.lathe.board.axes[axis.name].channel} for the spindle drive, "
+        "with feedback from the spindle encoder"
     )
     pin = _steps(file, axis)
     file.setp(f"{pin}.control-type", 1)
@@ -140,7 +161,9 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
         return
     file.setp(f"{pin}.control-type", 1)
     file.setp(
-        f"pid.{name}.Pgain", board.p or 1.0 / file.lathe.period, "1/s: one period makes a difference up"
+        f"pid.{name}.Pgain",
+        board.p or 1.0 / file.lathe.period,
+        "P gain in 1/s; corrects a position error within one period",
     )
     for key, gain in (
         ("Igain", board.i),
@@ -171,7 +194,7 @@ def _speed(file: HalFile) -> None:
     if not full:
         return
     file.section("Spindle: analog output 0…10 V, enable and direction of the 7I76E")
-    file.setp(f"{_FIELD}.spinout-scalemax", full, "rpm at 10 V")
+    file.setp(f"{_FIELD}.spinout-scalemax", full, "spindle speed at 10 V, in rpm")
     file.setp(f"{_FIELD}.spinout-minlim", 0)
     file.setp(f"{_FIELD}.spinout-maxlim", min(full, file.lathe.rpm_max), "rpm")
     file.role(

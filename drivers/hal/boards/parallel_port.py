@@ -14,13 +14,25 @@ _IN = frozenset(("10", "11", "12", "13", "15"))
 
 def parallel_port(lathe: Lathe) -> HalFile:
     """Steps by ``stepgen``, turns of the spindle by ``encoder``, its speed by ``pwmgen`` and a converter."""
-    hint = "a pin of the port: parport.0.pin-02-out … -09-out, 01 14 16 17; parport.0.pin-10-in … -13-in, 15"
+    hint = (
+        "a parallel port pin: parport.0.pin-02-out … -09-out, -01-out, -14-out, -16-out or "
+        "-17-out; parport.0.pin-10-in … -13-in or -15-in"
+    )
     file = HalFile(lathe, "step and direction on a parallel port", _terminal, hint)
     file.notes += [
-        "latency-test: the base period must be longer than the worst latency; a real-time kernel is needed",
-        "axis.….count: dial gauge against 10 mm of jog; X counts on the radius",
-        "pulse times: the drive's manual; a direction that is set too late loses a step at each reversal",
-        "E-stop must take the drives' power itself: the port says nothing when this computer hangs",
+        (
+            "run latency-test: the base period must be longer than the worst latency; a "
+            "real-time kernel is required"
+        ),
+        "axis.….count: check this value against a dial gauge over a 10 mm jog; X positions are radii",
+        (
+            "pulse times: use the values in the drive manual; if the direction signal changes "
+            "too late, a step is lost at each reversal"
+        ),
+        (
+            "E-stop must remove drive power directly, because the port gives no signal when this "
+            "computer hangs"
+        ),
     ]
     encoder = bool(lathe.encoder_lines and lathe.names.get("hal.spindle.position"))
     _load(file, encoder=encoder)
@@ -28,7 +40,7 @@ def parallel_port(lathe: Lathe) -> HalFile:
         _axis(file, channel, axis)
     if lathe.c is not None:
         spindle_as_c.changed_over(file)
-    file.section("Power of the drives")
+    file.section("Drive power")
     file.enable(*(f"stepgen.{channel}.enable" for channel in range(len(lathe.axes))))
     if lathe.board.spindle.pwm:
         _speed(file)
@@ -43,7 +55,10 @@ def _load(file: HalFile, *, encoder: bool) -> None:
     pwm = bool(lathe.board.spindle.pwm)
     threads = f"name1=base-thread fp1=0 period1={lathe.board.base_us * 1000}"
     file.load(f"loadrt threads {threads} name2={lathe.thread} period2={lathe.period * 1e9:.0f}")
-    file.load(f'loadrt hal_parport cfg="{lathe.board.address or "0x378"} out"', "pins 2…9 are outputs")
+    file.load(
+        f'loadrt hal_parport cfg="{lathe.board.address or "0x378"} out"',
+        ("parallel port pins 2 to 9 are outputs"),
+    )
     kinds = ["v" if axis is lathe.c else "p" for axis in axes]
     file.load(f"loadrt stepgen step_type={','.join('0' * len(axes))} ctrl_type={','.join(kinds)}")
     if encoder:
@@ -71,15 +86,26 @@ def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
     pin = f"stepgen.{channel}"
     file.section(f"Axis {axis.name}: step generator {channel}")
     sign = -1.0 if board.reversed else 1.0
-    file.setp(f"{pin}.position-scale", sign / axis.count, f"steps a {axis.unit}: 1 / count")
-    file.setp(f"{pin}.maxvel", 1.5 * axis.vmax, "above what is asked for: a limit here loses the place")
+    file.setp(f"{pin}.position-scale", sign / axis.count, f"steps per {axis.unit}: 1 / count")
+    file.setp(
+        f"{pin}.maxvel",
+        1.5 * axis.vmax,
+        "set higher than any commanded velocity, because a limit here would cause lost position",
+    )
     file.setp(f"{pin}.maxaccel", 2.5 * axis.amax)
-    file.setp(f"{pin}.steplen", 1, "ns, rounded up to a base period: parport.reset ends the step")
+    file.setp(
+        f"{pin}.steplen",
+        1,
+        ("step pulse length in ns, rounded up to one base period; parport.reset ends the step pulse"),
+    )
     file.setp(f"{pin}.stepspace", 0)
     file.setp(f"{pin}.dirsetup", board.setup_ns)
     file.setp(f"{pin}.dirhold", board.hold_ns)
     if axis is file.lathe.c:
-        file.say("the spindle's drive takes these steps once it is changed over; its place is its encoder")
+        file.say(
+            "after the switch to step mode, the spindle drive follows these steps; the spindle "
+            "encoder reports its position"
+        )
         spindle_as_c.loop(file, axis, f"{pin}.velocity-cmd")
     else:
         file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.position-cmd", needed=True)
@@ -92,14 +118,14 @@ def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
             f"{pin}.{what}",
         )
     if _terminal(board.step) is not None:
-        file.setp(f"{board.step}-reset", 1, "a step ends within the base period")
+        file.setp(f"{board.step}-reset", 1, "the step pulse ends within the base period")
         file.setp("parport.0.reset-time", board.step_ns)
 
 
 def _speed(file: HalFile) -> None:
     board = file.lathe.board.spindle
-    file.section("Spindle: its speed as pulses whose width a converter makes 0…10 V of")
-    file.setp("pwmgen.0.scale", board.full_speed, "rpm at 10 V")
+    file.section("Spindle: PWM speed signal, which a converter changes to 0…10 V")
+    file.setp("pwmgen.0.scale", board.full_speed, "spindle speed at 10 V, in rpm")
     file.setp("pwmgen.0.pwm-freq", board.pwm_hz, "Hz")
     file.role("hal.spindle.speed_abs", "spindle-rpm-abs", "pwmgen.0.value", needed=True)
     file.role("hal.spindle.on", "spindle-on", "pwmgen.0.enable", needed=True)
@@ -108,9 +134,9 @@ def _speed(file: HalFile) -> None:
 
 def _encoder(file: HalFile) -> None:
     board = file.lathe.board.spindle
-    file.section("Spindle: its encoder")
+    file.section("Spindle encoder")
     counts = 4 * file.lathe.encoder_lines * (-1 if board.reversed else 1)
-    file.setp("encoder.0.position-scale", counts, "counts a turn: 4 x lines")
+    file.setp("encoder.0.position-scale", counts, "counts per revolution: 4 x encoder lines")
     for phase, port in (("A", board.phase_a), ("B", board.phase_b), ("Z", board.phase_z)):
         if port:
             key = f"board.spindle.phase_{phase.lower()}"

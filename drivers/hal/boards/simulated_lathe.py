@@ -12,7 +12,10 @@ _SWITCHES = 0.3  # s for the collet to close, and to open
 def simulated_lathe(lathe: Lathe) -> HalFile:
     """Slides that trail their setpoints, a spindle that ramps, inputs that are set by hand."""
     file = HalFile(
-        lathe, "a lathe of stock simulation components, no hardware", _terminal, "the name of a signal"
+        lathe,
+        "lathe simulated with standard LinuxCNC components, without hardware",
+        _terminal,
+        "the name of a signal",
     )
     names = [axis.name.lower() for axis in lathe.driven]
     file.load(f"loadrt threads name1={lathe.thread} period1={lathe.period * 1e9:.0f}")
@@ -27,7 +30,8 @@ def simulated_lathe(lathe: Lathe) -> HalFile:
     if lathe.c is not None:
         spindle_as_c.load_simulated(file)
     file.section(
-        "Slides: each trails its setpoint by half a period's way; without power it stays where it is"
+        "Axes: each axis lags its setpoint by half of the travel in one period; an "
+        "axis without power does not move"
     )
     for axis in lathe.driven:
         _slide(file, axis.name)
@@ -50,7 +54,7 @@ def _slide(file: HalFile, axis: str) -> None:
 
 
 def _spindle(file: HalFile) -> None:
-    file.section("Spindle: rpm, ramped; turns a second; turns")
+    file.section("Spindle: ramped speed in rpm, speed in rev/s, position in revolutions")
     file.setp("spindle-ramp.maxv", file.lathe.rpm_accel, "rpm/s")
     file.setp("spindle-rps.gain", 1.0 / 60.0)
     file.setp("spindle.scale", 1.0)
@@ -64,16 +68,16 @@ def _spindle(file: HalFile) -> None:
 
 def _hands(file: HalFile) -> None:
     """Inputs and outputs as signals: ``halcmd sets in-guard 1`` is a hand at the switch."""
-    file.section("Inputs and outputs are signals, to be set by hand: halcmd sets NAME 1")
+    file.section("Inputs and outputs are signals; to set a signal by hand: halcmd sets NAME 1")
     for path, name in file.lathe.names.items():
         if path.startswith(("io.", "hal.link_fault")) and "." not in name:
             file.signal(path, name)
     closed = [file.lathe.names.get(f"io.in.{name}", ".") for name in ("estop", "hold", "guard")]
-    file.say("Contacts that are closed at first: E-stop circuit, hold button, guard")
+    file.say("Contacts that are closed at startup: E-stop circuit, hold button, guard")
     file.sections[-1].lines.extend(f"sets {signal} 1" for signal in closed if "." not in signal)
     collet = file.lathe.names.get("io.out.collet", signal_of("io.out.collet"))
     if "io.out.collet" in file.lathe.names:
-        file.say("The collet's switch follows its valve; it begins clamped.")
+        file.say("The collet switch follows the collet valve; the collet is clamped at startup.")
         for delay in ("on-delay", "off-delay"):
             file.setp(f"collet-switch.{delay}", _SWITCHES)
         file.net(collet, "collet-switch.in")

@@ -40,14 +40,18 @@ def load(file: HalFile, *, chosen: bool) -> None:
 def loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
     """The pid with what it reads, and the pins that take its speed, degrees/s."""
     board = file.lathe.board.axes.get(axis.name)
-    file.setp("c-degrees.gain", 360, "the spindle's encoder counts turns")
+    file.setp("c-degrees.gain", 360, "degrees per revolution of the spindle encoder")
     gains = {"Pgain": _SIMULATED} if board is None else {
         "Pgain": board.p, "Igain": board.i, "Dgain": board.d, "FF0": 0.0, "FF2": board.ff2
     }  # fmt: skip
     for key, gain in gains.items():
         file.setp(f"{_PID}.{key}", gain)
-    file.setp(f"{_PID}.FF1", 1.0, "the speed that is asked for goes out as it is")
-    file.setp(f"{_PID}.maxoutput", STAYS_BELOW * axis.vmax, "degrees/s: no faster, whatever is wrong")
+    file.setp(f"{_PID}.FF1", 1.0, "passes the commanded speed through unchanged")
+    file.setp(
+        f"{_PID}.maxoutput",
+        STAYS_BELOW * axis.vmax,
+        ("speed limit in degrees/s; also applies if a fault occurs"),
+    )
     file.setp(f"{_PID}.error-previous-target", 1)
     path = f"hal.axes.{axis.name}"
     file.role(f"{path}.command", "c-pos-cmd", f"{_PID}.command", needed=True)
@@ -61,7 +65,7 @@ def chosen_speed(file: HalFile, speed: str, on: str) -> tuple[str, str]:
     if axis is None:
         return speed, on
     loop(file, axis, "c-rpm.in")
-    file.setp("c-rpm.gain", 1.0 / 6.0, "degrees/s in rpm")
+    file.setp("c-rpm.gain", 1.0 / 6.0, "converts degrees/s to rpm")
     file.net("c-rpm", "c-rpm.out", f"{_CHOICE}.in1")
     file.net("spindle-drive-rpm", f"{_CHOICE}.out", speed)
     file.net("spindle-drive-on", f"{_POWER}.out", on)
@@ -94,6 +98,9 @@ def changed_over(file: HalFile) -> None:
     """The terminal that makes the drive listen to steps instead of its speed input."""
     name = file.lathe.names.get(_PATH, "")
     if "." not in name:
-        why = f"expected {file.hint}, on the drive's input that changes it from speed to steps"
+        why = (
+            f"expected {file.hint}; connect it to the drive input that switches the drive from "
+            "speed mode to step mode"
+        )
         file.findings.append(Finding(_PATH, name, why))
     file.role(_PATH, "spindle-is-c", f"{_PID}.enable", needed=True)

@@ -44,7 +44,16 @@ def main(arguments: list[str]) -> int:
     try:
         hal = importlib.import_module("hal")  # the system's Python has it, this product's does not
     except ImportError as error:
-        sock.send(pack({"error": f"{sys.executable} has no module hal ({error}); is it LinuxCNC's Python?"}))
+        sock.send(
+            pack(
+                {
+                    "error": (
+                        f"{sys.executable} does not have the hal module ({error}); check that it is "
+                        "LinuxCNC's Python"
+                    )
+                }
+            )
+        )
         return 1
     try:
         component = _component(hal, said)
@@ -102,7 +111,10 @@ def _real_time() -> list[str]:
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
     except OSError as error:
-        return [f"the bridge to HAL runs without real-time priority ({error.strerror}); see docs/hardware.md"]
+        return [
+            f"the HAL bridge runs without real-time priority ({error.strerror}); "
+            "see docs/integrator/computer.md"
+        ]
     return []
 
 

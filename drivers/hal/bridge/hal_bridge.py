@@ -252,18 +252,22 @@ class Bridge:
     def _supervise(self, now: float) -> None:
         pins = self.pins
         if not self.rows.settle(bool(pins["plays-b"])):
-            self._trip("setpoints came too late to HAL, which played what was queued before", "late")
+            self._trip(
+                "setpoints reached HAL too late; HAL executed the setpoints that were already queued", "late"
+            )
         if self._stands:
-            self._trip("HAL's servo thread stands: is rtapi_app still there?", "hal-thread")
+            self._trip(
+                "the HAL servo thread has stopped; check that rtapi_app is still running", "hal-thread"
+            )
         if self._is_stale:
-            self._trip("the board is not reached; its inputs are as they were last read", "hal-board")
+            self._trip("the board does not respond; the inputs retain the values last read", "hal-board")
         for name in self.config.bits:
             axis, _, what = name.partition(".")
             if what == "fault" and pins[name] and self._on:
-                who = "the spindle's drive" if axis == "spindle" else f"{axis}: the drive"
+                who = "the spindle drive" if axis == "spindle" else f"the {axis} axis drive"
                 self._trip(f"{who} reports a fault", "axis")
             elif what.startswith("limit") and pins[name] and self._on and axis not in self._homing:
-                self._trip(f"{axis}: on its limit switch", "limit-switch")
+                self._trip(f"{axis}: the axis is on its limit switch", "limit-switch")
         if self._dry and self._powered:
             self._ran_dry()
         self._dry = 0
@@ -276,7 +280,9 @@ class Bridge:
         """At rest nothing has happened; in motion the limit in HAL has braked."""
         if any(abs(v) > _STILL for v in self.player.state(self.rows.played_t)[1]):
             self.player.rest_at(self._target())
-            self._trip(f"HAL had no setpoint for {self._dry} periods: this computer was late", "queue-dry")
+            self._trip(
+                (f"HAL had no setpoints for {self._dry} periods because this computer was late"), "queue-dry"
+            )
 
     def _target(self) -> tuple[float, ...]:
         """Where the last row that was played leads to."""
@@ -284,7 +290,7 @@ class Bridge:
 
     def _lost_power(self) -> None:
         if not self.pins["alive"]:
-            self._trip("this computer was silent: HAL has taken the power", "hal-silent")
+            self._trip("HAL removed drive power because this computer stopped sending signals", "hal-silent")
         self._power_off()
 
     @property
@@ -345,7 +351,7 @@ class Bridge:
         t = pieces[0].t
         if self.rows.first_from(t) is None:
             if not self.rows.plays_anyway(t, rows_of(pieces)):
-                self._trip("setpoints came too late to be played", "late")
+                self._trip("setpoints arrived too late to be executed", "late")
                 return
             t = self.rows.soonest()
         self.player.splice(pieces)
@@ -362,7 +368,7 @@ class Bridge:
         left = pieces[0].t - sign * (self.player.turns.at(t) - zero)  # turns
         if left < 0.0:
             if self.player.rests:
-                self._trip("the thread came too late to be played", "late")
+                self._trip("the thread setpoints arrived too late to be executed", "late")
             return  # what was handed over before is a whole pass too
         count = int(number(head, "way"))
         self.player.mesh(zero, sign, pieces[:count], pieces[count:])

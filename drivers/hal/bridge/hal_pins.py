@@ -73,17 +73,24 @@ def trouble(wanted: Wanted, pins: Mapping[str, Pin], signals: Mapping[str, Signa
     """What is wrong with it; empty when it is as it has to be."""
     pin, signal = pins.get(wanted.pin), signals.get(wanted.pin)
     if pin is None and signal is None:
-        return "HAL has no such pin or signal; is its component loaded, is it written right?"
+        return (
+            "HAL does not have this pin or signal; check its spelling, and check that its component is loaded"
+        )
     kind = pin.kind if pin is not None else signal.kind if signal is not None else ""
     if kind != wanted.kind:
-        return f"is {kind}, expected {wanted.kind}"
+        return f"is of type {kind}, expected type {wanted.kind}"
     if pin is not None and _wrong_way(wanted, pin, signals):
-        expected = "an input, which this control drives" if wanted.drives else "an output, which it reads"
+        expected = (
+            ("an input pin that TurnDesk drives") if wanted.drives else ("an output pin that TurnDesk reads")
+        )
         return f"is an {'output' if pin.way == _OUT else 'input'}, expected {expected}"
     if wanted.drives and pin is not None and pin.signal and signals.get(pin.signal, Signal("", False)).driven:
-        return f"something else drives it by the signal {pin.signal}; take that net out"
+        return (
+            f"another source already drives this pin through the signal {pin.signal}; remove that "
+            "net from the HAL file"
+        )
     if wanted.drives and signal is not None and signal.driven:
-        return "something else drives this signal; take that net out"
+        return "another source already drives this signal; remove the net of that source from the HAL file"
     return ""
 
 

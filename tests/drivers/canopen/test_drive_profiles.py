@@ -118,7 +118,7 @@ def refused(*changes: tuple[str, str]) -> Finding:
 def test_a_bus_without_room_is_refused_with_the_interval_that_fits() -> None:
     slow = refused(("sync_ms = 10 ", "sync_ms = 1 "), ("bitrate = 1000000\n", "bitrate = 500000\n"))
     assert (slow.path, slow.value) == ("canopen.sync_ms", "1")
-    for value in ("2 drives", "127%", "500000 bit/s"):
+    for value in ("2 axis drives", "127%", "500000 bit/s", "sync_ms to at least 2"):
         assert value in slow.expected
 
 

@@ -131,7 +131,7 @@ def test_another_count_than_the_files_is_refused() -> None:
 
 
 def test_a_single_turn_encoder_is_refused_for_a_fast_spindle() -> None:
-    refused(can_machine(*OWN), "1 turns", "2.3", "4.67", turns=1)
+    refused(can_machine(*OWN), "after 1 rev,", "2.3", "4.67", turns=1)
 
 
 def test_a_node_that_is_no_encoder_is_refused() -> None:

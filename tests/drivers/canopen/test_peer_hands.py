@@ -6,8 +6,9 @@ import os
 
 import pytest
 
-from app.compose.played_machine import Typed, obey
+from app.compose.played_machine import HELP, Typed, obey
 from tests.drivers.canopen.bench import CanBench
+from tests.texts import opening, text
 
 
 def test_hands_at_the_station_reach_the_control(bench: CanBench) -> None:
@@ -45,13 +46,13 @@ def test_a_cable_that_is_off_silences_every_node(bench: CanBench) -> None:
 @pytest.mark.parametrize(
     ("line", "told"),
     [
-        ("dance", "not understood; known: start"),
-        ("feed", "not understood"),
-        ("feed fast", "not understood"),
-        ("auto maybe", "not understood"),
-        ("start now", "not understood"),
+        ("dance", text("drivers.unknown-command", line="dance", help=HELP)),
+        ("feed", opening("drivers.unknown-command", line="feed")),
+        ("feed fast", opening("drivers.unknown-command", line="feed fast")),
+        ("auto maybe", opening("drivers.unknown-command", line="auto maybe")),
+        ("start now", opening("drivers.unknown-command", line="start now")),
         ("input 77 on", "77"),
-        ("jam Q on", "no drive is called Q: X, Z"),
+        ("jam Q on", text("drivers.no-drive", axis="Q", drives="X, Z")),
     ],
 )
 def test_what_is_not_understood_is_told_and_changes_nothing(bench: CanBench, line: str, told: str) -> None:

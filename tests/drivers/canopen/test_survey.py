@@ -100,5 +100,5 @@ def test_asking_leaves_no_heartbeat_that_somebody_could_miss(monkeypatch: pytest
 
 def test_a_bus_that_is_not_there_is_one_sentence() -> None:
     machine = can_machine(('interface = "virtual"', 'interface = "nobody"'))
-    with raises_code(DriverError, "driver", "CAN nobody bench-"):
+    with raises_code(DriverError, "driver", "interface nobody", "channel bench-"):
         survey(canopen_config(machine), StepClock())

@@ -201,7 +201,7 @@ class FedCanopen(Canopen):
 
         def begun() -> Link:
             if not self._mended:
-                raise DriverError("the feeder's process does not come up", "feeder-gone")
+                raise DriverError("the driver host does not start", "feeder-gone")
             self.bench.machine.bus.close()
             self.bench.machine = canopen_machine(self.machine, self.clock, self.peers.pump)
             self.feeder = Feeder(bus_driven(self.bench.machine))

@@ -76,7 +76,7 @@ class Hal(Rig):
     """Bridge and servo thread, with the driver in the loop that owns them."""
 
     faults: ClassVar[Mapping[str, Fault]] = {
-        "drive fault": Fault(told=0.03, rests=0.1, code="axis", names="X: "),
+        "drive fault": Fault(told=0.03, rests=0.1, code="axis", names="the X axis"),
         "following error": Fault(told=0.08, rests=0.2, code="following", names="X: "),
         "dead reader": _GONE,
         "silence": Fault(0.2, 0.6, "hal-silent", "0.1", unknown=ALL_UNKNOWN),

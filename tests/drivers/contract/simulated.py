@@ -122,9 +122,9 @@ def simulation_driven(ports: MachinePorts, hands: object | None) -> Driven:
 
 # The feeder ends the queue of a control that it no longer hears, and then takes the power: 1.0 s of way here.
 FEEDER_WORDS = {
-    "dead reader": "the feeder process has ended",
+    "dead reader": "the driver host has ended",
     "silence": "the feeder has not answered",
-    "garbage": "the feeder's socket carries something that is no message",
+    "garbage": "the driver host's socket received an invalid message",
 }
 FEEDER_FAULTS = {
     fault: Fault(
@@ -172,7 +172,7 @@ class Fed(Simulated):
 
         def begun() -> Link:
             if not self._mended:
-                raise DriverError("the feeder's process does not come up", "feeder-gone")
+                raise DriverError("the driver host does not start", "feeder-gone")
             self.feeder = Feeder(simulation_driven(self.inner, self.hands))
             self.link = BrokenLink(self.feeder)
             return cleared(self.link)

@@ -1,4 +1,4 @@
-"""The table of acceptance tests in docs/hardware.md tells the truth: what it names exists."""
+"""The table of acceptance tests in docs/integrator/tried.md tells the truth: what it names exists."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from tests.named import NAMED, ROOT, file_of, functions_of, named_in
 
 def table() -> str:
     """The section of the table."""
-    text = (ROOT / "docs" / "hardware.md").read_text(encoding="utf-8")
-    return text.partition("## Fault → reaction → bound → test")[2].partition("\n## ")[0]
+    text = (ROOT / "docs" / "integrator" / "tried.md").read_text(encoding="utf-8")
+    return text.partition("## Acceptance tests")[2].partition("\n## ")[0]
 
 
 @pytest.mark.parametrize(("file", "test"), named_in(table()))

@@ -64,11 +64,11 @@ def test_a_hold_comes_to_rest_at_the_same_place() -> None:
 def test_without_its_feeder_the_control_shows_no_station_and_no_motion() -> None:
     rig = FedRig()
     rig.ready()
-    rig.link.why = "the feeder process has ended"
+    rig.link.why = "the driver host has ended"
     rig.run(0.1)
     assert not rig.sim.ports.axes.sample().enabled
     assert rig.sim.ports.station.snapshot().age == float("inf")
-    assert rig.sim.ports.spindle.fault() == "the feeder process has ended"
+    assert rig.sim.ports.spindle.fault() == "the driver host has ended"
 
 
 def tripped(seconds: float, names: str) -> str:

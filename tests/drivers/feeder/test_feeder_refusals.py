@@ -111,7 +111,7 @@ def test_a_driver_that_cannot_be_asked_wakes_a_control_that_sleeps(monkeypatch: 
 def test_a_feeder_that_nobody_can_start_again_asks_for_another_control() -> None:
     sim, clock = simulation()
     line = Line(LoopLink(Feeder(simulation_driven(sim.ports, sim.machine))), clock)
-    line.fault = "the feeder process has ended"
+    line.fault = "the driver host has ended"
     with raises_code(DriverError, "feeder-gone"):
         line.restart()
     with raises_code(DriverError, "driver", line.fault):
@@ -147,7 +147,7 @@ def test_a_system_without_locked_memory_is_told_of(monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(gc, "freeze", lambda: None)
     monkeypatch.setattr(ctypes, "CDLL", missing)
-    assert feeder_loop.keep_memory() == ["the feeder's memory is not locked (no C library)"]
+    assert feeder_loop.keep_memory() == ["the driver host's memory is not locked (no C library)"]
 
     class Refusing:
         def mlockall(self, _how: int) -> int:
@@ -155,4 +155,4 @@ def test_a_system_without_locked_memory_is_told_of(monkeypatch: pytest.MonkeyPat
             return -1
 
     monkeypatch.setattr(ctypes, "CDLL", lambda *_a, **_k: Refusing())
-    assert feeder_loop.keep_memory() == ["the feeder's memory is not locked (Cannot allocate memory)"]
+    assert feeder_loop.keep_memory() == ["the driver host's memory is not locked (Cannot allocate memory)"]

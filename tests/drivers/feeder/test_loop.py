@@ -114,7 +114,10 @@ def test_a_mistake_in_the_loop_leaves_the_drives_without_power() -> None:
             1000,
             512 << 20,
             1,
-            ["the feeder's memory is locked as it is, later memory not (memlock limit 512 MB)"],
+            [
+                "only the driver host's present memory is locked; memory allocated later is not locked "
+                "(memlock limit 512 MB)"
+            ],
         ),
     ],
 )
@@ -175,8 +178,8 @@ def test_a_setpoint_at_each_sync_needs_its_time(shipped: str, expected: float) -
 @pytest.mark.parametrize(
     ("late", "expected"),
     [
-        (0.0005, "0.3 s it was kept, at most 0.5 ms late"),
-        (0.0071, "0.3 s it was not kept, at most 7.1 ms late"),
+        (0.0005, "0.3 s test, the SYNC was on time (at most 0.5 ms late)"),
+        (0.0071, "0.3 s test, the SYNC was not on time (at most 7.1 ms late)"),
     ],
 )
 def test_what_is_lost_without_priority_is_said_with_what_a_trial_has_found(

@@ -8,6 +8,7 @@ from core.executor.commands import EnableDrives, FeedOverride, Home, Reset
 from core.executor.snapshot import State
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 from tests.drivers.grblhal.test_run import LONG
+from tests.texts import shows
 
 UNHOMED = (
     (
@@ -73,7 +74,7 @@ def test_a_damaged_answer_stops_and_moves_no_position(damage: bytes) -> None:
     bench = cutting(GrblBench())
     bench.peer.quirks.garble.append(damage)
     bench.until(State.FAULT, limit=1.0)
-    assert "disturbed" in bench.alarms()
+    assert shows(bench.alarms(), "drivers.grblhal-interference")
     bench.until_true(lambda _: not bench.peer.slides.moving, 1.0)
     bench.run(1.0)
     assert bench.shot.actual[:2] == pytest.approx(bench.peer.slides.place, abs=0.001)
@@ -250,4 +251,4 @@ def test_a_line_that_never_ends_is_a_disturbed_line() -> None:
     bench = cutting(GrblBench())
     bench.peer.say("x" * 1500)
     bench.until(State.FAULT, limit=1.0)
-    assert "disturbed" in bench.alarms()
+    assert shows(bench.alarms(), "drivers.grblhal-interference")

@@ -1,6 +1,6 @@
 """The look-alike against what the firmware's own source does: what it says, when, and what it refuses.
 
-Where each habit stands: docs/decisions/0023-grblhal.md.
+Where each habit stands: docs/decisions/0027-grblhal.md.
 """
 
 from __future__ import annotations

@@ -16,6 +16,7 @@ from drivers.lookalikes.grblhal_far_end import TcpEnd, serve
 from drivers.lookalikes.grblhal_firmware import Firmware
 from tests.drivers.grblhal.bench import SHIPPED, GrblBench, quirky
 from tests.drivers.grblhal.test_faults import THREAD
+from tests.texts import text as text_of
 
 Captured = pytest.CaptureFixture[str]
 
@@ -47,9 +48,9 @@ def test_what_it_lacks_is_told() -> None:
         ("X: ", "500 mm/min", "7620"),
         ("Z: ", "10 mm/s²", "3048"),
         ("$30", "1000 rpm", "3500"),
-        ("encoder", "threads"),
     ):
         assert any(all(value in line for value in values) for line in warnings), values
+    assert text_of("drivers.grblhal-no-encoder") in warnings
     (outputs,) = [line for line in warnings if line.startswith("outputs ")]
     assert "collet (out.0), catcher (out.1), live1 (out.2)" in outputs
     assert " 0 " in outputs
@@ -108,7 +109,7 @@ def test_check_and_run_without_them(
     machine_file.write_text(text, encoding="utf-8")
     assert main(["machine", "check", str(machine_file)]) == 1  # its outputs out.N are not there
     told = capsys.readouterr()
-    assert "threads" in told.err
+    assert text_of("drivers.grblhal-no-encoder") in told.err
     rows = [line.split() for line in told.out.splitlines() if line.startswith("  ")]
     failed = {row[2]: row[4] for row in rows if row[0] == "FAIL"}
     assert failed == dict.fromkeys(failed, "missing")

@@ -8,6 +8,7 @@ import pytest
 from core.ports import DriverError, LineOp, Segments, Stop
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import GrblBench, quirky
+from tests.texts import text
 
 
 def powered() -> GrblBench:
@@ -133,5 +134,5 @@ def test_an_output_that_could_not_be_said_is_said_later() -> None:
 def test_a_block_is_refused_while_the_modes_are_verified() -> None:
     bench = powered()
     bench.machine.blocks.abort()
-    with raises_code(DriverError, "controller-refuses", "modes are being verified"):
+    with raises_code(DriverError, "controller-refuses", text("drivers.grblhal-verifies")):
         bench.machine.blocks.submit(LineOp(1.0, 0.0, 1.0))

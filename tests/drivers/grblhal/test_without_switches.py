@@ -12,6 +12,7 @@ from core.ports import DriverError, LineOp
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 from tests.drivers.grblhal.test_faults import UNHOMED
+from tests.texts import text
 
 HERE = tuple((old, new.replace("speed = 60", "speed = 60, method = 37")) for old, new in UNHOMED)
 
@@ -81,7 +82,7 @@ def test_one_that_insists_stays_locked_until_its_last_axis_is_homed() -> None:
     bench.machine.axes.home("Z")
     bench.alone(1.5)
     assert bench.machine.axes.sample().homed[:2] == (False, True)
-    with raises_code(DriverError, "controller-refuses", "has to be homed first"):
+    with raises_code(DriverError, "controller-refuses", text("drivers.grblhal-home-first")):
         bench.machine.blocks.submit(LineOp(1.0, 0.0, 10.0))
     bench.machine.axes.home("X")
     bench.alone(1.5)

@@ -62,7 +62,7 @@ ON = {
     "mesa-7i76e": [f"{FIELD}.input-{n:02d}" for n in (0, 1, 2, 8)],
     "mesa-7i97": [f"{SERVO}.inmux.00.input-{n}" for n in ("00", "01", "02", "08")],
     "ethercat": [
-        *(f"lcec.0.DI.din-{n}" for n in (0, 1, 2, 6)),
+        *(f"lcec.0.DI.din-{n}" for n in (0, 1, 2, 4)),
         *("lcec.0.link-up", "lcec.0.all-op"),
         *(f"lcec.0.{name}.slave-oper" for name in ("x", "z", "spindle", "DI", "DO")),
     ],

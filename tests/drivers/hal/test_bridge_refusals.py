@@ -97,13 +97,12 @@ def test_what_hal_has_played_of_another_stream_than_it_was_told_stops_it(
 def test_with_a_fault_there_is_no_power_until_it_is_cleared(bench: Bench) -> None:
     bench.far.machine.drive_fault("X")
     bench.run(0.5)
-    assert bench.bridge[1] == "axis"
-    assert bench.bridge[0].startswith("X: ")
+    assert bench.bridge == ("the X axis drive reports a fault", "axis")
     bench.far.plant.faulty.clear()  # the drive is whole again, and nobody has acknowledged it
     bench.told("enable")
     bench.run(0.5)
     assert bench.pin("enable") == 0.0
-    with raises_code(DriverError, "no-power", "X: "):
+    with raises_code(DriverError, "no-power", "the X axis drive"):
         bench.axes.enable(True)
     bench.axes.clear_fault()
     bench.run(0.3)

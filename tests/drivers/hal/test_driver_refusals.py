@@ -70,7 +70,7 @@ def test_power_that_is_there_is_not_asked_for_again(bench: Bench) -> None:
 def test_the_spindle_stays_off_behind_a_drive_that_reports_a_fault(bench: Bench) -> None:
     bench.far.machine.drive_fault("X")
     bench.run(0.5)
-    with raises_code(DriverError, "spindle-off", "X: "):
+    with raises_code(DriverError, "spindle-off", "the X axis drive"):
         bench.driver.ports.spindle.run(500.0)
     bench.driver.ports.spindle.run(0.0)  # to stop is never refused
     bench.run(1.0)
@@ -175,7 +175,7 @@ def test_a_broken_pipe_is_the_end_and_a_full_one_is_not() -> None:
     with raises_code(DriverError, "hal-silent", bridge.why):
         link.say("enable")
     assert link.lost == ""
-    bridge.why = DriverError("the bridge to HAL has ended (broken pipe)", "hal-bridge")
+    bridge.why = DriverError("the HAL bridge process has ended (broken pipe)", "hal-bridge")
     with raises_code(DriverError, "hal-bridge", bridge.why):
         link.say("enable")
     assert "broken pipe" in str(link.lost)

@@ -161,7 +161,8 @@ def test_estop_is_latched_in_hal_and_its_release_gives_nothing_back(homed: LiveL
     homed.set("in-estop-ok", 0)
     homed.state(State.ESTOP)
     dead = "x-motor.sel", "z-motor.sel", "spindle-ramp.in"
-    assert [homed.pin(each) for each in dead] == [0.0, 0.0, 0.0]
+    # In the servo thread's next period: on a busy computer the control hears of it before.
+    homed.until(lambda _: [homed.pin(each) for each in dead] == [0.0, 0.0, 0.0])
     assert not homed.is_on("out-coolant")
     homed.set("in-estop-ok", 1)
     homed.until(lambda shot: shot.state is not State.ESTOP)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from drivers.hal.bridge.hal_pins import Pin, Signal, Wanted, halcmd, is_on, nets, pins_of, signals_of, trouble
+from tests.texts import text
 
 # ``halcmd -s show pin`` and ``show sig``: owner, type, way, value, name, arrow and signal.
 SHOWN_PINS = """\
@@ -53,13 +54,19 @@ def test_what_halcmd_shows_is_read() -> None:
         (wanted("x-motor.in", "float", drives=True), ""),  # on a signal that nothing drives
         (wanted("ear.in"), ""),  # an input that hears what something else drives
         (wanted("index", drives=True), ""),
-        (wanted("gaurd.out"), "HAL has no such pin or signal"),
-        (wanted("x-motor.out"), "is float, expected bit"),
-        (wanted("x-cmd"), "is float, expected bit"),
-        (wanted("guard.out", drives=True), "is an output, expected an input, which this control drives"),
-        (wanted("lamp.in"), "is an input, expected an output, which it reads"),
-        (wanted("ear.in", drives=True), "something else drives it by the signal guard; take that net out"),
-        (wanted("guard", drives=True), "something else drives this signal; take that net out"),
+        (wanted("gaurd.out"), text("drivers.hal-no-pin")),
+        (wanted("x-motor.out"), "is of type float, expected type bit"),
+        (wanted("x-cmd"), "is of type float, expected type bit"),
+        (wanted("guard.out", drives=True), "is an output, expected an input pin that TurnDesk drives"),
+        (wanted("lamp.in"), "is an input, expected an output pin that TurnDesk reads"),
+        (
+            wanted("ear.in", drives=True),
+            "another source already drives this pin through the signal guard; remove that net",
+        ),
+        (
+            wanted("guard", drives=True),
+            ("another source already drives this signal; remove the net of that source from the HAL file"),
+        ),
     ],
 )
 def test_a_pin_that_is_not_as_the_machine_file_says_is_told(asked: Wanted, why: str) -> None:

@@ -1,7 +1,7 @@
 """Processes of the HAL backend that die, stand or fall silent while X moves at 100 mm/s, with a real halrun.
 
 One lathe for all: that Reset leads back behind each of them is part of the next one. What was seen is in
-``docs/hardware.md``; no time is asserted but the one that HAL itself keeps.
+``docs/integrator/hal.md``; no time is asserted but the one that HAL itself keeps.
 """
 
 from __future__ import annotations

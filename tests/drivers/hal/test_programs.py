@@ -9,6 +9,7 @@ import pytest
 from app.compose.machine_answers import check_ports
 from app.compose.machine_files import load_machine, shipped_machine
 from tests.drivers.hal.lathes import PATIENT, lathe, run
+from tests.texts import text
 
 PIECE = """\
 G90G94F100
@@ -48,8 +49,8 @@ def test_every_pin_that_the_machine_file_names_has_its_verdict() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "row", "why"),
     [
-        ('"x-servo.in"', '"x-servo.inn"', "hal.axes.X.command", "no such pin"),
-        ('"x-motor.out"', '"x-motor.sel"', "hal.axes.X.feedback", "is bit, expected float"),
+        ('"x-servo.in"', '"x-servo.inn"', "hal.axes.X.command", text("drivers.hal-no-pin")),
+        ('"x-motor.out"', '"x-motor.sel"', "hal.axes.X.feedback", "is of type bit, expected type float"),
         ('"x-servo.in"', '"x-servo.out"', "hal.axes.X.command", "is an output"),
         ('"z-motor.out"', '"z-servo.in"', "hal.axes.Z.feedback", "is an input"),
         ('"spindle-ramp.in"', '"spindle.velocity-cmd"', "hal.spindle.speed", "spindle-rps"),

@@ -16,6 +16,7 @@ from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_leftovers import PREFIX
 from drivers.hal.hal_session import HalSession
 from tests.coded import raises_code
+from tests.texts import text
 
 ROOT = Path(__file__).resolve().parents[3]
 # Says in the bridge's stead what stands in WORDS, one packet each.
@@ -70,11 +71,11 @@ def test_without_linuxcnc_it_says_what_to_install(path: Path) -> None:
     [
         (
             "Note: rt-preempt\nRefusing to run as root",
-            "LinuxCNC refuses to run as root; start the control as",
+            text("drivers.hal-root"),
         ),
-        ("Realtime already running.  Use 'halrun -U'", "another LinuxCNC or HAL session runs; end it"),
-        ("one\ntwo\n\nthree\nfour", "halrun has ended at its start: two / three / four"),
-        ("Note: only what is worth nothing", "halrun has ended at its start: it says nothing"),
+        ("Realtime already running.  Use 'halrun -U'", text("drivers.hal-other-session")),
+        ("one\ntwo\n\nthree\nfour", "halrun ended during startup: two / three / four"),
+        ("Note: only what is worth nothing", text("drivers.hal-mute")),
     ],
 )
 def test_a_halrun_that_ends_is_told_with_what_it_said(path: Path, said: str, told: str) -> None:

@@ -6,6 +6,7 @@ import pytest
 
 from drivers.inverter.inverter_family import Look
 from drivers.inverter.inverter_obedience import OBEYS_WITHIN, PRESS, Obedience
+from tests.texts import text
 
 
 def look(
@@ -35,12 +36,12 @@ def judged(asked: float, seen: Look, *, before: Look = STOOD, first: float = 0.0
 @pytest.mark.parametrize(
     ("asked", "seen", "why"),
     [
-        (20.0, look(0.0, 25.0), "told 20.00 Hz, it has understood 25.00 Hz"),
-        (20.0, look(0.0, run=False), "told to turn at 20.0 Hz, it does not run"),
-        (20.0, look(5.0, asked_reverse=True), "it has understood the other direction"),
-        (-20.0, look(5.0), "it has understood the other direction"),
-        (20.0, look(5.0, reverse=True), "it turns in the other direction"),
-        (20.0, look(35.0), "told 20.0 Hz, it gives 35.0 Hz"),
+        (20.0, look(0.0, 25.0), text("drivers.inverter-other-setpoint", asked="20.00", setpoint="25.00")),
+        (20.0, look(0.0, run=False), text("drivers.inverter-does-not-run", asked="20.0")),
+        (20.0, look(5.0, asked_reverse=True), ("the inverter reports a command for the opposite direction")),
+        (-20.0, look(5.0), "the inverter reports a command for the opposite direction"),
+        (20.0, look(5.0, reverse=True), "the inverter runs in the direction opposite to its command"),
+        (20.0, look(35.0), text("drivers.inverter-other-output", asked="20.0", output="35.0")),
     ],
 )
 def test_what_is_not_as_it_was_told_is_told_behind_a_second(asked: float, seen: Look, why: str) -> None:
@@ -55,11 +56,11 @@ def test_on_its_way_up_nothing_is_wrong(output: float) -> None:
 def test_told_to_stop_it_has_to_fall_and_to_stop() -> None:
     turning = look(20.0)
     assert judged(0.0, turning, before=turning, first=20.0)[1] == (
-        f"told to stop, it still gives 20.0 Hz: {PRESS}"
+        f"{text('drivers.inverter-still-outputs', output='20.0')}: {PRESS}"
     )
     means_to = look(0.0)
     assert judged(0.0, means_to, before=turning, first=20.0)[1] == (
-        f"told to stop, it still means to run: {PRESS}"
+        f"{text('drivers.inverter-still-runs')}: {PRESS}"
     )
     falling = Obedience()
     falling.command(0.0, 20.0, STOOD)
@@ -73,7 +74,8 @@ def test_the_same_command_again_does_not_begin_the_second_anew() -> None:
     obedience = Obedience()
     obedience.command(0.0, 20.0, STOOD)
     obedience.command(0.9, 20.0, STOOD)
-    assert obedience.judge(1.1, look(0.0, run=False)).startswith("told to turn at 20.0 Hz, it does not run")
+    why = text("drivers.inverter-does-not-run", asked="20.0")
+    assert obedience.judge(1.1, look(0.0, run=False)).startswith(why)
 
 
 def test_one_that_obeys_at_last_is_forgiven_what_was() -> None:

@@ -12,6 +12,7 @@ from drivers.serial_line import WireError
 from tests.coded import raises_code
 from tests.drivers.inverter.benches import bench
 from tests.drivers.inverter.inverter_lookalikes import DeltaMemory, HitachiMemory, HuanyangSlave
+from tests.texts import begins
 
 
 def test_delta_gets_its_time_out_and_is_written_once() -> None:
@@ -35,7 +36,7 @@ def test_hitachi_gets_its_time_out() -> None:
 def test_huanyang_has_none_and_says_so() -> None:
     warnings = bench("huanyang").attendant.warnings
     assert len(warnings) == 1
-    assert "time-out" in warnings[0]
+    assert begins(warnings[0], "drivers.inverter-no-timeout", name="Huanyang HY")
 
 
 @pytest.mark.parametrize(

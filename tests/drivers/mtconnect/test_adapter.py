@@ -15,6 +15,7 @@ from drivers.mtconnect.mtconnect_adapter import MOST, Adapter
 from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.mtconnect.shdr_lines import Active, Report
 from tests.drivers.mtconnect.bench import HEARTBEAT, Bench
+from tests.texts import shows
 
 
 def test_an_agent_gets_the_whole_state_and_then_what_changes(bench: Bench) -> None:
@@ -166,7 +167,7 @@ def test_one_that_does_not_read_is_dropped_and_the_other_hears_all(
         bench.look()
         looks += 1
         assert looks < 40 * BEHIND // 240
-    assert "it does not read" in caplog.text
+    assert shows(caplog.text, "drivers.agent-does-not-read")
     assert other.values["block"].startswith(f"N{looks - 1} ")
     slow.hang_up()
 

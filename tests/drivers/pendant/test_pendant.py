@@ -451,4 +451,4 @@ def test_a_pendant_that_was_never_started_is_let_go() -> None:
     device = bench.device
     bench.pendant.close()
     assert device.closed
-    assert bench.pendant.state().away == "the pendant is no longer read"
+    assert bench.pendant.state().away == "TurnDesk has stopped reading the pendant"

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
+from tests.coded import recorded_refusals
 from tests.drivers.inverter.lines import WAIT, Pair
 from tests.drivers.transfer.far_end import FarEnd, answer
 
@@ -122,7 +123,10 @@ def test_what_is_not_whole_leaves_nothing(far: FarEnd, tmp_path: Path, pool: Thr
     assert list(tmp_path.iterdir()) == []
 
 
-def test_commands_that_cannot_be(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_commands_that_cannot_be(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    refusals = recorded_refusals(monkeypatch)
     assert main(["serial", "send", str(tmp_path / "none.nc"), "--port", "/dev/ttyNONE7"]) == 2
     told = capsys.readouterr().err
     assert "none.nc" in told
@@ -135,7 +139,8 @@ def test_commands_that_cannot_be(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert str(program) in capsys.readouterr().err
     for option, said in (("--baud", "12"), ("--baud", "1000001"), ("--leader", "-1"), ("--leader", "2001")):
         assert main(["serial", "send", str(program), "--port", "/dev/ttyNONE7", option, said]) == 2
-        assert f"{option} {said}: " in capsys.readouterr().err
+        assert refusals[-1].code == option.removeprefix("--")
+        assert f"{option} {said} " in capsys.readouterr().err
     assert main(["serial", "send", str(program)]) == 2
     assert "--port" in capsys.readouterr().err
 

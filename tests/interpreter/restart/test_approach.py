@@ -24,6 +24,7 @@ from core.interpreter.restart.restart_retract import Retract, RetractLeg, ToolPl
 from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
+from tests.texts import text
 
 MODAL = Modal(tool=1, tool_x=-10.0, tool_z=-50.0)
 AT = Checkpoint(MODAL._replace(spindle=1, rpm=800.0, coolant=True), x=8.0, z=-12.0)
@@ -189,5 +190,6 @@ def test_a_line_behind_what_was_cut_is_refused_where_it_begins_in_metal() -> Non
     _, broken = in_the_groove()
     answer = StateRebuild(Source("PART", TWO), setup(tools=TOOLS), lambda _count: None).find(12, 0, broken)
     assert not isinstance(answer, RestartPoint)
-    assert answer.why == "Line 12 begins in material that line 11 should have cut."
+    uncut = text("search.uncut-line", line=11)
+    assert answer.why == text("search.in-uncut-material", line=12, uncut=uncut)
     assert two(9, broken).left_out == (0, 0)  # the groove itself is begun

@@ -20,6 +20,7 @@ from core.interpreter.restart.restart_approach import Choices, MachineNow, begin
 from core.interpreter.restart.restart_point import Interruption, NoRestart, RestartPoint
 from core.language.source import Source
 from core.tool_edges import edge_key
+from tests.texts import text
 
 PLATE = """\
 0 BEGIN PGM PLATE MM
@@ -251,7 +252,9 @@ def test_a_line_in_metal_that_was_never_cut_is_refused_and_one_above_it_warned_o
     search = ProgramSearch(reading, setup, lambda _count: None)
     found = search.find(10, 2, broken)
     assert isinstance(found, NoRestart)
-    assert "begins in material that" in found.why
+    assert found.why == text(
+        "search.in-uncut-material", line=10, uncut=text("search.uncut-lines", first=9, last=10)
+    )
     above = search.find(7, 2, broken)
     assert isinstance(above, RestartPoint)
     assert above.left_out == (10, 10)
@@ -416,7 +419,8 @@ def test_no_search_ends_on_a_corner_in_transmit() -> None:
 
 def test_a_block_that_is_deleted_is_no_place_to_go_on() -> None:
     reading, setup = milled(FLATS.replace("Z2\nG1", "/Z2\nG1"))
-    assert "the program never reaches it" in refused((reading, replace(setup, block_delete=True)), 9).why
+    deleted = refused((reading, replace(setup, block_delete=True)), 9)
+    assert deleted.why == text("search.never-reached", line=9)
     assert good((reading, setup), 9).line == 9
 
 

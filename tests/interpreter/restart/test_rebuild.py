@@ -9,6 +9,7 @@ from core.interpreter.restart.restart_point import Interruption, NoRestart, Rest
 from core.interpreter.restart.state_rebuild import StateRebuild
 from core.language.source import Source
 from tests.interpreter.programs import INCH, setup
+from tests.texts import text as text_of
 
 
 def find(text: str, line: int, visit: int = 0, **given: object) -> RestartPoint | NoRestart:
@@ -43,13 +44,13 @@ def test_everything_that_a_line_inherits() -> None:
     [
         (NOSE, 5, "Line 5 uses the nose compensation that begins on line 3.", 3, 8),
         (NOSE, 7, "Line 7 uses the nose compensation that begins on line 3.", 3, 8),
-        (CONTOUR, 5, "Line 5 belongs to the contour of line 3.", 3, 8),
-        (CORNER, 4, "Line 4 is part of the corner of line 3.", 3, 6),
-        (CORNER, 5, "Line 5 is part of the corner of line 3.", 3, 6),
+        (CONTOUR, 5, f"Line 5 {text_of('search.in-contour', line=3)}", 3, 8),
+        (CORNER, 4, f"Line 4 {text_of('search.in-corner', line=3)}", 3, 6),
+        (CORNER, 5, f"Line 5 {text_of('search.in-corner', line=3)}", 3, 6),
         (CALLED, 6, "The program never reaches line 6.", 3, 0),  # its call
         (NEVER, 6, "The program never reaches line 6.", 4, 0),
         (BEHIND, 5, "Line 5 is after the end of the program.", 4, 0),
-        (PLANE, 5, "Line 5 is in the plane switching that begins on line 4.", 4, 7),
+        (PLANE, 5, f"Line 5 {text_of('search.in-plane', line=4)}", 4, 7),
         (PLAIN, 99, "Line 99 does not exist; the last line of the program is 8.", 8, 0),
         ("G90G94F300\nX1Z1\n\nX2\nM30\n", 3, "Line 3 is empty.", 2 + 0, 4),
     ],
@@ -118,7 +119,7 @@ def test_what_an_input_answered_is_not_guessed() -> None:
     text = f"G90G94F300\nX1Z1\nM97I3C1P1\nX2\nZ2\nX1\nM30\n{sub}"
     answer = find(text, 4)
     assert isinstance(answer, NoRestart)
-    assert answer.why == "Line 4 depends on the input that line 3 reads."
+    assert answer.why == text_of("search.input-read", line=4, asked=3)
     assert (answer.before, answer.after) == (3, 6)  # behind Z2 both answers lead to one place
     assert isinstance(find(text, 3), RestartPoint)
     assert isinstance(find(text, 6), RestartPoint)
@@ -128,14 +129,14 @@ def test_a_second_unknown_answer_before_the_first_has_lost_its_effect() -> None:
     text = "G90G94F300\nX1Z1\nM97I3C1P1\nM97I4C1P1\nX2Z2\nX1\nM30\n}1\nG91Z.5\nG90\nM99\n"
     answer = find(text, 6)
     assert isinstance(answer, NoRestart)
-    assert "the state of the input on line 4 is not known" in answer.why
+    assert text_of("search.unknown-input", asked=4) in answer.why
 
 
 def test_an_input_asked_in_a_loop_or_in_a_subroutine() -> None:
     text = "G90G94F300\nX1Z1\nLS2\nM97I3C1P1\nLF\nX1Z1\nX2\nM30\n}1\nZ.5\nM99\n"
     answer = find(text, 7)
     assert isinstance(answer, NoRestart)
-    assert "the state of input 3 on line 4 is not known" in answer.why
+    assert text_of("search.unknown-terminal", asked=4, terminal=3) in answer.why
 
 
 def test_no_line_behind_the_end_and_none_of_a_program_with_errors() -> None:
@@ -222,11 +223,11 @@ def test_without_a_pass_it_is_the_one_that_was_interrupted() -> None:
 @pytest.mark.parametrize(
     ("text", "line", "number", "why"),
     [
-        (NESTED, 6, 7, "Line 6 runs 6 times, so pass 7 does not exist."),
+        (NESTED, 6, 7, text_of("search.no-such-pass", line=6, count=6, wanted=7)),
         (NESTED, 13, 1, "The program never reaches line 13."),
         (
             "G90G94F300\nX1Z1\nLS3\nX1\nM97I3C1P1\nX2\nLF\nM30\n}1\nZ.5\nM99\n", 6, 2,
-            "The program cannot resume at line 6: the state of input 3 on line 5 is not known.",
+            f"The program cannot resume at line 6: {text_of('search.unknown-terminal', asked=5, terminal=3)}",
         ),
         (
             "G91G94F300\nX.1\nLS3\nX.1\nLF\nM30\n", 4, 2,
@@ -234,7 +235,7 @@ def test_without_a_pass_it_is_the_one_that_was_interrupted() -> None:
         ),
         (
             "G90G94F300\nX1Z1\nLS30000\nX1\nX2\nLF\nX1\nM30\n", 5, 2,
-            "Line 5 runs more than 20,000 times; choose the line that begins the loop.",
+            text_of("search.too-many-passes", line=5, most="20,000"),
         ),
     ],
 )  # fmt: skip

@@ -1,0 +1,781 @@
+"""Keys of the JSON that the commands print, for the reference and its tests."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from core.json_key import Key, below, keys, row_keys
+from core.quality.capability import Capability
+from core.quality.stops import ReasonShare
+from core.records.record import Channel
+from core.store import table_keys
+from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.part_cycles import CycleRow, StopRow
+from core.store.store_rows import EventRow, MillRow, PresetRow, SecondaryRow, ShapeRow, ToolRow, ZeroRow
+from core.store.tool_lives import InsertChange, LifeRow
+
+
+class Output(NamedTuple):
+    """What one command prints with ``--json``."""
+
+    command: str
+    purpose: str
+    keys: tuple[Key, ...]
+
+
+DIAGNOSTIC = keys(
+    """
+line | integer | | Line of the program; 0 if the finding has no line.
+column | integer | | Column from 1; 0 if the finding has no line.
+severity | string | | error, warning or note.
+code | string | | What is wrong; the code of a Klartext error is the message name of the control.
+message | string | | What is wrong, in one sentence.
+args | object | | Values of the message by name.
+args.* | string or number | | One value of the message.
+hint | string | | The remedy; empty if not available.
+check | string or null | | ID of the check of the part, see checks.md; null for other findings.
+n | integer or null | | Elementary block; null if the finding has none.
+count | integer | | How often the finding occurs.
+assumed | list | | Values that TurnDesk assumed for this finding.
+silenced | string or null | | Reason why the finding is only a note; null if it is not silenced.
+"""
+)
+_COMPARE = (
+    *keys(
+        """
+offsets | string | | The offsets file of --compare.
+features | list | | Features of the two parts.
+features[].kind | string | | diameter, bore, shoulder or another kind of feature.
+features[].reach | list | length | Where the feature begins and ends: Z for a diameter or bore, otherwise
+  radius.
+features[].here | number or null | length | Size with the current offsets; null if the part does not have
+  the feature.
+features[].there | number or null | length | Size with the other offsets; null if the part does not have
+  the feature.
+features[].difference | number or null | length | there − here; null if only one part has the feature.
+differing | integer | | Number of features that differ.
+largest | number | length | Largest difference.
+removed_volume | list | length³ | Removed volume with the current and the other offsets; null if it is not
+  known.
+cycle_time_s | list | s | Cycle time with the current and the other offsets.
+cutting_time_s | list | s | Cutting time with the current and the other offsets.
+rapid_time_s | list | s | Rapid time with the current and the other offsets.
+gone | list | | Findings that the other offsets do not have, with the keys of `diagnostics`.
+added | list | | Findings that only the other offsets have, with the keys of `diagnostics`.
+"""
+    ),
+    *below("gone[].", DIAGNOSTIC),
+    *below("added[].", DIAGNOSTIC),
+)
+PROVE = Output(
+    "prove FILE… --json",
+    "One object for each program, one on a line. A folder gives one object for each program in the order of "
+    "the names. `stock` is null on a mill and if no stock is known; `compare` exists only with --compare.",
+    (
+        *keys(
+            """
+file | string | | The file as the command names it; with a folder or --jobs, the name of the program.
+dialect | string | | omniturn, klartext or sinumerik.
+units | string | | Unit of the program: inch or mm. Lengths in this object follow the language, not this unit.
+blocks | integer | | Blocks of the program.
+elementary | integer | | Elementary blocks.
+diagnostics | list | | Findings.
+"""
+        ),
+        *below("diagnostics[].", DIAGNOSTIC),
+        *keys(
+            """
+silenced | integer | | Number of findings that are silenced.
+cycle_time_s | number | s | Cycle time, without stops for the operator.
+cutting_time_s | number | s | Time at feed.
+rapid_time_s | number | s | Time at rapid.
+dwell_time_s | number | s | Time of dwells.
+wait_time_s | number | s | Time in which the program waits for the spindle, the collet or an exact stop.
+stops | integer | | How often a cycle waits for the operator.
+cutting_length | number | length | Length of the path at feed.
+rapid_length | number | length | Length of the path at rapid.
+corner_tolerance | number | length | `corner_tolerance` of the machine file.
+tools | list | | Tools that the program uses, sorted: numbers, or names as strings.
+limits | object | | What the program reaches: program positions on a lathe, machine positions on a mill.
+limits.x | list | length | Lowest and highest X; a radius on a lathe.
+limits.y | list | mm | Mill: lowest and highest Y.
+limits.z | list | length | Lowest and highest Z.
+limits.a | list | deg | Mill with this axis: lowest and highest A.
+limits.b | list | deg | Mill with this axis: lowest and highest B.
+limits.c | list | deg | Lowest and highest C; a mill has the key only with this axis.
+limits.rpm | list | rpm | Lowest and highest spindle speed.
+limits.feed_ipm | list | in/min | Lathe: lowest and highest feed.
+limits.feed_mm_min | list | mm/min | Mill: lowest and highest feed.
+ways | object | | Paths through the program by inputs and block delete.
+ways.proved | integer | | Paths that were proved.
+ways.left | integer | | Paths that were not proved.
+ways.cycle_time_s | list | s | Shortest and longest cycle time of the proved paths.
+stock | object or null | | What becomes of the stock.
+stock.given | string or null | | The stock as specified, such as `bar:1.0`; null if TurnDesk assumed it.
+stock.outside | list | length | Points [z, r] of the outside of the stock.
+stock.volume | number | length³ | Volume of the stock.
+stock.removed_volume | number | length³ | Volume that is removed.
+stock.left_volume | number | length³ | Volume that remains.
+stock.profile | list | length | Points [z, r] of the finished outside.
+stock.bore | list or null | length | Points [z, r] of the finished bore; null without a bore.
+stock.min_wall | number or null | length | Smallest wall thickness; null without a bore.
+stock.milled | boolean | | Whether live tools cut the part.
+stock.pieces | list | length³ | Volumes of the pieces that are parted off.
+stock.assumed | list | | Sentences on what TurnDesk assumed.
+stock.unchecked | list | | Sentences on what was not checked.
+final | object | | Position after the program; empty on a mill if not available.
+final.x | number | length | X: on a lathe a radius in the program frame, on a mill in the working plane.
+final.y | number | mm | Mill: Y in the working plane.
+final.z | number | length | Z in the program frame or the working plane.
+final.mx | number | mm | Mill: machine position X.
+final.my | number | mm | Mill: machine position Y.
+final.mz | number | mm | Mill: machine position Z.
+final.a | number or null | deg | Mill: A; null if the machine does not have the axis.
+final.b | number or null | deg | Mill: B; null if the machine does not have the axis.
+final.c | number or null | deg | C; on a mill null if the machine does not have the axis.
+compare | object | | The part with the offsets of --compare.
+"""
+        ),
+        *below("compare.", _COMPARE),
+    ),
+)
+_BLOCK = keys(
+    """
+n | integer | | Elementary block, counted from 1 in the order of execution.
+line | integer | | Line of the program, from 1.
+source | string | | Text of that line.
+text | string | | The elementary block as the screen shows it.
+kind | string | | rapid, feed, arc, thread, rotate, dwell, plane-line, plane-arc, plane or action.
+"""
+)
+_TIMES = keys(
+    """
+t0 | number | s | Start of the block, counted from the start of the program.
+t1 | number | s | End of the block.
+"""
+)
+EXPAND_OMNITURN = Output(
+    "expand FILE --json, OmniTurn",
+    "One object for each elementary block, one on a line, in the order of execution. Keys that do not apply "
+    "are null. Lengths are in inches, also for metric programs.",
+    (
+        *_BLOCK,
+        *keys(
+            """
+x | number | in | End point in the program frame, a radius.
+z | number | in | End point in the program frame.
+c | number | deg | End angle of C.
+mx | number | in | End point in machine positions, a radius.
+mz | number | in | End point in machine positions.
+cx | number or null | in | Center of an arc, a radius.
+cz | number or null | in | Center of an arc.
+dir | string or null | | Direction of an arc: cw or ccw, seen with X+ down and Z+ to the right.
+px | number or null | in | Plane switching: end point in the frame of the virtual mill.
+py | number or null | in | Plane switching: end point in the frame of the virtual mill.
+pz | number or null | in | Plane switching: end point in the frame of the virtual mill; on the side of the
+  part, a
+  diameter.
+pcx | number or null | in | Plane switching: center of an arc.
+pcy | number or null | in | Plane switching: center of an arc.
+feed | number or null | in/min or in/rev | Feed; of a rapid the rapid rate.
+feed_mode | string or null | | ipm or ipr.
+rpm | number | rpm | Commanded spindle speed at the end of the block; negative with M04.
+css | number or null | ft/min | Constant surface speed.
+"""
+        ),
+        *_TIMES,
+    ),
+)
+EXPAND_SINUMERIK = Output(
+    "expand FILE --json, SINUMERIK",
+    "As above, in millimeters.",
+    (
+        *_BLOCK,
+        *keys(
+            """
+units | string | | mm.
+x | number | mm | End point as the program counts X: a diameter with DIAMON.
+z | number | mm | End point in the program frame.
+c | number | deg | Angle of C in the workpiece system.
+mx | number | mm | End point in machine positions, a radius.
+mz | number | mm | End point in machine positions.
+mc | number | deg | Angle of C in the machine system.
+dc | number | deg | Signed travel of C in the block.
+cx | number or null | mm | Center of an arc, counted like x.
+cz | number or null | mm | Center of an arc.
+dir | string or null | | Direction of an arc: cw or ccw.
+feed | number or null | feed_mode | Feed; of a rapid the speed of its path.
+feed_mode | string or null | | mm/min, mm/rev, deg/min or deg/rev.
+rpm | number | rpm | Commanded spindle speed at the end of the block; negative with M4.
+css | number or null | m/min | Constant surface speed.
+"""
+        ),
+        *_TIMES,
+    ),
+)
+EXPAND_KLARTEXT = Output(
+    "expand FILE --json, Klartext",
+    "As above, in millimeters. Blocks without a position do not have the position keys; only PLANE blocks "
+    "have the keys from `frame` to `q122`.",
+    (
+        *_BLOCK,
+        *keys(
+            """
+units | string | | mm.
+x | number | mm | End point in the working plane.
+y | number | mm | End point in the working plane.
+z | number | mm | End point in the working plane.
+mx | number | mm | Machine position after the block.
+my | number | mm | Machine position after the block.
+mz | number | mm | Machine position after the block.
+a | number or null | deg | A after the block; null if the machine does not have the axis.
+b | number or null | deg | B after the block; null if the machine does not have the axis.
+c | number or null | deg | C after the block; null if the machine does not have the axis.
+feed | number or null | feed_mode | Speed of the path; of a rapid what the slowest axis allows.
+feed_mode | string or null | | mm/min, mm/rev, deg/min or deg/rev.
+rpm | number | rpm | Commanded spindle speed at the end of the block.
+"""
+        ),
+        *_TIMES,
+        *keys(
+            """
+frame | list | | Matrix of the working plane, 3 rows of 3 numbers.
+datum | list | mm | Origin of the working plane in machine positions.
+q120 | number | deg | Target of A, as in Q120.
+q121 | number | deg | Target of B, as in Q121.
+q122 | number | deg | Target of C, as in Q122.
+"""
+        ),
+    ),
+)
+TRACE = Output(
+    "trace FILE --out CSV --json",
+    "One object. The CSV file has the columns `t`, the axes of the machine, `spindle_deg` and `line`: one "
+    "setpoint in each row, `dt` apart, in machine positions; X is a radius.",
+    (
+        *keys(
+            """
+file | string | | The program.
+out | string or null | | The CSV file; null if the program has errors and no file was written.
+dt | number | s | Time from row to row.
+cycle_time_s | number | s | Cycle time.
+diagnostics | list | | Findings, with the keys of `prove`.
+"""
+        ),
+        *below("diagnostics[].", DIAGNOSTIC),
+    ),
+)
+RUN = Output(
+    "run FILE --headless --json",
+    "One object, on the last line.",
+    keys(
+        """
+state | string | | complete, refused, alarm, hold or waiting.
+final | object | | Position after the run; on a mill empty if the run was refused before the start.
+final.x | number | length | Lathe: X in the program frame, a radius. Mill: X in the working plane.
+final.z | number | length | Z in the program frame or the working plane.
+final.c | number | deg | C; on a mill only if it has the axis.
+final.y | number | mm | Mill: Y in the working plane.
+final.mx | number | mm | Mill: machine position X. The keys without m are missing if the run is not complete.
+final.my | number | mm | Mill: machine position Y.
+final.mz | number | mm | Mill: machine position Z.
+final.a | number | deg | Mill with this axis: A.
+final.b | number | deg | Mill with this axis: B.
+elapsed_s | number | s | Time of the run.
+alarms | list | | Active alarms.
+alarms[].number | integer | | Number in the alarm catalog.
+alarms[].code | string | | Code of the alarm.
+alarms[].text | string | | Text of the alarm.
+alarms[].cause | string | | Cause.
+alarms[].remedy | string | | What to do.
+alarms[].line | integer | | Line of the program; 0 if not available.
+underruns | integer | | How often the computer was too late to supply setpoints.
+max_following_error | number | length | Largest following error of X and Z.
+events | string | | Path of the log of this run; empty if the run was refused before the start.
+"""
+    ),
+)
+MACHINE_CHECK = Output(
+    "machine check FILE --json",
+    "One object. If the file has errors, only `file`, `errors` and `ports` exist.",
+    keys(
+        """
+file | string | | The machine file.
+machine | string | | Name of the machine.
+backend | string | | `machine.backend`.
+errors | list | | Errors in the file.
+errors[].path | string | | Key of the machine file.
+errors[].value | string | | Value in the file; empty if it is missing.
+errors[].expected | string | | What is expected instead.
+changes | list | | Differences from the file that was accepted last.
+changes[].path | string | | Key of the machine file.
+changes[].old | string | | Value in the accepted file; — if it did not have the key.
+changes[].new | string | | Value now; — if the file does not have the key.
+ports | list | | Nodes, drives, inputs, outputs and other connections.
+ports[].name | string | | What was checked.
+ports[].at | string | | Where it is connected.
+ports[].state | string | | State, such as ok, on, off, no answer, missing, wrong or fault.
+ports[].detail | string | | Details; may be empty.
+ports[].verdict | string | | ok or FAIL.
+warnings | list | | Sentences on what is worth knowing.
+trouble | list | | Sentences on what failed; the exit status is then 1.
+"""
+    ),
+)
+MACHINE_HAL = Output(
+    "machine hal FILE --json",
+    "One object.",
+    keys(
+        """
+file | string | | The machine file.
+board | string | | `board.kind`.
+out | string or null | | File of --out.
+hal | string | | Text of the HAL file.
+beside | object | | Further files, such as the XML file of EtherCAT.
+beside.* | string | | Text of the file, by its name.
+wires | list | | The wiring table.
+wires[].place | string | | Terminal of the board; empty for a signal without one.
+wires[].pin | string | | HAL pin.
+wires[].signal | string | | HAL signal.
+wires[].names | list | | Keys of the machine file.
+measure | list | | Sentences on what must be measured on the machine.
+"""
+    ),
+)
+ALARMS = Output(
+    "alarms [NUMBER…] --json",
+    "A list with one object for each alarm.",
+    below(
+        "[].",
+        keys(
+            """
+number | integer | | Number of the alarm.
+code | string | | Code of the alarm, as in logs.
+kind | string | | alarm with drives off, alarm, hold or stop.
+text | string | | Text on the screen.
+causes | list | | Likely causes.
+remedy | string | | What to do.
+"""
+        ),
+    ),
+)
+
+
+def _in_inches(columns: tuple[Key, ...]) -> tuple[Key, ...]:
+    """Return columns of the store as ``offsets --json`` shows them: lengths of a lathe's tools in inches."""
+    return tuple(key._replace(unit="in" if key.unit == "mm" else key.unit) for key in columns)
+
+
+_OFFSETS = {
+    "tool": _in_inches(row_keys("", ToolRow, table_keys.TOOL)),
+    "secondary": _in_inches(row_keys("", SecondaryRow, table_keys.SECONDARY)),
+    "zero": row_keys("", ZeroRow, table_keys.ZERO),
+    "shape": _in_inches(row_keys("", ShapeRow, table_keys.SHAPE)),
+    "mill tool": row_keys("", MillRow, table_keys.MILL),
+    "preset": row_keys("", PresetRow, table_keys.PRESET),
+}
+_NUMBERS = {
+    "tool": "Tool offsets by T; edge 2 of T3 has the key 200003",
+    "secondary": "Secondary offsets by D",
+    "zero": "Zero offsets by 54 to 59; the key exists only if one is set",
+    "shape": "Tool shapes by T; the key exists only if one is set",
+    "mill tool": "Tools of a mill by number; the key exists only if one is set",
+    "preset": "Presets of a mill by number; the key exists only if one is set",
+}
+OFFSETS_SHOW = Output(
+    "offsets show --json",
+    "One object.",
+    tuple(
+        key
+        for kind, columns in _OFFSETS.items()
+        for key in (Key(kind, "object", "", f"{_NUMBERS[kind]}."), *below(f"{kind}.*.", columns))
+    ),
+)
+OFFSETS_HISTORY = Output(
+    "offsets history --json",
+    "A list of changes, the newest first. `old` and `new` have the keys of `offsets show`.",
+    below(
+        "[].",
+        (
+            *keys(
+                """
+id | integer | | Number of the change.
+step | integer | | Number of the step; changes of one step were made together.
+undoes | integer or null | | Step that this change takes back; null if it is not an undo.
+at | string | UTC | Time of the change.
+kind | string | | Table: tool, secondary, zero, shape, mill tool or preset.
+number | integer | | Number of the offset.
+old | object or null | | Row before the change; null if it was not set.
+old.* | string or number or boolean | | One value of the row.
+new | object or null | | Row after the change; null if it was cleared.
+new.* | string or number or boolean | | One value of the row.
+why | string | | Reason of the change.
+who | string | | User or part of the program that made the change.
+"""
+            ),
+        ),
+    ),
+)
+_READING = row_keys("", ReadingRow, table_keys.READING + table_keys.OFFSET_CHANGE)
+_STOP = row_keys("", StopRow, table_keys.STOP)
+_LIFE = row_keys("", LifeRow, table_keys.LIFE)
+_INSERT = row_keys("", InsertChange, table_keys.INSERT)
+PARTS = Output(
+    "parts [PROGRAM] --json",
+    "One object. Lengths are in millimeters.",
+    (
+        *keys(
+            """
+programs | list | | Programs with data.
+programs[].program | string | | File name of the program.
+programs[].parts | integer | | Part count.
+programs[].cycles | list | | Cycles.
+"""
+        ),
+        *below("programs[].cycles[].", row_keys("", CycleRow, table_keys.CYCLE)),
+        *keys("programs[].features | list | | Measured features."),
+        *below("programs[].features[].", row_keys("", FeatureRow, table_keys.FEATURE)),
+        *keys("programs[].features[].readings | list | | Readings."),
+        *below("programs[].features[].readings[].", _READING),
+        *keys(
+            "programs[].features[].capability | object or null | | Process capability; null if there are too "
+            "few readings."
+        ),
+        *below(
+            "programs[].features[].capability.",
+            row_keys(
+                "",
+                Capability,
+                """
+count | | Number of readings.
+mean | mm | Mean.
+within | mm | Standard deviation within samples.
+cp | | Cp; null if a limit is missing or the readings do not scatter.
+cpk | | Cpk; null if the readings do not scatter.
+pp | | Pp; null if a limit is missing or the readings do not scatter.
+ppk | | Ppk; null if the readings do not scatter.
+""",
+            ),
+        ),
+        *keys("programs[].corrections | list | | Changes of wear and of secondary offsets."),
+        *below("programs[].corrections[].", table_keys.CORRECTIONS),
+        *keys("stops | list | | Stops of production."),
+        *below("stops[].", _STOP),
+        *keys("tool_lives | list | | Tool life of the tools of a lathe."),
+        *below("tool_lives[].", _LIFE),
+        *keys("insert_changes | list | | Changes of inserts."),
+        *below("insert_changes[].", _INSERT),
+    ),
+)
+SHIFT = Output(
+    "shift --json",
+    "One object. Lengths are in millimeters; X of offsets is a radius.",
+    (
+        *keys(
+            """
+from | string | UTC | Start of the shift.
+to | string | UTC | End of the shift.
+notes | list | | Sentences on data that is missing.
+parts | integer | | Parts of all programs.
+programs | list | | Programs that ran.
+programs[].program | string | | File name of the program.
+programs[].parts | integer | | Parts.
+programs[].no_part | object | | Cycles without a part, by how they ended.
+programs[].no_part.* | integer | | Number of cycles.
+programs[].cycle_times | list | s | Times of the complete cycles.
+planned | number | s | Time in which production was possible.
+producing | number | s | Time in which a cycle ran.
+stopped | number | s | Time of all stops.
+not_recorded | number | s | Time for which no data is stored.
+stops | list | | Stops of production.
+"""
+        ),
+        *below("stops[].", _STOP),
+        *keys("reasons | list | | Stops by reason, the longest total time first."),
+        *below(
+            "reasons[].",
+            row_keys(
+                "",
+                ReasonShare,
+                """
+reason | | Reason of the stops.
+times | | Number of stops.
+seconds | s | Total time.
+share | | Fraction of the time of all stops, 0 to 1.
+together | | Fraction of this reason and all longer ones, 0 to 1.
+""",
+            ),
+        ),
+        *keys("alarms | list | | Alarms from the event log."),
+        *below("alarms[].", row_keys("", EventRow, table_keys.EVENT)),
+        *keys("tool_lives | list | | Tool life of the tools."),
+        *below("tool_lives[].", _LIFE),
+        *keys("insert_changes | list | | Changes of inserts."),
+        *below("insert_changes[].", _INSERT),
+        *keys(
+            """
+offset_changes | list | | Changes of offsets.
+offset_changes[].at | string | UTC | Time of the change.
+offset_changes[].kind | string | | Table: tool, secondary, zero, shape, mill tool or preset.
+offset_changes[].number | integer | | Number of the offset.
+offset_changes[].why | string | | Reason of the change.
+offset_changes[].who | string | | User or part of the program that made the change.
+offset_changes[].old | object or null | mm | Row before the change; null if it was not set.
+offset_changes[].old.* | string or number or boolean | mm | One value of the row.
+offset_changes[].new | object or null | mm | Row after the change; null if it was cleared.
+offset_changes[].new.* | string or number or boolean | mm | One value of the row.
+readings | integer | | Number of readings.
+out_of_tolerance | list | | Readings out of tolerance.
+out_of_tolerance[].program | string | | File name of the program.
+out_of_tolerance[].feature | string | | Name of the feature.
+out_of_tolerance[].part | integer | | Number of the part.
+out_of_tolerance[].value | number | mm | Measured size.
+out_of_tolerance[].at | string | UTC | Time of the reading.
+"""
+        ),
+    ),
+)
+JOBS = Output(
+    "jobs list --json",
+    "One object.",
+    keys(
+        """
+jobs | list | | The queue in its order.
+jobs[].place | integer | | Position, from 1.
+jobs[].program | string | | File name of the program.
+jobs[].parts | integer | | Parts to make.
+jobs[].made | integer | | Parts made.
+jobs[].left | integer | | Parts that remain to be made.
+jobs[].state | string | | waiting, in progress or done.
+jobs[].note | string | | Note.
+jobs[].added | string | UTC | Time at which the job was added.
+"""
+    ),
+)
+STORE_VERIFY = Output(
+    "store verify --json",
+    "One object.",
+    keys(
+        """
+store | string | | Path of the store.
+problems | list | | Sentences on what is damaged; the exit status is then 1.
+"""
+    ),
+)
+_VERSION = keys(
+    """
+id | string | | ID of the version.
+desk | string | | Machine that saved the version.
+saved | string | UTC | Time at which it was saved.
+size | integer | bytes | Size of the program.
+why | string | | Reason for saving.
+follows | list | | IDs of the versions from which it was made.
+"""
+)
+_SHARED = (
+    *keys(
+        """
+place | string | | The shared place.
+desk | string | | Name of this machine among the others.
+trouble | string or null | | Why the place does not respond; null if it responds.
+waiting | integer | | Versions that are not yet published.
+programs | list | | Shared programs.
+programs[].program | string | | File name of the program.
+programs[].state | string | | same, newer (elsewhere), both (changed here and elsewhere) or new (not here).
+programs[].here | object or null | | Version on this machine; null if not available.
+"""
+    ),
+    *below("programs[].here.", _VERSION),
+    *keys(
+        "programs[].elsewhere | list | | Newest versions of other machines that this machine does not have."
+    ),
+    *below("programs[].elsewhere[].", _VERSION),
+    *keys(
+        """
+programs[].elsewhere[].on | list | | Machines that have this version.
+programs[].versions | integer | | Number of known versions.
+desks | list | | Machines that share programs.
+desks[].desk | string | | Name of the machine.
+desks[].told | string | UTC | Time of its last report.
+desks[].has | object | | Its programs.
+desks[].has.* | string | | ID of the version, by program.
+strays | list | | Files in the shared place that are not versions.
+not_shared | object | | Programs that are not shared.
+not_shared.* | string | | Reason, by program.
+"""
+    ),
+)
+SHARE_STATUS = Output("share status --json, share publish --json", "One object.", _SHARED)
+SHARE_BEGIN = Output("share begin --json", "One object.", keys("place | string | | The shared place."))
+SHARE_COMPARE = Output(
+    "share compare PROGRAM --json",
+    "One object.",
+    (
+        *keys("version | object | | The version that is compared."),
+        *below("version.", _VERSION),
+        *keys(
+            """
+changes | list | | Lines of the comparison.
+changes[].sign | string | | + (added), − as a hyphen (removed) or a space (unchanged).
+changes[].here | integer or null | | Line in the local program; null if it is not there.
+changes[].there | integer or null | | Line in the other version; null if it is not there.
+changes[].text | string | | Text of the line.
+"""
+        ),
+    ),
+)
+SHARE_TAKE = Output(
+    "share take PROGRAM --json",
+    "One object.",
+    (
+        *keys("taken | object | | The version that was copied."),
+        *below("taken.", _VERSION),
+        *keys("file | string | | File name in the program folder."),
+    ),
+)
+SHARE_KEEP = Output(
+    "share keep PROGRAM --json",
+    "One object.",
+    keys(
+        """
+kept | string | | File name of the program.
+trouble | string | | Why the version is not published yet; empty if it is published.
+"""
+    ),
+)
+SHAPES = Output(
+    "shapes FORM.toml --json",
+    "One object.",
+    keys(
+        """
+file | string | | The file with the steps.
+out | string or null | | File of --out.
+program | string | | Text of the program.
+steps | list | | Kinds of the steps.
+words | list | | Sentences on what TurnDesk chose or noticed.
+errors | list | | Errors of the program; the exit status is then 1.
+cycle_time_s | number | s | Cycle time.
+"""
+    ),
+)
+SHAPES_LIST = Output(
+    "shapes --list --json", "One object.", keys("* | list | | Keys that a step of this kind can have.")
+)
+SCOPE = Output(
+    "scope FILE --json",
+    "One object.",
+    (
+        *keys(
+            """
+file | string | | The record.
+csv | string or null | | File of --csv.
+started | number | s | Start of the record, in seconds since 1970-01-01 UTC.
+seconds | number | s | Length of the record.
+samples | integer | | Number of samples.
+rate | number | 1/s | Samples per second during motion.
+about | object | | Facts about the record, such as `machine` and `program`.
+about.* | string | | One fact.
+channels | list | | Recorded channels.
+"""
+        ),
+        *below(
+            "channels[].",
+            row_keys(
+                "",
+                Channel,
+                """
+name | | Name of the channel.
+unit | | Unit of its values; empty if it has none.
+logic | | Whether the channel is on (1) or off (0).
+""",
+            ),
+        ),
+        *keys(
+            """
+channels[].min | number or null | unit | Smallest value; null if not available.
+channels[].max | number or null | unit | Largest value; null if not available.
+"""
+        ),
+    ),
+)
+ACCESS_LIST = Output(
+    "access list --json",
+    "One object.",
+    keys(
+        """
+on | boolean | | Whether access levels are on.
+damaged | boolean | | Whether an entry of a user is damaged, so that this user cannot log in.
+people | list | | Users.
+people[].name | string | | Name.
+people[].level | string | | Level: OPERATOR, SETUP or SERVICE.
+"""
+    ),
+)
+ACCESS_TABLE = Output(
+    "access table --json",
+    "One object with a key for each kind of change, such as ZERO OFFSETS.",
+    keys(
+        """
+*.level | string | | Level that the change needs.
+*.what | string | | What the change is, in words.
+"""
+    ),
+)
+PROFILE = Output(
+    "profile DRAWING --json",
+    "One object. Lengths are in millimeters.",
+    keys(
+        """
+file | string | | The drawing.
+out | string or null | | File of --out.
+program | string | | Text of the program.
+side | string | | OUTSIDE or BORE.
+closed_gap_mm | number | mm | Largest gap in the contour that was closed.
+secondary_offset | object or null | | OmniTurn: secondary offset that G41 needs; null without it.
+secondary_offset.number | integer | | Number of the secondary offset.
+secondary_offset.x | number | mm | X, a radius.
+secondary_offset.z | number | mm | Z.
+secondary_offset.r | number | mm | Nose radius.
+cutting_edge | object | | SINUMERIK: cutting edge that G41 needs; the key is missing without it.
+cutting_edge.tool | integer | | Number of the tool.
+cutting_edge.edge | integer | | Number of the cutting edge.
+cutting_edge.r | number | mm | Nose radius.
+cutting_edge.quadrant | integer | | Tip quadrant.
+left | list | | Parts of the contour that are not cut.
+left[].back_mm | number | mm | Z at which the uncut part ends toward the chuck.
+left[].front_mm | number | mm | Z at which the uncut part ends toward the face.
+left[].why | string | | Why it is not cut.
+worst_mm | number or null | mm | Largest deviation of the part from the drawing; null if it was not compared.
+deviations | list | | Deviations from the drawing.
+deviations[].back_mm | number | mm | Z of the end of the deviation toward the chuck.
+deviations[].front_mm | number | mm | Z of the end of the deviation toward the face.
+deviations[].most_mm | number | mm | Largest deviation there.
+errors | list | | Errors of the program; the exit status is then 1.
+"""
+    ),
+)
+PROFILE_LIST = Output(
+    "profile DRAWING --list --json",
+    "One object.",
+    keys(
+        """
+file | string | | The drawing.
+unit_mm | number or null | mm | Length of one unit of the drawing; null if the drawing does not specify it.
+layers | list | | Names of the layers.
+axes | list | | Names of the axes.
+axis | string | | The axis that is used.
+contours | list | | Contours, numbered from 1.
+contours[].elements | integer | | Number of lines and arcs.
+contours[].length_mm | number | mm | Length.
+contours[].diameter_mm | number | mm | Largest diameter.
+left_out | object | | Objects of the drawing that are ignored.
+left_out.* | integer | | Number, by kind.
+"""
+    ),
+)
+OUTPUTS = (
+    *(PROVE, EXPAND_OMNITURN, EXPAND_SINUMERIK, EXPAND_KLARTEXT, TRACE, RUN, MACHINE_CHECK, MACHINE_HAL),
+    *(ALARMS, OFFSETS_SHOW, OFFSETS_HISTORY, PARTS, SHIFT, JOBS, STORE_VERIFY),
+    *(SHARE_BEGIN, SHARE_STATUS, SHARE_COMPARE, SHARE_TAKE, SHARE_KEEP),
+    *(SHAPES, SHAPES_LIST, SCOPE, ACCESS_LIST, ACCESS_TABLE, PROFILE, PROFILE_LIST),
+)

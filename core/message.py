@@ -1,0 +1,136 @@
+"""Text for people: a template with named values, so that a text can be translated after it was made."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from functools import lru_cache
+from string import Formatter
+from typing import Any, Self
+
+Value = str | int | float
+CASES: dict[str, Callable[[str], str]] = {
+    "upper": str.upper,
+    "lower": str.lower,
+    "capitalize": str.capitalize,
+    "sentence": lambda text: text[:1].upper() + text[1:],
+}
+
+
+class Message(str):
+    """An English text that keeps its template and its values.
+
+    It is an ordinary ``str`` for code that only reads it. ``template`` is the English text with holes as
+    ``str.format`` takes them, without format specifications. ``values`` are the values of the holes by name;
+    a value may be a ``Message``. ``case`` is how capitals were changed, one of ``CASES`` or empty.
+    """
+
+    __slots__ = ("case", "template", "values")
+
+    template: str
+    values: dict[str, Value]
+    case: str
+
+    def __new__(cls, template: str, /, **values: object) -> Self:
+        """Put the values into the template; a value that is no text and no number becomes ``str(value)``."""
+        named = ((name, values[name]) for name in _names_of(template))
+        known = {name: each if isinstance(each, Value) else str(each) for name, each in named}
+        made = super().__new__(cls, template.format(**known))
+        made.template, made.values, made.case = template, known, ""
+        return made
+
+    def __str__(self) -> str:
+        """Return the message itself: the text of an exception keeps its template and its values."""
+        return self
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Return how another process makes the same message."""
+        return make_message, (self.template, self.values, self.case)
+
+    def upper(self) -> Message:
+        """Return the message in capitals, with the same template and values."""
+        return self._in_case("upper")
+
+    def lower(self) -> Message:
+        """Return the message in small letters, with the same template and values."""
+        return self._in_case("lower")
+
+    def capitalize(self) -> Message:
+        """Return the message with a capital first and small letters after it."""
+        return self._in_case("capitalize")
+
+    def as_sentence(self) -> Message:
+        """Return the message with a capital first; the other letters stay."""
+        return self._in_case("sentence")
+
+    def _in_case(self, case: str) -> Message:
+        made = str.__new__(Message, CASES[case](str.__str__(self)))
+        made.template, made.values, made.case = self.template, self.values, case
+        return made
+
+
+@lru_cache(4096)
+def _names_of(template: str) -> tuple[str, ...]:
+    return tuple(name for _, name, _, _ in Formatter().parse(template) if name)
+
+
+def make_message(template: str, values: dict[str, Value], case: str = "") -> Message:
+    """Return the message of a template, its values and its case; raises KeyError if a value is missing."""
+    made = Message(template, **values)
+    return made._in_case(case) if case else made
+
+
+def join_messages(separator: str, parts: Iterable[str]) -> Message:
+    """Return the parts with a separator between them; each part is translated separately."""
+    values = {f"part{number}": part for number, part in enumerate(parts)}
+    between = separator.replace("{", "{{").replace("}", "}}")
+    return Message(between.join(f"{{{name}}}" for name in values), **values)
+
+
+def named_values(text: str) -> dict[str, Value]:
+    """Return the values of a message by name, with those of the messages among its values; else empty.
+
+    Of two values of the same name, the outer one is returned.
+    """
+    if not isinstance(text, Message):
+        return {}
+    inner = [named_values(value) for value in text.values.values() if isinstance(value, Message)]
+    outer = {name: _plain(value) for name, value in text.values.items()}
+    return {name: value for values in (*inner, outer) for name, value in values.items()}
+
+
+def _plain(value: Value) -> Value:
+    return str.__str__(value) if isinstance(value, Message) else value
+
+
+def pack_message(text: str) -> str:
+    """Return template, values and case of a message as JSON, to be stored; empty for any other text."""
+    return json.dumps(_packed(text), ensure_ascii=False) if isinstance(text, Message) else ""
+
+
+def unpack_message(packed: str, text: str) -> str:
+    """Return the message that was packed; ``text`` if there is none or if it is not the same text."""
+    if not packed:
+        return text
+    try:
+        made = _unpacked(json.loads(packed))
+    except (ValueError, LookupError, TypeError, AttributeError):
+        return text
+    return made if made == text else text
+
+
+def _packed(value: Value) -> object:
+    if not isinstance(value, Message):
+        return value
+    return {
+        "template": value.template,
+        "values": {name: _packed(each) for name, each in value.values.items()},
+        "case": value.case,
+    }
+
+
+def _unpacked(stored: object) -> Any:
+    if not isinstance(stored, dict):
+        return stored
+    values = {name: _unpacked(each) for name, each in stored["values"].items()}
+    return make_message(stored["template"], values, stored["case"])

@@ -1,0 +1,373 @@
+"""Columns of the public tables of the store and of its export, for the reference and its tests."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from core.json_key import Key, keys, row_keys
+from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.part_cycles import CorrectionRow, CycleRow, StopRow
+from core.store.store_rows import EventRow, MillRow, PresetRow, SecondaryRow, ShapeRow, ToolRow, ZeroRow
+from core.store.tool_lives import InsertChange, LifeRow
+
+
+class TableKeys(NamedTuple):
+    """A table of the store: its name, the file of ``store export`` with the same columns, and the columns."""
+
+    name: str
+    file: str
+    purpose: str
+    columns: tuple[Key, ...]
+
+
+_ID = keys("id | integer | | Number of the row.")
+_NUMBER = keys("number | integer | | Number of the tool or offset.")
+CYCLE = """
+key | | Key of the cycle, unique and independent of the clock.
+program | | File name of the program.
+part | | Number of the part among those of the program; 0 if no part was counted.
+started | UTC | Start of the cycle.
+ended | UTC | End of the cycle; null if TurnDesk ended during it.
+seconds | s | Cycle time without stops.
+outcome | | How the cycle ended, such as COMPLETE.
+load | % | Mean spindle load at feed; null if the drive does not report it.
+"""
+STOP = """
+key | | Key of the stop.
+cycle | | Key of the cycle that was stopped; empty between two cycles.
+program | | File name of the program.
+at | UTC | Start of the stop.
+seconds | s | Length of the stop.
+reason | | Reason of the stop, in the words of the screen.
+line | | Line of the program; 0 if not available.
+"""
+FEATURE = """
+id | | Number of the feature.
+program | | File name of the program.
+name | | Name of the feature.
+kind | | diameter or length.
+nominal | mm | Nominal size.
+low | mm | Lower deviation from the nominal size.
+high | mm | Upper deviation from the nominal size.
+by_kind | | Table of the offset that corrects the feature: tool or secondary.
+number | | Number of that offset.
+grows | | 1 if the feature becomes larger when the offset becomes larger, −1 if it becomes smaller.
+every | | Number of parts between two measurements; 0 if no interval is specified.
+sample | | Number of parts in a sample.
+"""
+READING = """
+id | | Number of the reading.
+feature | | Number of the feature.
+part | | Number of the part.
+value | mm | Measured size.
+unit | | Unit in which the value was read: in or mm.
+at | UTC | Time of the reading.
+source | | typed or gauge.
+gauge | | Name of the gauge; empty if the value was typed.
+"""
+OFFSET_CHANGE = "offset_change | | Newest offset change when the part was started; −1 if it is not known.\n"
+CORRECTION = """
+id | | Number of the offset change.
+at | UTC | Time of the change.
+kind | | Table of the offset: tool or secondary.
+number | | Number of the offset.
+x | mm | Wear or correction in X, a radius.
+z | mm | Wear or correction in Z.
+part | | Number of parts that were made before the change.
+why | | Reason of the change.
+who | | User or part of the program that made the change.
+was_x | mm | Value in X before the change, a radius.
+was_z | mm | Value in Z before the change.
+"""
+LIFE = """
+number | | Number of the tool.
+limit_parts | | Tool life in parts; 0 means unlimited.
+limit_seconds | s | Tool life in time at feed; 0 means unlimited.
+warn | | Fraction of the tool life at which a warning appears, 0 to 1.
+stops | | Whether no further part starts when the tool life is used up.
+parts | | Parts made since the insert was changed.
+seconds | s | Time at feed since the insert was changed.
+"""
+INSERT = """
+id | | Number of the change.
+at | UTC | Time of the change.
+number | | Number of the tool.
+parts | | Parts that the insert had made.
+seconds | s | Time at feed of the insert.
+why | | Reason of the change.
+kind | | Table of the tool: tool (lathe) or mill tool (mill).
+who | | User or part of the program that made the change.
+"""
+EVENT = """
+at | UTC | Time of the event.
+kind | | Kind of the event.
+text | | Sentence in English.
+line | | Line of the program; 0 if not available.
+record | | File of the scope data in the folder `records`; empty if not available.
+who | | User who made a change.
+"""
+TOOL = """
+x | mm | Machine position in X, a radius, at which the tool tip is on part zero.
+z | mm | Machine position in Z at which the tool tip is on part zero.
+nose_radius | mm | Nose radius.
+wear_x | mm | Wear in X, a radius.
+wear_z | mm | Wear in Z.
+quadrant | | Tip quadrant, 0 to 9; 0 if it is not specified.
+remark | | Remark.
+master | | Whether the tool is the master tool.
+"""
+SECONDARY = """
+x | mm | Correction in X, a radius.
+z | mm | Correction in Z.
+r | mm | Nose radius.
+"""
+ZERO = """
+x | mm | Machine position of part zero in X, a radius.
+z | mm | Machine position of part zero in Z.
+c | deg | Machine position of part zero in C.
+"""
+SHAPE = """
+kind | | Kind of the tool.
+hand | | right, left or neutral.
+insert | | Designation of the insert; empty if it is not specified.
+holder | | Outline or designation of the holder; empty if it is not specified.
+width | mm | Width; 0 if it is not specified.
+diameter | mm | Diameter; 0 if it is not specified.
+point | deg | Point angle; 0 if it is not specified.
+stick_out | mm | Stick-out; 0 if it is not specified.
+length | mm | Cutting length; 0 if it is not specified.
+pitch | mm | Pitch of a thread tool or tap; 0 if it is not specified.
+flutes | | Number of flutes; 0 if it is not specified.
+entry | deg | Entering angle; 0 if it is not specified.
+rear | | Whether the tool works at negative X.
+profile | | Outline of a form tool as `z,x z,x …` in mm.
+"""
+MILL = """
+name | | Name of the tool.
+length | mm | Length L.
+radius | mm | Radius R.
+corner | mm | Corner radius R2.
+dl | mm | Oversize in length, DL.
+dr | mm | Oversize in radius, DR.
+dr2 | mm | Oversize in corner radius, DR2.
+teeth | | Number of teeth.
+point | deg | Point angle.
+life | min | Tool life; 0 means unlimited.
+stops | | Whether no further part starts when the tool life is used up.
+"""
+PRESET = """
+x | mm | Machine position of the workpiece zero in X.
+y | mm | Machine position of the workpiece zero in Y.
+z | mm | Machine position of the workpiece zero in Z.
+rotation | deg | Basic rotation about Z.
+a | deg | Machine position of A at which it shows 0.
+b | deg | Machine position of B at which it shows 0.
+c | deg | Machine position of C at which it shows 0.
+remark | | Remark.
+"""
+
+
+def _columns(
+    row: type[tuple[object, ...]], text: str, renamed: dict[str, str] | None = None
+) -> tuple[Key, ...]:
+    """Return a row type's fields as columns, where SQLite has integers for booleans."""
+    columns = row_keys("", row, text)
+    names = renamed or {}
+    return tuple(
+        key._replace(name=names.get(key.name, key.name), type=key.type.replace("boolean", "integer"))
+        for key in columns
+    )
+
+
+TABLES = (
+    TableKeys(
+        "programs",
+        "",
+        "Programs that TurnDesk has saved.",
+        keys(
+            """
+id | integer | | Number of the program.
+name | string | | File name of the program.
+created | string | UTC | Time at which the program was first saved.
+"""
+        ),
+    ),
+    TableKeys(
+        "program_versions",
+        "",
+        "All saved versions of the programs. The export has the newest version in the folder `programs`.",
+        keys(
+            """
+id | integer | | Number of the row.
+program | integer | | Number of the program in `programs`.
+number | integer | | Number of the version, counted from 1.
+text | blob | | The program as it was saved.
+sha256 | string | | SHA-256 of the text.
+saved | string | UTC | Time at which the version was saved.
+why | string | | Reason for saving.
+who | string | | User who saved the version.
+"""
+        ),
+    ),
+    TableKeys(
+        "part_counts",
+        "",
+        "Part counts of the programs.",
+        keys(
+            """
+program | string | | File name of the program.
+count | integer | | Parts made.
+last | string | UTC | Time of the last part.
+"""
+        ),
+    ),
+    TableKeys(
+        "runs",
+        "",
+        "What each program did last.",
+        keys(
+            """
+program | string | | File name of the program.
+started | string or null | UTC | Start of the last run.
+outcome | string | | How the last run ended; empty while it runs.
+cycles | integer | | Complete cycles.
+best | number or null | s | Shortest cycle time.
+latest | number or null | s | Latest cycle time.
+proved | string or null | UTC | Time of the last proof.
+proof | string | | Result of the last proof.
+planned | number or null | s | Cycle time that the last proof calculated.
+"""
+        ),
+    ),
+    TableKeys(
+        "events",
+        "",
+        "The event log. `events.csv` has the columns `at` to `who`, in this order, the newest event last.",
+        (
+            *_ID,
+            *row_keys("", EventRow, EVENT),
+            *keys("message | string | | Template and values of the text, JSON."),
+        ),
+    ),
+    TableKeys(
+        "tool_offsets",
+        "",
+        "Tool offsets of a lathe. The export has them in inches in `offsets.toml`, with the secondary and "
+        "zero offsets and the tool shapes.",
+        (*_NUMBER, *_columns(ToolRow, TOOL, {"nose_radius": "r"})),
+    ),
+    TableKeys(
+        "secondary_offsets",
+        "",
+        "Secondary offsets, D1 to D32.",
+        (*_NUMBER, *_columns(SecondaryRow, SECONDARY)),
+    ),
+    TableKeys(
+        "zero_offsets",
+        "",
+        "Zero offsets G54 to G59.",
+        (*keys("code | integer | | 54 to 59."), *_columns(ZeroRow, ZERO)),
+    ),
+    TableKeys(
+        "tool_shapes",
+        "",
+        "Shapes of the tools of a lathe.",
+        (*_NUMBER, *_columns(ShapeRow, SHAPE, {"insert": "insert_code"})),
+    ),
+    TableKeys(
+        "part_features",
+        "features.csv",
+        "Features of the parts that are measured.",
+        (
+            *_columns(FeatureRow, FEATURE),
+            *keys("retired | integer | | 1 if the feature is no longer measured, otherwise 0."),
+        ),
+    ),
+    TableKeys(
+        "part_readings",
+        "readings.csv",
+        "Readings of the features.",
+        (
+            *_columns(ReadingRow, READING + OFFSET_CHANGE)[:-1],
+            *keys("void | integer | | 1 if the reading was deleted, otherwise 0."),
+        ),
+    ),
+    TableKeys(
+        "part_cycles",
+        "cycles.csv",
+        "One row for each part that was started.",
+        (
+            *_ID,
+            *_columns(CycleRow, CYCLE)[:-1],
+            *keys("offset_change | integer | | Newest offset change when the cycle started."),
+            *_columns(CycleRow, CYCLE)[-1:],
+        ),
+    ),
+    TableKeys(
+        "production_stops",
+        "stops.csv",
+        "One row for each stop of production.",
+        (*_ID, *_columns(StopRow, STOP)),
+    ),
+    TableKeys("tool_lives", "tool_lives.csv", "Tool life of the tools of a lathe.", _columns(LifeRow, LIFE)),
+    TableKeys(
+        "insert_changes",
+        "insert_changes.csv",
+        "Changes of inserts and tools.",
+        _columns(InsertChange, INSERT),
+    ),
+    TableKeys(
+        "mill_tool_lives",
+        "mill_tool_lives.csv",
+        "Use of the tools of a mill.",
+        keys(
+            """
+number | integer | | Number of the tool.
+parts | integer | | Parts made since the tool was changed.
+seconds | number | s | Time at feed since the tool was changed.
+"""
+        ),
+    ),
+    TableKeys("mill_tools", "mill_tools.csv", "Tools of a mill.", (*_NUMBER, *_columns(MillRow, MILL))),
+    TableKeys(
+        "datum_presets",
+        "presets.csv",
+        "Presets of a mill.",
+        (
+            *_NUMBER,
+            *_columns(PresetRow, PRESET)[:4],
+            *_columns(PresetRow, PRESET)[-1:],
+            *_columns(PresetRow, PRESET)[4:-1],
+        ),
+    ),
+    TableKeys(
+        "jobs",
+        "",
+        "The job queue.",
+        keys(
+            """
+id | integer | | Number of the row.
+place | integer | | Position in the queue.
+program | string | | File name of the program.
+wanted | integer | | Parts to make.
+made | integer | | Parts that the job had made when the part count of its program was last reset.
+base | integer or null | | Part count of the program at which the job started; null if it has not started.
+note | string | | Note.
+added | string | UTC | Time at which the job was added.
+"""
+        ),
+    ),
+)
+RUNS_FILE = (
+    "program",
+    "parts",
+    "started",
+    "outcome",
+    "cycles",
+    "best_s",
+    "latest_s",
+    "proved",
+    "proof",
+    "planned_s",
+)
+CORRECTIONS = row_keys("", CorrectionRow, CORRECTION)

@@ -1,0 +1,72 @@
+"""The list of all texts, ``messages.csv``: the id of each text and its English template.
+
+An id stays when a text is reworded: a new text takes over the id of the most similar text of the same
+folder that has gone.
+"""
+
+from __future__ import annotations
+
+import csv
+import difflib
+import re
+from collections.abc import Iterable, Mapping
+from itertools import count
+from pathlib import Path
+
+LIST = Path(__file__).with_name("messages.csv")
+_HOLE = re.compile(r"\{\w*\}")
+_WORDS = 5  # of a text in its id
+_SIMILAR = 0.6  # from this ratio on, a text is a reworded one; see difflib
+
+
+def read_list() -> dict[str, str]:
+    """Return the listed texts by id; empty if there is no list yet."""
+    if not LIST.exists():
+        return {}
+    with LIST.open(newline="", encoding="utf-8") as file:
+        return {row["id"]: row["english"] for row in csv.DictReader(file)}
+
+
+def write_list(texts: Mapping[str, str]) -> dict[str, str]:
+    """Write the list of the texts, given with their files; return the former text of each reworded text."""
+    former = read_list()
+    known = {english: name for name, english in former.items()}
+    gone = {name: english for name, english in former.items() if english not in texts}
+    ids, successors = {text: known[text] for text in texts if text in known}, {}
+    for text, path in texts.items():
+        if text in known:
+            continue
+        old = _most_similar(text, _folder(path), gone)
+        if old:
+            successors[text] = gone.pop(old)
+        ids[text] = old or _new_id(text, path, ids.values())
+    with LIST.open("w", newline="", encoding="utf-8") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(("id", "english"))
+        rows.writerows(sorted((name, text) for text, name in ids.items()))
+    return successors
+
+
+def _folder(file: str) -> str:
+    """Return the first part of an id: the package, such as ``jog`` or ``interpreter``."""
+    return Path(file).parts[1].removesuffix(".py") if file else "tables"
+
+
+def _most_similar(text: str, folder: str, gone: Mapping[str, str]) -> str:
+    """Return the id of the text that this one replaces; empty if there is none."""
+    found, best = "", _SIMILAR
+    for name, english in gone.items():
+        if (
+            name.startswith(f"{folder}.")
+            and (ratio := difflib.SequenceMatcher(None, english, text).ratio()) > best
+        ):
+            found, best = name, ratio
+    return found
+
+
+def _new_id(text: str, file: str, used: Iterable[str]) -> str:
+    """Return an id of the first words of a text that no other text has."""
+    words = re.findall(r"[a-z0-9]+", _HOLE.sub("", text).lower())[:_WORDS]
+    base = f"{_folder(file)}.{'-'.join(words)}"
+    taken = frozenset(used)
+    return next(name for n in count(1) if (name := base if n == 1 else f"{base}-{n}") not in taken)

@@ -1,0 +1,359 @@
+"""``docs/json.md``: every command is run on samples, and its keys are exactly those that are declared."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Collection, Iterable
+from datetime import UTC, datetime, timedelta
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+import resources
+from app.cli import json_keys
+from app.cli.json_page import document, main
+from app.shopfloor import json_keys as floor_keys
+from core.access.access_table import Level
+from core.access.pins import hashed
+from core.json_key import Key, found_in, implied, is_of_type, keys, row_keys
+from core.store import measured_parts, part_cycles, people, tool_lives
+from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.part_cycles import CycleRow, StopRow
+from core.store.store import Store
+from core.store.store_export import EVENTS, RUNS, TABLES
+from core.store.store_rows import EventRow, Kind, utc
+from core.store.table_keys import RUNS_FILE
+from core.store.table_keys import TABLES as PUBLIC
+from tests.cli.conftest import Told, Turndesk
+from tests.cli.test_profile import SHEET
+from tests.cli.test_share import Shop, shop
+from tests.drawings.hand import chain, dxf
+
+__all__ = ["shop"]
+PAGE = Path(__file__).parents[2] / "docs" / "json.md"
+PROGRAMS = Path(resources.__file__).parent / "programs"
+HEAD = "G90G94F300\nM03S600\nT1\n"
+
+
+def declared_alone(values: Iterable[object], declared: Collection[Key], never: Collection[str] = ()) -> None:
+    """The values together have exactly the declared keys but ``never``, with values of the declared types."""
+    named, seen = {key.name: key for key in declared}, set[str]()
+    above = implied(declared)
+    for value in values:
+        for path, each in found_in(value, declared):
+            assert path in named or path in above, f"{path} is not declared"
+            if path in named:
+                assert is_of_type(each, named[path]), f"{path} is {each!r}, not {named[path].type}"
+                seen.add(path)
+    assert set(named) - seen == set(never)
+
+
+def whole(told: Told, status: int = 0) -> Any:
+    assert told.status == status, told.err
+    return json.loads(told.out)
+
+
+def test_the_page_is_up_to_date() -> None:
+    assert PAGE.read_text("utf-8") == document(), "python -m app.cli.json_page docs/json.md"
+
+
+def test_the_command_writes_the_page(tmp_path: Path) -> None:
+    assert main([str(tmp_path / "page.md")]) == 0
+    assert (tmp_path / "page.md").read_text("utf-8") == document()
+
+
+def test_meanings_are_sentences() -> None:
+    tables = [each.keys for each in json_keys.OUTPUTS] + [table.columns for table in PUBLIC]
+    for key in (key for table in (*tables, floor_keys.FILE, floor_keys.EVENT) for key in table):
+        assert key.meaning.endswith("."), key
+        assert "|" not in key.meaning, key
+
+
+def test_every_command_with_json_is_on_the_page() -> None:
+    folder = Path(json_keys.__file__).parent
+    commands = {
+        path.stem.removesuffix("_command")
+        for path in folder.glob("*_command.py")
+        if '"--json"' in path.read_text("utf-8") or "add_program_options" in path.read_text("utf-8")
+    }
+    assert commands == {each.command.split()[0] for each in json_keys.OUTPUTS}
+
+
+# --- The checker itself: a key too many, a key too few, another type.
+
+
+NAMED = keys("a | integer | | A.\nb | list | | B.\nb[].c | string or null | mm | C.\nd.* | number | | D.")
+
+
+@pytest.mark.parametrize(
+    ("value", "why"),
+    [
+        ({"a": 1, "b": [{"c": "x"}], "d": {"any": 1.5}, "e": 1}, "e is not declared"),
+        ({"a": 1, "b": [{"c": "x", "f": 1}], "d": {"any": 1.5}}, r"b\[\].f is not declared"),
+        ({"a": "1", "b": [{"c": "x"}], "d": {"any": 1.5}}, "a is '1', not integer"),
+        ({"a": True, "b": [{"c": "x"}], "d": {"any": 1.5}}, "a is True, not integer"),
+        ({"a": 1, "b": [{"c": 2}], "d": {"any": 1.5}}, "not string or null"),
+        ({"a": 1, "b": [], "d": {"any": 1.5}}, "c"),
+    ],
+)
+def test_what_differs_is_found(value: object, why: str) -> None:
+    declared_alone([{"a": 1, "b": [{"c": None}], "d": {"any": 2}}], NAMED)
+    with pytest.raises(AssertionError, match=why):
+        declared_alone([value], NAMED)
+
+
+def test_a_row_type_with_another_field_is_refused() -> None:
+    class Pair(NamedTuple):
+        one: int
+        other: float | None
+
+    declared = row_keys("rows[].", Pair, "one | | One.\nother | mm | Other.")
+    assert [each.type for each in declared] == ["integer", "number or null"]
+    assert declared[1].name == "rows[].other"
+    with pytest.raises(ValueError, match="one, other"):
+        row_keys("", Pair, "one | | One.")
+    with pytest.raises(ValueError, match="expected 4 cells"):
+        keys("one | integer | One.")
+
+
+# --- Programs.
+
+
+@pytest.mark.long
+def test_prove(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
+    lathe, mill = tmp_path / "part.nc", tmp_path / "tilted.h"
+    lathe.write_text(HEAD + "X.6Z.1\nG95F.005\nG01Z-.5\nX.7\nG94F300X.7Z.1\nM30\n")
+    mill.write_text((PROGRAMS / "nozzle.h").read_text())
+    there = tmp_path / "there.toml"
+    there.write_text("[tool.1]\nx = 0.01\nz = 9.0\n[tool.2]\nx = 0.0\nz = 0.0\n")
+    words = ("--offsets", offsets, "--stock", "bar:1.2:2", "--compare", there, "--json")
+    told = turndesk("prove", lathe, *words)
+    back = turndesk("prove", lathe, "--offsets", there, *words[2:5], offsets, "--json")
+    values = [*told.lines, *back.lines]
+    for machine in ("ac-table-mill", "bc-table-mill"):
+        values += turndesk("prove", mill, "--machine", machine, "--json").lines
+    declared_alone(values, json_keys.PROVE.keys)
+
+
+@pytest.mark.long
+def test_expand(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
+    lathe = tmp_path / "part.nc"
+    lathe.write_text(HEAD + "X.5Z.1\nG02X.6Z0R.1F10\nM30\n")
+    for name, output in (
+        (lathe, json_keys.EXPAND_OMNITURN),
+        (PROGRAMS / "shaft.mpf", json_keys.EXPAND_SINUMERIK),
+        (PROGRAMS / "nozzle.h", json_keys.EXPAND_KLARTEXT),
+    ):
+        machine = {".mpf": ("--machine", "sinumerik-live"), ".h": ("--machine", "bc-table-mill")}
+        told = turndesk("expand", name, "--json", *machine.get(name.suffix, ()))
+        declared_alone(told.lines, output.keys)
+
+
+def test_trace(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(HEAD + "X.5Z.1\nM30\n")
+    told = turndesk("trace", path, "--out", tmp_path / "out.csv", "--json")
+    declared_alone(told.lines, json_keys.TRACE.keys)
+
+
+@pytest.mark.long
+def test_run(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(HEAD + "X.5Z.1\nG04F3\nM30\n")
+    offsets.write_text("".join(f"[tool.{number}]\nx = 0.0\nz = 0.0\n" for number in (1, 6)))
+    broken = tmp_path / "broken.toml"
+    fault = 'seed = 1\nfaults = [{ at = 1.5, what = "drive_fault", axis = "X" }]'
+    broken.write_text(resources.machine_file("gt75.toml").replace("seed = 1", fault, 1))
+    nozzle = PROGRAMS / "nozzle.h"
+    runs = ((path, "gt75"), (path, broken), (nozzle, "ac-table-mill"), (nozzle, "bc-table-mill"))
+    words = ("--headless", "--offsets", offsets, "--json", "--machine")
+    values = [turndesk("run", program, *words, machine).lines[-1] for program, machine in runs]
+    assert [each["state"] for each in values] == ["complete", "alarm", "complete", "complete"]
+    declared_alone(values, json_keys.RUN.keys)
+
+
+# --- Machine files and the alarm catalog.
+
+
+def test_machine_check(turndesk: Turndesk, tmp_path: Path) -> None:
+    path = tmp_path / "own.toml"
+    text = resources.machine_file("gt75.toml")
+    path.write_text(text)
+    assert turndesk("machine", "accept", path).status == 0
+    path.write_text(text.replace("vmax = 300", "vmax = 280").replace("max_feed = 300", "max_feed = 250"))
+    good = whole(turndesk("machine", "check", path, "--json"))
+    path.write_text(text.replace("vmax = 300", "vmax = -1"))
+    bad = whole(turndesk("machine", "check", path, "--json"), 2)
+    assert set(bad) == {"file", "errors", "ports"}
+    declared_alone([good, bad], json_keys.MACHINE_CHECK.keys)
+
+
+def test_machine_hal(turndesk: Turndesk) -> None:
+    values = [
+        whole(turndesk("machine", "hal", f"gt75-{board}", "--json")) for board in ("mesa-7i97", "ethercat")
+    ]
+    declared_alone(values, json_keys.MACHINE_HAL.keys)
+
+
+def test_alarms(turndesk: Turndesk) -> None:
+    declared_alone([whole(turndesk("alarms", "--json"))], json_keys.ALARMS.keys)
+
+
+# --- The store.
+
+
+@pytest.fixture
+def filled(home: Path) -> Path:
+    """A store with something in each of its tables."""
+    feature = FeatureRow(0, "peg.nc", "SPIGOT", "diameter", 12.7, -0.05, 0.05, "tool", 1, 1, 0, 1)
+    began = datetime.now(UTC) - timedelta(hours=2)
+    at = utc(began)
+    with Store.open(home) as store:
+        of = store.write(lambda c: measured_parts.save_feature(c, feature)).result(60)
+        for part in range(1, 13):
+            times = (utc(began + timedelta(minutes=part)), utc(began + timedelta(minutes=part, seconds=50)))
+            outcome = "COMPLETE" if part > 1 else "ALARM"
+            cycle = CycleRow(f"c{part}", "peg.nc", part if part > 1 else 0, *times, 50.0, outcome)
+            store.write(partial(part_cycles.save_cycle, row=cycle)).result(60)
+            store.count_part("peg.nc").result(60)
+            reading = ReadingRow(0, of, part, 12.69 if part % 2 else 12.79, "in", at, "gauge", "mic")
+            store.write(partial(measured_parts.add_reading, row=reading)).result(60)
+        stop = StopRow("s", "c1", "peg.nc", at, 4.0, "FEED HOLD", 7)
+        store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
+        store.write(lambda c: tool_lives.set_limits(c, tool_lives.LifeRow(1, 50))).result(60)
+        store.write(lambda c: tool_lives.change_insert(c, 1, "worn")).result(60)
+        store.set_tool(1, "first", x=0.0, z=0.0).result(60)
+        store.set_tool(1, "wear", wear_x=-0.01).result(60)
+        store.undo_offset("undone", kind=Kind.TOOL).result(60)
+        store.write(
+            lambda c: people.keep_person(c, people.PersonRow("ANN", Level.SERVICE, *hashed("1234")))
+        ).result(60)
+    return home
+
+
+def test_offsets(turndesk: Turndesk, home: Path) -> None:
+    for words in (
+        ("T1", "x=1.25", "z=-.5", "kind=drill", "diameter=.25"),
+        ("D1", "x=.01"),
+        ("G54", "z=-120"),
+        ("TOOL1", "L=80.5"),
+        ("PRESET1", "x=100"),
+    ):
+        assert turndesk("offsets", "set", *words, "--yes").status == 0
+    assert turndesk("offsets", "clear", "T1").status == 0
+    history = whole(turndesk("offsets", "history", "--json"))
+    assert turndesk("offsets", "undo").status == 0
+    history += whole(turndesk("offsets", "history", "--json"))
+    declared_alone([history], json_keys.OFFSETS_HISTORY.keys)
+    assert turndesk("offsets", "set", "T1", "x=1.25", "z=-.5", "--yes").status == 0
+    declared_alone([whole(turndesk("offsets", "show", "--json"))], json_keys.OFFSETS_SHOW.keys)
+
+
+def test_parts(turndesk: Turndesk, filled: Path) -> None:
+    declared_alone([whole(turndesk("parts", "--json"))], json_keys.PARTS.keys)
+
+
+def test_shift(turndesk: Turndesk, filled: Path) -> None:
+    with Store.open(filled) as store:
+        store.log_event("alarm", "FOLLOWING ERROR").result(60)
+    now = datetime.now()
+    first, last = (f"{now + timedelta(days=days):%Y-%m-%d %H:%M}" for days in (-2, 2))
+    found = whole(turndesk("shift", "--from", first, "--to", last, "--json"))
+    declared_alone([found], json_keys.SHIFT.keys)
+
+
+def test_jobs(turndesk: Turndesk, home: Path) -> None:
+    assert turndesk("jobs", "add", "pin.nc", "5").status == 0
+    declared_alone([whole(turndesk("jobs", "list", "--json"))], json_keys.JOBS.keys)
+
+
+def test_store_verify(turndesk: Turndesk, filled: Path) -> None:
+    declared_alone([whole(turndesk("store", "verify", "--json"))], json_keys.STORE_VERIFY.keys)
+
+
+def test_access(turndesk: Turndesk, filled: Path) -> None:
+    declared_alone([whole(turndesk("access", "list", "--json"))], json_keys.ACCESS_LIST.keys)
+    declared_alone([whole(turndesk("access", "table", "--json"))], json_keys.ACCESS_TABLE.keys)
+
+
+def test_public_tables_have_the_declared_columns(home: Path) -> None:
+    with Store.open(home) as store, store.read() as connection:
+        for table in PUBLIC:
+            rows = connection.execute(f"PRAGMA table_info({table.name})").fetchall()
+            assert [row[1] for row in rows] == [key.name for key in table.columns], table.name
+            kinds = {"INTEGER": "integer", "REAL": "number", "TEXT": "string", "BLOB": "blob"}
+            for row, key in zip(rows, table.columns, strict=True):
+                nullable = not row[3] and not row[5]
+                assert key.type == kinds[row[2]] + " or null" * nullable, f"{table.name}.{key.name}"
+
+
+def test_exported_files_have_the_declared_columns(turndesk: Turndesk, filled: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert turndesk("store", "export", out).status == 0
+    heads = {path.name: next(csv.reader(path.read_text("utf-8").splitlines())) for path in out.glob("*.csv")}
+    files = {table.file: [key.name for key in table.columns] for table in PUBLIC if table.file}
+    assert heads.pop(RUNS) == list(RUNS_FILE)
+    assert heads.pop(EVENTS) == list(EventRow._fields)
+    assert heads == files
+    assert {table.file: table.name for table in PUBLIC if table.file} == TABLES
+
+
+# --- Shared programs, drawings, shapes, scope.
+
+
+def test_share(shop: Shop) -> None:
+    begun = whole(shop.share(1, "begin", "--json"))
+    declared_alone([begun], json_keys.SHARE_BEGIN.keys)
+    shop.program(1, "CAP.NC").write_text("G00 X1\nM30\n")
+    shop.program(1, "LARGE.NC").write_bytes(b"(X)\n" * (9 * 2**20))
+    shared = [whole(shop.share(1, "publish", "--json"))]
+    (shop.folder / "shop" / "stray.txt").write_text("X")
+    taken = whole(shop.share(2, "take", "CAP.NC", "--json"))
+    declared_alone([taken], json_keys.SHARE_TAKE.keys)
+    for number in (1, 2):
+        shop.program(number, "CAP.NC").write_text(f"G00 X1{number}\nM30\n")
+        shop.share(number, "publish")
+    shared.append(whole(shop.share(1, "status", "--json")))
+    declared_alone(shared, json_keys.SHARE_STATUS.keys)
+    declared_alone([whole(shop.share(1, "compare", "CAP.NC", "--json"))], json_keys.SHARE_COMPARE.keys)
+    declared_alone([whole(shop.share(1, "keep", "CAP.NC", "--json"))], json_keys.SHARE_KEEP.keys)
+
+
+def test_shapes(turndesk: Turndesk, tmp_path: Path) -> None:
+    path = tmp_path / "form.toml"
+    path.write_text('[[step]]\nkind = "head"\n[[step]]\nkind = "face"\nfrom = .5\nto = 0\n')
+    declared_alone([whole(turndesk("shapes", path, "--json"))], json_keys.SHAPES.keys)
+    declared_alone([whole(turndesk("shapes", "--list", "--json"))], json_keys.SHAPES_LIST.keys)
+
+
+@pytest.mark.long
+def test_profile(turndesk: Turndesk, tmp_path: Path) -> None:
+    sheet = tmp_path / "tools.toml"
+    sheet.write_text(SHEET)
+
+    def draw(space: Any) -> None:
+        chain((0, 0), (0, 4), (-5, 4), (-5, 3), (-8, 3), (-8, 4), (-10, 4), (-10, 6), (-20, 6), (-20, 0))(
+            space
+        )
+        space.add_text("X")
+
+    path = dxf(tmp_path / "part.dxf", draw)
+    words = ("profile", path, "--tools", sheet, "--json")
+    values = [
+        whole(turndesk(*words)),
+        whole(turndesk(*words, "--groove-tool", 1)),
+        whole(turndesk(*words, "--out", tmp_path / "part.mpf")),
+    ]
+    declared_alone(values, json_keys.PROFILE.keys)
+    declared_alone([whole(turndesk("profile", path, "--list", "--json"))], json_keys.PROFILE_LIST.keys)
+
+
+def test_scope(turndesk: Turndesk, offsets: Path, home: Path, tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(HEAD + "X.5Z.1\nM30\n")
+    assert turndesk("run", path, "--headless", "--offsets", offsets).status == 0
+    told = turndesk("scope", home / "records" / "run.ring", "--json")
+    declared_alone(told.lines, json_keys.SCOPE.keys)

@@ -1,0 +1,114 @@
+"""``docs/integrator/machine-file.md``: it has every key of the machine file, with its meaning."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import core.machine
+import drivers
+from app.compose.machine_file_page import document, main, number, references
+from core.machine.machine_tables import TABLES_OF_A_LATHE
+from core.page_contents import anchor_of
+from core.table_schema import Field, Kind, TableReference
+
+PAGE = Path(__file__).parents[2] / "docs" / "integrator" / "machine-file.md"
+TABLES = tuple(references())
+KEYS = tuple((f"{table.heading}: {field.key}", field) for table in TABLES for field in table.fields)
+_NUMERIC = (Kind.NUMBER, Kind.WHOLE)
+
+
+def _declared(value: object) -> Iterator[Field]:
+    if isinstance(value, Field):
+        yield value
+    elif isinstance(value, tuple):
+        for each in value:
+            yield from _declared(each)
+
+
+def _modules() -> Iterator[str]:
+    yield from (f"core.machine.{each.name}" for each in pkgutil.iter_modules(core.machine.__path__))
+    for each in pkgutil.walk_packages(drivers.__path__, "drivers."):
+        if each.name.endswith(("_table", "_nodes", "_rules")):
+            yield each.name
+
+
+def test_the_page_is_up_to_date() -> None:
+    command = "python -m app.compose.machine_file_page docs/integrator/machine-file.md"
+    assert PAGE.read_text("utf-8") == document(), command
+
+
+def test_the_command_writes_the_page(tmp_path: Path) -> None:
+    page = tmp_path / "new" / "page.md"
+    assert main([str(page)]) == 0
+    assert page.read_text("utf-8") == document()
+
+
+def test_every_declared_key_is_on_the_page() -> None:
+    shown = {id(field) for _, field in KEYS}
+    shown |= {id(field) for fields in TABLES_OF_A_LATHE.values() for field in fields}  # of no file
+    for name in _modules():
+        for variable, value in vars(importlib.import_module(name)).items():
+            missing = [field.key for field in _declared(value) if id(field) not in shown]
+            assert not missing, f"{name}.{variable}"
+    assert len(KEYS) > 240
+
+
+@pytest.mark.parametrize(("place", "field"), KEYS, ids=[place for place, _ in KEYS])
+def test_every_key_says_what_it_means(place: str, field: Field) -> None:
+    meaning = field.meaning
+    assert re.fullmatch(r"(true|false|Not|s32|[A-Z0-9\"`]).{11,300}\.", meaning), place
+    assert "|" not in meaning, "ends the cell of the table"
+    assert meaning.count("`") % 2 == 0
+    if field.default == 0 and field.kind in _NUMERIC and field.low > 0.0:
+        assert not re.search(r"\b0:", meaning), "the file cannot contain this value"
+
+
+def test_a_field_without_a_meaning_is_refused() -> None:
+    with pytest.raises(TypeError, match="meaning"):
+        Field("key", Kind.TEXT)  # type: ignore[call-arg]
+
+
+def test_the_contents_lead_to_headings_that_differ() -> None:
+    text = document()
+    links = re.findall(r"^- \[.*\]\(#(.*)\)$", text, re.MULTILINE)
+    headings = [anchor_of(title) for title in re.findall(r"^## (.*)$", text, re.MULTILINE)]
+    assert headings == links
+    assert len(set(headings)) == len(headings)
+
+
+def test_purposes_are_sentences() -> None:
+    for table in TABLES:
+        assert isinstance(table, TableReference)
+        assert re.match(r"[A-Z].*\.$", table.purpose), table.heading
+
+
+@pytest.mark.parametrize(
+    ("row"),
+    [
+        "| `resolution` | mm or in | 0.00001 to 0.02 mm, .0000003937 to .0007874 in | *derived* |",
+        "| `clearance` | mm or in | 0.1 to 100 mm, .003937 to 3.937 in | 31.75 mm, 1.25 in |",
+        "| `max_feed` | mm/min or in/min | 6 to 60000 mm, .2362 to 2362 in | *derived* |",
+        "| `at_speed_pct` | % | 0.5 to 25 | **required** |",
+        "| `refresh_ms` | ms | 50 to 10000 | *none* |",
+        '| `safe` | – | true, false, `"keep"` | **required** |',
+        '| `eol` | – | `"\\r\\n"`, `"\\n"`, `"\\r"` | `"\\r\\n"` |',
+        "| `port` | – | 1 to 65535 | 7878 |",
+    ],
+)
+def test_units_ranges_and_defaults_are_those_of_the_file(row: str) -> None:
+    assert row in document()
+
+
+def test_numbers_have_no_exponent() -> None:
+    assert [number(each) for each in (1e-6, 1e7, -36000.0, 31.75)] == [
+        "0.000001",
+        "10000000",
+        "−36000",
+        "31.75",
+    ]
