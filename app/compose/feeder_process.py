@@ -138,7 +138,7 @@ def beat(machine: Machine) -> float:
 
 def without_priority(period: float, late: float) -> str:
     """What a feeder cannot promise whose trial has come so late, in words for the operator."""
-    kept = "was on time" if late <= EVENED_OUT * period else "was not on time"
+    kept = "arrived in time" if late <= EVENED_OUT * period else "did not arrive in time"
     return (
         f"{NO_PRIORITY}, a SYNC every {1000 * period:g} ms is not reliable: in a {TRIAL:g} s "
         f"test, the SYNC {kept} (at most {1000 * late:.1f} ms late); the path waits for late "

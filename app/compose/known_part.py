@@ -14,7 +14,7 @@ from core.proving.cutting_checks import LIVE
 from core.proving.part_setting import PartSetting
 from core.proving.thread_checks import Drives
 
-OF_MACHINE = "by the machine file"
+OF_MACHINE = "set by the machine file"
 
 
 def known_part(

@@ -43,7 +43,7 @@ that contradict each other.
 _WIDTH = 100
 _MOST_CHOICES = 20  # in a cell
 _WITHOUT_BOUNDS = (Kind.FLAG, Kind.TEXT, Kind.WORDS)
-_AXES = "Positions count from home; X is a radius."
+_AXES = "Positions are measured from home; X is a radius."
 
 
 def document() -> str:
@@ -59,30 +59,24 @@ def references() -> Iterator[TableReference]:
     yield TableReference(
         "machine", "The machine as a whole, and the times of its setpoint queue.", _machine()
     )
-    yield TableReference(
-        "limits", "Limits that apply to all axes. The table may be missing.", plain["limits"]
-    )
+    yield TableReference("limits", "Limits that apply to all axes. The table is optional.", plain["limits"])
     yield from _axes()
     yield TableReference(
-        "c_axis", "What the C drive of a lathe reports. The table may be missing.", plain["c_axis"]
+        "c_axis", "What the C drive of a lathe reports. The table is optional.", plain["c_axis"]
     )
     yield TableReference("spindle", "The main spindle.", plain["spindle"])
-    yield TableReference(
-        "collet", "The collet or chuck of a lathe. The table may be missing.", plain["collet"]
-    )
+    yield TableReference("collet", "The collet or chuck of a lathe. The table is optional.", plain["collet"])
     yield TableReference(
         "clamping",
-        "Sizes of the chuck or collet and of the tailstock, which the proof checks against the tools. The "
-        "table may be missing.",
+        "Dimensions of the chuck or collet and of the tailstock, for the collision checks. "
+        "The table is optional.",
         plain["clamping"],
     )
-    yield TableReference("tooling", "How the tools are mounted. The table may be missing.", plain["tooling"])
-    yield TableReference(
-        "checks", "Checks of the part by the proof. The table may be missing.", plain["checks"]
-    )
+    yield TableReference("tooling", "How the tools are mounted. The table is optional.", plain["tooling"])
+    yield TableReference("checks", "Checks of the part by the proof. The table is optional.", plain["checks"])
     yield TableReference(
         "interlocks",
-        "Interlocks of the program. They never replace the safety circuit. The table may be missing.",
+        "Interlocks of the program. They never replace the safety circuit. The table is optional.",
         plain["interlocks"],
     )
     yield from _signals()

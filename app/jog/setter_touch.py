@@ -156,7 +156,7 @@ class SetterTouch:
             for each in self.directions
             if (each.axis, each.sign) in ways
         )
-        text = tr("TOOL SETTER, T{number}: HOLD {keys} UNTIL IT RETURNS. ESC: CANCEL")
+        text = tr("TOOL SETTER, T{number}: HOLD {keys} UNTIL THE AXIS RETRACTS. ESC: CANCEL")
         return tr(Message(text, number=self.tool.number, keys=keys))
 
 

@@ -75,7 +75,7 @@ class ScreenPreferences(SpecialFunction):
             self.desk.say("RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION")
             return
         if name == "latched" and not self.desk.one_hand:
-            self.desk.say(tr("PALM BUTTONS CANNOT LATCH HERE: REAL HARDWARE WOULD TURN"))
+            self.desk.say(tr("PALM BUTTONS LATCH ONLY IN SIMULATION. A REAL SPINDLE COULD START"))
             return
         if name == "first_job":
             self.desk.first_job = FirstJob()

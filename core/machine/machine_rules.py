@@ -239,7 +239,7 @@ def _windows(axis: str, unit: Unit) -> tuple[Rule, ...]:
         _below(
             still,
             window,
-            ("the window allowed at rest must not be larger than the following error window"),
+            ("the standstill tolerance must not be larger than the following error limit"),
             unit,
         ),
     )

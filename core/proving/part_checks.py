@@ -246,7 +246,7 @@ CHECKS: Mapping[str, Check] = {
     ),
     "arc-loop": Check(
         _ERROR,
-        "An insert feeds in a loop through the part.",
+        "An inserted corner makes the tool path loop through the part.",
         "An arc of more than 200° cuts material. Not checked for a round insert.",
         "Check the direction of the arc and the signs of its center coordinates.",
     ),
@@ -424,10 +424,10 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
     ),
     "live-tool-off": Check(
         _ERROR,
-        "A move mills while the live tool is off.",
+        "A milling move is programmed while the live tool is off.",
         (
-            "A move cuts with plane switching active and no live tool running. The finding "
-            "is only a warning when the spindle is locked as the C axis."
+            "A cutting move is programmed with plane switching active, but no live tool is "
+            "running. If the spindle is locked as the C axis, this is only a warning."
         ),
         "Turn on the live tool with its M code from the machine file.",
     ),

@@ -369,7 +369,9 @@ class Branches:
             proved=self._proved,
         )
         if never:
-            text = Message("{what} Never proved: {never}.", what=text, never=", ".join(sorted(never)[:5]))
+            text = Message(
+                "{what} Branches that are not proved: {never}.", what=text, never=", ".join(sorted(never)[:5])
+            )
         hint = (
             "So that every possible path can be proved, use fewer conditional calls in "
             "loops, or end each subroutine at its start position."

@@ -7935,8 +7935,8 @@
     </message>
     <message>
       <location filename="app/jog/setter_touch.py" />
-      <source>TOOL SETTER, T{number}: HOLD {keys} UNTIL IT RETURNS. ESC: CANCEL</source>
-      <translation>PALPADOR, T{number}: MANTENGA {keys} HASTA QUE VUELVA. ESC: CANCELAR</translation>
+      <source>TOOL SETTER, T{number}: HOLD {keys} UNTIL THE AXIS RETRACTS. ESC: CANCEL</source>
+      <translation>PALPADOR, T{number}: MANTENGA {keys} HASTA QUE EL EJE SE RETIRE. ESC: CANCELAR</translation>
     </message>
     <message>
       <location filename="app/jog/setter_touch.py" />
@@ -14290,8 +14290,8 @@
     </message>
     <message>
       <location filename="app/special/preferences.py" />
-      <source>PALM BUTTONS CANNOT LATCH HERE: REAL HARDWARE WOULD TURN</source>
-      <translation>AQUÍ LOS PULSADORES NO SE ENCLAVAN: GIRARÍAN PARTES REALES</translation>
+      <source>PALM BUTTONS LATCH ONLY IN SIMULATION. A REAL SPINDLE COULD START</source>
+      <translation>LOS PULSADORES SE RETIENEN SOLO EN SIMULACIÓN. PODRÍA ARRANCAR UN HUSILLO REAL</translation>
     </message>
     <message>
       <location filename="app/special/preferences.py" />
@@ -29375,6 +29375,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A cutting move is programmed with plane switching active, but no live tool is running. If the spindle is locked as the C axis, this is only a warning.</source>
+      <translation>Se programa un movimiento de corte con el cambio de plano activo, pero no hay ninguna herramienta motorizada en marcha. Si el husillo está bloqueado como eje C, es solo un aviso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A drill cuts on the spindle centerline with constant surface speed active.</source>
       <translation>Una broca corta en la línea de centro del husillo con velocidad de corte constante activa.</translation>
     </message>
@@ -29435,6 +29440,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A milling move is programmed while the live tool is off.</source>
+      <translation>Se programa un movimiento de fresado con la herramienta motorizada apagada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A move cuts after M13. The finding is only a warning if a feed move does not go straight away from the spindle as in a bar pull, or if the next cycle would start with the collet open.</source>
       <translation>Un movimiento corta tras M13. El hallazgo es solo un aviso si un avance no se aleja en línea recta del husillo como al jalar la barra, o si el ciclo siguiente empezaría con la pinza abierta.</translation>
     </message>
@@ -29450,11 +29460,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A move cuts with plane switching active and no live tool running. The finding is only a warning when the spindle is locked as the C axis.</source>
-      <translation>Un movimiento corta con el cambio de plano activo y sin herramienta motorizada en marcha. El hallazgo es solo un aviso cuando el husillo está bloqueado como eje C.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>A move cuts with the collet open.</source>
       <translation>Un movimiento corta con la pinza abierta.</translation>
     </message>
@@ -29467,11 +29472,6 @@
       <location filename="core/proving/part_checks.py" />
       <source>A move feeds per minute after M05 with no live tool running. With feed per revolution, G33 or G96, the finding is an error.</source>
       <translation>Un movimiento avanza por minuto tras M05 sin herramienta motorizada en marcha. Con avance por vuelta, G33 o G96, el hallazgo es un error.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>A move mills while the live tool is off.</source>
-      <translation>Un movimiento fresa con la herramienta motorizada apagada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29595,8 +29595,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>An insert feeds in a loop through the part.</source>
-      <translation>Una plaquita avanza en bucle a través de la pieza.</translation>
+      <source>An inserted corner makes the tool path loop through the part.</source>
+      <translation>Una esquina insertada hace que la trayectoria dé una vuelta por dentro de la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30295,8 +30295,8 @@
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
-      <source>{what} Never proved: {never}.</source>
-      <translation>{what} Nunca comprobado: {never}.</translation>
+      <source>{what} Branches that are not proved: {never}.</source>
+      <translation>{what} Ramas sin comprobar: {never}.</translation>
     </message>
     <message>
       <location filename="core/proving/program_timeline.py" />

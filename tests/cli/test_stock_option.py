@@ -269,7 +269,7 @@ def test_a_silenced_check_is_a_note_and_counted(turndesk: Turndesk, tmp_path: Pa
     )
     quiet = turndesk(*given, "--machine", machine, "--json")
     (note,) = [each for each in quiet.lines[0]["diagnostics"] if each["check"] == check]
-    assert (quiet.status, note["severity"], note["silenced"]) == (0, "note", "by the machine file")
+    assert (quiet.status, note["severity"], note["silenced"]) == (0, "note", ("set by the machine file"))
     assert quiet.lines[0]["silenced"] == 1
     assert f"silenced 1 findings of {check}" in turndesk(*given, "--machine", machine).out
 

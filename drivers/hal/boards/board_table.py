@@ -138,7 +138,7 @@ _AXIS = (
     _gain("p", "P gain of the position loop, in 1/s. On a 7I76E, 0 means 1 ÷ `period_ms` of [hal]."),
     _gain("i", "I gain of the position loop."),
     _gain("d", "D gain of the position loop."),
-    _gain("ff2", "Feed-forward of the acceleration, FF2 of the position loop."),
+    _gain("ff2", "Acceleration feedforward (FF2 of the position loop)."),
     *_HEX,
 )
 _TURNS = (
