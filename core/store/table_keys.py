@@ -84,7 +84,7 @@ number | | Number of the tool.
 limit_parts | | Tool life in parts; 0 means unlimited.
 limit_seconds | s | Tool life in time at feed; 0 means unlimited.
 warn | | Fraction of the tool life at which a warning appears, 0 to 1.
-stops | | Whether no further part starts when the tool life is used up.
+stops | | 1: no further part starts when the tool life is used up; 0: parts continue.
 parts | | Parts made since the insert was changed.
 seconds | s | Time at feed since the insert was changed.
 """
@@ -153,7 +153,7 @@ dr2 | mm | Oversize in corner radius, DR2.
 teeth | | Number of teeth.
 point | deg | Point angle.
 life | min | Tool life; 0 means unlimited.
-stops | | Whether no further part starts when the tool life is used up.
+stops | | 1: no further part starts when the tool life is used up; 0: parts continue.
 """
 PRESET = """
 x | mm | Machine position of the workpiece zero in X.

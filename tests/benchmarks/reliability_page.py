@@ -69,7 +69,8 @@ driven a real machine.
 
 {contents}
 `python -m tests.benchmarks.reliability_page` creates this page from stored results. No value is
-entered by hand. A person starts each measurement; the automatic tests run only a short night shift.
+entered by hand. Each measurement is started
+manually; the automatic tests include only a short version of the night shift.
 The line in italics at the end of a section gives the date and the computer.
 """
 

@@ -17,7 +17,7 @@ from core.page_contents import contents
 _TOP = """\
 # OmniTurn, code by code
 
-This page is the reference of all OmniTurn codes. For the language by subject, see
+This page is the reference for all OmniTurn codes. For the language by subject, see
 [programming/omniturn.md](programming/omniturn.md).
 
 {contents}
