@@ -167,7 +167,8 @@ class SetpointMotion:
         """At rest: draw back, or be done. Raises AlarmError("thread-lost") in the end."""
         if self._retract is None:
             return
-        at, _ = self._axes.demand_at(self._context.now)
+        # The time of the tick may be before the end of the braking where the computer was late.
+        at, _ = self._axes.demand_at(self._axes.now())
         self._retract.demand_left(at)
         self._begin_section([self._retract.way_out(at)])
         self._splice(Overrides(), None)

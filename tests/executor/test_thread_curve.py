@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from core.executor.raised_alarm import AlarmError
+from core.executor.setpoint_motion import SetpointMotion
 from core.executor.spindle_control import SpindleDemand
 from core.executor.thread_curve import curve_of
 from core.executor.thread_path import ThreadPath, ThreadRetract
@@ -163,3 +165,28 @@ def test_a_thread_left_in_its_pull_out_is_told_so_and_inches_are_inches() -> Non
     way = inch.way_out((5.0, -2.54, 0.0))
     assert (way.x0, way.z0, way.x, way.z) == (5.0, -2.54, 9.0, -2.54)
     assert not math.isclose(way.feed, 0.0)
+
+
+class BrakingAxes:
+    """Axes that brake until 1 s; the clock of the axes is at 2 s."""
+
+    def now(self) -> float:
+        return 2.0
+
+    def demand_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        z = -10.0 - min(t, 1.0)
+        return (5.0, z, 0.0), (0.0, 0.0 if t >= 1.0 else -1.0, 0.0)
+
+
+def test_a_late_tick_draws_the_tool_out_from_where_it_is_at_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The time of the tick is before the end of the braking; the axes are at rest when they are asked."""
+    begun: list[Block] = []
+    motion = object.__new__(SetpointMotion)
+    monkeypatch.setattr(motion, "_axes", BrakingAxes(), raising=False)
+    monkeypatch.setattr(motion, "_context", SimpleNamespace(now=0.5), raising=False)
+    monkeypatch.setattr(motion, "_retract", retract(0.0, [OUT]), raising=False)
+    monkeypatch.setattr(motion, "_begin_section", begun.extend)
+    monkeypatch.setattr(motion, "_splice", lambda _overrides, _last: None)
+    motion.retracted()
+    (block,) = begun
+    assert (block.x0, block.z0, block.x, block.z) == (5.0, -11.0, 9.0, -11.0)
