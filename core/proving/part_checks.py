@@ -246,7 +246,7 @@ CHECKS: Mapping[str, Check] = {
     ),
     "arc-loop": Check(
         _ERROR,
-        "An inserted corner makes the tool path loop through the part.",
+        "A tool with a cutting insert is fed through the part along a large arc.",
         "An arc of more than 200° cuts material. Not checked for a round insert.",
         "Check the direction of the arc and the signs of its center coordinates.",
     ),

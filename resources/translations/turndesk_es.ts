@@ -29560,6 +29560,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A tool with a cutting insert is fed through the part along a large arc.</source>
+      <translation>Una herramienta con plaquita atraviesa la pieza en avance a lo largo de un arco grande.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A turning tool with a defined shape returns in rapid along Z, by .1 in or more, at the radius it has turned.</source>
       <translation>Una herramienta de tornear con forma definida vuelve en rápido a lo largo de Z, .1 in o más, en el radio que ha torneado.</translation>
     </message>
@@ -29592,11 +29597,6 @@
       <location filename="core/proving/part_checks.py" />
       <source>An insert cuts with its trailing edge.</source>
       <translation>Una plaquita corta con su filo posterior.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>An inserted corner makes the tool path loop through the part.</source>
-      <translation>Una esquina insertada hace que la trayectoria dé una vuelta por dentro de la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
