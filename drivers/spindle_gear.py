@@ -116,7 +116,10 @@ class Gearing:
         self.turns = self._goal(phase.t)  # at which the cam is played
         self._speed = cam.sign * phase.speed  # at which it is played, turns/s
         if self._speed < _STANDS:
-            raise DriverError("the spindle is not turning, so no axis can follow it", "thread-no-encoder")
+            raise DriverError(
+                ("the spindle is not turning, so no axis can be synchronized with the spindle"),
+                "thread-no-encoder",
+            )
         self._queue = self._empty()
         self._walls = Walls([], math.inf)
         self.load(cam)
@@ -125,7 +128,10 @@ class Gearing:
         """Replace what lies behind the start of this way."""
         if not self.fits(cam):
             raise DriverError(
-                "axes cannot change to another spindle index pulse while they follow the spindle",
+                (
+                    "the axes cannot change to another spindle index pulse while they are "
+                    "synchronized with the spindle"
+                ),
                 "broken-path",
                 reason="other-index",
             )
@@ -282,7 +288,7 @@ class GearedQueue(SetpointQueue):
             return
         if gearing is None and not at_rest(self.horizon(now), now):
             raise DriverError(
-                "the axes must be at rest before they can follow the spindle",
+                "the axes must be at rest before they can be synchronized with the spindle",
                 "broken-path",
                 reason="not-at-rest",
             )
@@ -318,7 +324,10 @@ class GearedQueue(SetpointQueue):
         gearing = self._gearing
         if gearing is not None and len(segments.t) and not gearing.still_at(float(segments.t[0])):
             raise DriverError(
-                "the axes are following the spindle; stop them before you start a time-based move",
+                (
+                    "the axes are synchronized with the spindle; stop the axes before you start a "
+                    "time-based move"
+                ),
                 "broken-path",
                 reason="follows-spindle",
             )

@@ -43,7 +43,7 @@ def add_parser(subparsers: SubParsers) -> None:
         "--level",
         choices=list(_LEVELS),
         default="service",
-        help="access level (default: service); the first user must have level service",
+        help="access level (default: service); the first user must have the service level",
     )
     pin = actions.add_parser("pin", help="change the PIN of a user")
     pin.add_argument("name", metavar="NAME")

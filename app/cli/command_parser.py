@@ -141,7 +141,10 @@ def add_screen_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--demo",
         action="store_true",
-        help="open the screen with a separate data store of sample offsets that you can change",
+        help=(
+            "open the screen with a separate data store that contains sample offsets; you "
+            "can change these offsets"
+        ),
     )
     parser.add_argument(
         "--kiosk", action="store_true", help=("run in full screen; the window cannot be closed")

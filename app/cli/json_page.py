@@ -100,7 +100,7 @@ def _commands() -> Iterator[str]:
 _FLOOR = {
     "The file status.json": (_STATUS, FILE),
     "The web page for the office and the MQTT state": (_OFFICE, OFFICE),
-    "Events of MQTT and of the web hook": (_EVENT, EVENT),
+    "MQTT and webhook events": (_EVENT, EVENT),
 }
 
 

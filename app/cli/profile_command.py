@@ -77,7 +77,7 @@ def _add_drawing_options(parser: argparse.ArgumentParser) -> None:
         "--front",
         choices=("right", "left"),
         default="right",
-        help=("end of the drawing where the front face of the part is"),
+        help=("end of the drawing at which the front face of the part is located"),
     )
     parser.add_argument(
         "--zero", choices=("face", "back", "origin"), default="face", help="location of Z0 in the drawing"
@@ -167,7 +167,9 @@ def _run(args: argparse.Namespace) -> int:
             )
         args.who = who_may(opened_store, args, Act.PROGRAMS)
     if args.side == "bore" and args.hole is None and not args.list:
-        raise CommandError("boring needs a starting hole; specify its diameter with --hole", "no-hole")
+        raise CommandError(
+            ("boring requires a starting hole; specify the diameter of the hole with --hole"), "no-hole"
+        )
     args.metric = args.metric or not machine.inch
     args.dialect = _language(args, machine)
     with Progress(Message("time to read {file}, in seconds", file=args.file)) as progress:

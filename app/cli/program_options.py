@@ -39,7 +39,7 @@ def add_program_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--optional-stop", action="store_true", help="M01 stops")
     parser.add_argument("--block-delete", action="store_true", help="skip lines that begin with /")
     parser.add_argument(
-        "--strict", action="store_true", help="report an error for code that the control only tolerates"
+        "--strict", action="store_true", help="report an error for irregular code that the control accepts"
     )
     parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
@@ -47,7 +47,7 @@ def add_program_options(parser: argparse.ArgumentParser) -> None:
 def add_ideal_option(parser: argparse.ArgumentParser) -> None:
     """Times by feeds and limits of speed alone."""
     parser.add_argument(
-        "--ideal", action="store_true", help="calculate times without acceleration and waiting times"
+        "--ideal", action="store_true", help="calculate times without allowing for acceleration or waiting"
     )
 
 
@@ -91,7 +91,7 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
 
     dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
     for option, what in (
-        ("strict", "programs do not contain lines that the control only tolerates"),
+        ("strict", "programs do not contain irregular lines that the control accepts"),
         ("inputs", ("programs do not read input states")),
     ):
         if getattr(args, option) and dialect is not Dialect.OMNITURN:

@@ -51,12 +51,12 @@ def add_parser(subparsers: SubParsers) -> None:
     parser.add_argument(
         "--compare",
         metavar="OFFSETS",
-        help="show how another offsets file would change the part, the times and the findings",
+        help="show how another offsets file would change the part, the times and the check results",
     )
     parser.add_argument(
         "--report",
         metavar="FILE",
-        help="write an HTML or PDF report with drawings, findings, tools, times, stops and offsets",
+        help="write an HTML or PDF report with drawings, check results, tools, times, stops and offsets",
     )
     parser.add_argument(
         "--paper",

@@ -57,12 +57,12 @@ def references() -> Iterator[TableReference]:
     """Yield every table that a machine file may have, in the order of the page."""
     plain = dict(machine_tables.plain_tables(DRIVERS))
     yield TableReference(
-        "machine", "The machine as a whole, and the times of its setpoint queue.", _machine()
+        "machine", "General machine settings and the timing of the setpoint queue.", _machine()
     )
     yield TableReference("limits", "Limits that apply to all axes. The table is optional.", plain["limits"])
     yield from _axes()
     yield TableReference(
-        "c_axis", "What the C drive of a lathe reports. The table is optional.", plain["c_axis"]
+        "c_axis", "Feedback from the C drive of a lathe. The table is optional.", plain["c_axis"]
     )
     yield TableReference("spindle", "The main spindle.", plain["spindle"])
     yield TableReference("collet", "The collet or chuck of a lathe. The table is optional.", plain["collet"])
@@ -73,10 +73,12 @@ def references() -> Iterator[TableReference]:
         plain["clamping"],
     )
     yield TableReference("tooling", "How the tools are mounted. The table is optional.", plain["tooling"])
-    yield TableReference("checks", "Checks of the part by the proof. The table is optional.", plain["checks"])
+    yield TableReference(
+        "checks", ("Part checks during the proof of a program. The table is optional."), plain["checks"]
+    )
     yield TableReference(
         "interlocks",
-        "Interlocks of the program. They never replace the safety circuit. The table is optional.",
+        "Program interlocks. These interlocks never replace the safety circuit. The table is optional.",
         plain["interlocks"],
     )
     yield from _signals()
@@ -98,27 +100,30 @@ def _axes() -> Iterator[TableReference]:
     )
     yield TableReference(
         "axis.X.home, axis.Y.home, axis.Z.home",
-        "How a linear axis homes. An axis with `absolute = true` does not need it.",
+        "Homing settings of a linear axis. An axis with `absolute = true` does not need this table.",
         machine_tables.HOME,
     )
     yield TableReference(
         "axis.C of a lathe",
-        "The C axis of a lathe. A lathe without the table has no C axis.",
+        "The C axis of a lathe. A lathe without this table does not have a C axis.",
         machine_tables.C_AXIS,
     )
     yield TableReference(
         "axis.C of a lathe, linear",
-        "The third axis of a lathe if `linear = true`.",
+        "The third axis of a lathe if this axis is linear (`linear = true`).",
         machine_tables.THIRD_SLIDE,
     )
     yield TableReference(
         "axis.A, axis.B, axis.C of a mill",
-        "A rotary axis of a mill; at most two. Each needs a table in [kinematics].",
+        (
+            "A rotary axis of a mill. A mill can have at most two rotary axes, and each "
+            "axis needs a table in [kinematics]."
+        ),
         machine_tables.ROTARY_AXIS,
     )
     yield TableReference(
         "axis.A.home, axis.B.home, axis.C.home of a mill",
-        "How a rotary axis homes. An axis with `absolute = true` does not need it.",
+        "Homing settings of a rotary axis. An axis with `absolute = true` does not need this table.",
         machine_tables.ROTARY_HOME,
     )
 
@@ -135,10 +140,13 @@ def _signals() -> Iterator[TableReference]:
     )
     yield TableReference(
         "io.in.…",
-        "An input; the last word of the heading is its name. `estop` is required. Other names with a "
-        "meaning: "
-        "`start`, `hold`, `guard`, `collet_closed`, `end_of_bar`, `part`, `probe`, `spindle_auto`, "
-        "`start_inhibit`, `wheel_…` and `jog_…`. Programs read inputs by their names (M91 to M97).",
+        (
+            "An input; the last word of the heading is its name. `estop` is required. "
+            "Other names with a predefined meaning: `start`, `hold`, `guard`, "
+            "`collet_closed`, `end_of_bar`, `part`, `probe`, `spindle_auto`, "
+            "`start_inhibit`, `wheel_…` and `jog_…`. Programs read inputs by their names "
+            "(M91 to M97)."
+        ),
         machine_tables.INPUT,
     )
     yield TableReference(
@@ -153,7 +161,7 @@ def _signals() -> Iterator[TableReference]:
         machine_tables.M_CODE,
     )
     yield TableReference(
-        "m_codes.… with ignored",
+        "m_codes.… with the key ignored",
         "An M code of another machine that does nothing on this machine.",
         machine_tables.M_IGNORED,
     )
@@ -167,7 +175,7 @@ def _kinematics() -> Iterator[TableReference]:
     )
     yield TableReference(
         "kinematics.A, kinematics.B, kinematics.C",
-        "Where a rotary axis of a mill is located.",
+        "Location of a rotary axis of a mill.",
         mill_kinematics.ROTARY,
     )
 

@@ -109,7 +109,7 @@ def _machine_members(named: str | None) -> dict[str, Path]:
     read_machine(str(path))
     if not path.is_file():
         raise CommandError(
-            Message("{named} comes with every TurnDesk; omit --machine, or specify a file", named=named),
+            Message("{named} is included with TurnDesk; omit --machine, or specify a file", named=named),
             "shipped-machine",
         )
     beside = [path.with_suffix(ending) for ending in BESIDE]

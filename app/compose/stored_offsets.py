@@ -33,7 +33,9 @@ if TYPE_CHECKING:
     from core.part.tool_shape import ToolShape
     from core.store.store import Store
 
-OF_A_FILE = "OFFSETS COME FROM A FILE (--offsets) AND ARE READ-ONLY. CHANGE THE FILE, OR START WITHOUT IT"
+OF_A_FILE = (
+    "OFFSETS COME FROM A FILE (--offsets) AND ARE READ-ONLY. CHANGE THIS FILE, OR START WITHOUT THIS OPTION"
+)
 
 
 class Offsets(NamedTuple):

@@ -91,7 +91,7 @@ class Access:
         if left > 0.0:
             self.say(tr(Message("TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S", seconds=f"{left:.0f}")))
         elif not row.has_pin:
-            self.say(tr(Message("{name} HAS NO PIN. A SERVICE USER MUST SET ONE", name=data(row.name))))
+            self.say(tr(Message("{name} HAS NO PIN. A SERVICE USER MUST SET THE PIN", name=data(row.name))))
         elif not self.worker.busy:
             self.say(tr(Message("CHECKING THE PIN OF {name}", name=data(row.name))))
             self.worker.queue(partial(self._try, row, pin), partial(self._tried, row), self.say)

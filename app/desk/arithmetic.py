@@ -86,7 +86,7 @@ class _Reader:
 
     def expect_end(self) -> None:
         if self._next < len(self._tokens):
-            raise self._refusal("+ - * / or the end of the entry")
+            raise self._refusal("+, -, *, / or the end of the entry")
 
     def _take(self, *wanted: str) -> str:
         if self._next < len(self._tokens) and self._tokens[self._next][0] in wanted:

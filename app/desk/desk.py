@@ -59,7 +59,7 @@ DRIVERS_CLOSE = 10.0  # s: an inverter is stopped, a driver process ends
 SWITCHES = frozenset({"single_block", "optional_stop", "cycle_repeat", "no_count"})
 SILENT = "CONTROL SILENT"
 LAST_PROGRAM = "last_program"  # setting: the path of the program that was loaded last
-BY_SCREEN = "key or touch on the screen"  # who holds, for the log
+BY_SCREEN = "a key or a touch on the screen"  # who holds, for the log
 
 
 class Attached(Protocol):
@@ -483,7 +483,7 @@ class Desk:
         """Whether the control may be left; where something would be lost by it Y does ``close``."""
         waiting = self.waiting()
         if waiting:
-            words = tr("NOT SAVED, LOST WHEN YOU CLOSE: {what}. Y: CLOSE   N: STAY")
+            words = tr("UNSAVED WORK WILL BE LOST: {what}. Y: CLOSE   N: STAY")
             self.ask(tr(Message(words, what=waiting)), close)
         return not waiting
 

@@ -45,7 +45,7 @@ def notice_of(snapshot: Snapshot, loaded: Loaded, units: Units) -> NoticeRow | N
             part=found.part,
             position=formats.wall_time(found.at),
             why=tr(found.why),
-            changed=tr(" (PROGRAM TEXT CHANGED SINCE THEN)") if _changed(found, loaded) else "",
+            changed=tr(" (PROGRAM CHANGED SINCE THEN)") if _changed(found, loaded) else "",
         )
     )
     return NoticeRow(words, _places(found, snapshot, units) + _uncertain(found))
@@ -73,8 +73,8 @@ def may_go_on(loaded: Loaded) -> bool:
 def instead(found: InterruptedJob, name: str) -> str:
     """The question before another program takes the place of an interrupted one."""
     words = tr(
-        "T{tool} MAY BE IN THE PART, {program} LINE {line}. PRESS Y TO CANCEL THAT JOB AND "
-        "LOAD {name}, N TO KEEP IT"
+        "T{tool} MAY BE IN THE PART ({program}, LINE {line}). PRESS Y TO CANCEL THE "
+        "INTERRUPTED JOB AND LOAD {name}, N TO KEEP IT"
     )
     return tr(Message(words, tool=found.tool, program=found.program, line=found.line, name=name))
 

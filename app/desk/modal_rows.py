@@ -168,7 +168,7 @@ def _frame(modal: Modal) -> tuple[ModalRow, ...]:
         ModalRow("tool offset", tr("TOOL OFFSET"), pair(modal, modal.tool_x, modal.tool_z)),
         ModalRow("secondary", tr("D OFFSET"), f"D{modal.secondary}  {_d(modal)}"),
         ModalRow("shift", tr("G10 ACTIVE"), pair(modal, modal.shift_x, modal.shift_z)),
-        ModalRow("pending", tr("G10 AT NEXT T"), pair(modal, modal.pending_shift_x, modal.pending_shift_z)),
+        ModalRow("pending", tr("G10 FROM NEXT T"), pair(modal, modal.pending_shift_x, modal.pending_shift_z)),
         ModalRow("preset", tr("G92 PRESET"), pair(modal, modal.preset_x, modal.preset_z)),
     )
 

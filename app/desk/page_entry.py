@@ -56,7 +56,7 @@ def mdi_barred(snapshot: Snapshot) -> str:
 def searchto_barred(snapshot: Snapshot, loaded: Loaded) -> str:
     """Return why SEARCHTO cannot be opened, or does not go on; empty when it can."""
     if snapshot.state in CYCLE:
-        return tr("FOR SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R")
+        return tr("TO USE SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R")
     if loaded.source is None or loaded.job is None:
         return tr("CHOOSE A PROGRAM FIRST (F2)")
     if loaded.phase is not Phase.READY:

@@ -97,9 +97,9 @@ def _files(folder: Path, taken: Callable[[str], bool]) -> Iterator[Path]:
 _log = logging.getLogger(__name__)
 LOOK = 2.0  # seconds between two looks at the disk
 HANGS = 5.0  # seconds after which a look that has not returned counts as a file that cannot be read
-GONE = "{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED TEXT"
-CHANGED = "{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD TEXT"
-UNREADABLE = "CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED TEXT"
+GONE = "{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED PROGRAM"
+CHANGED = "{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION"
+UNREADABLE = "CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION"
 _Said = tuple[str, str]  # the text, and the name of the file in it
 _SAME = ("", "")
 _Stamp = tuple[int, int]  # time of the last change in nanoseconds, bytes; an error number and -1

@@ -171,7 +171,9 @@ def refusal(loaded: Loaded) -> str:
         )
     errors = loaded.errors
     if not errors:
-        first = loaded.proof.errors[0] if loaded.proof and loaded.proof.errors else ("THE PROOF FOUND ERRORS")
+        first = (
+            loaded.proof.errors[0] if loaded.proof and loaded.proof.errors else ("ERRORS FOUND WHEN PROVING")
+        )
         return Message("WILL NOT RUN: {text}", text=first)
     first_error = errors[0]
     more = len(errors) - 1

@@ -143,7 +143,7 @@ def system_words(swivel: Swivel | None) -> str:
         return tr("MACHINE")
     if not swivel.system.tilted:
         return tr("WORKPIECE")
-    return tr(Message("TILTED PLANE OF LINE {line}", line=swivel.system.line))
+    return tr(Message("TILTED PLANE FROM LINE {line}", line=swivel.system.line))
 
 
 def rotary_angle(degrees: float) -> str:

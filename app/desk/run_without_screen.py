@@ -140,7 +140,7 @@ class HeadlessRun:
                 self._executor.post(FeedHold("the command line"))
                 self._step()
                 hint = Message(
-                    "line {line} waits for {waiting_for}; specify its state with --inputs",
+                    "line {line} waits for {waiting_for}; specify the input state with --inputs",
                     line=snapshot.line,
                     waiting_for=snapshot.waiting_for,
                 )

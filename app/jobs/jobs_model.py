@@ -29,7 +29,7 @@ from core.store.program_settings import notes_key
 from core.store.store_errors import StoreError
 
 NONE_YET = "NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, F10: ADD FROM LIST"
-NO_PROGRAM = "F1, F2: LOAD A PROGRAM   F1, F6, F10: ADD ONE FROM THE LIST"
+NO_PROGRAM = "F1, F2: LOAD A PROGRAM   F1, F6, F10: ADD JOB FROM THE LIST"
 _WIDE = 46  # letters of a cell
 
 
@@ -133,7 +133,11 @@ class JobsModel:
         elif made is None:
             words = tr("PROVING …")
             if self.watch.on_desk(job) or job.done:
-                words = tr("PROGRAM LOADED. SEE ITS FINDINGS ON PAGE B") if not job.done else tr("DONE")
+                words = (
+                    tr("PROGRAM LOADED. SEE ITS ERRORS AND WARNINGS ON PAGE B")
+                    if not job.done
+                    else tr("DONE")
+                )
             yield Row((tr("PROOF"), words, ""), False)
         else:
             yield from self._proved_rows(job, made)
@@ -234,7 +238,7 @@ class JobsModel:
         if job is None:
             self.desk.say(NONE_YET)
         elif what == "note" and self.desk.snapshot().state in UNDER_WAY:
-            self.desk.say("NO NOTES DURING A CYCLE: LETTER KEYS STOP THE MACHINE")
+            self.desk.say("NO NOTES DURING A CYCLE: LETTER KEYS WOULD STOP THE MACHINE")
         else:
             self.desk.clear()
             text = job.note if what == "note" else ""

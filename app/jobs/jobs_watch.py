@@ -152,7 +152,7 @@ class JobsWatch:
         if not isinstance(made, ProvedJob):
             return made
         if made.sheet.errors:
-            return tr("PROOF FOUND ERRORS")
+            return tr("THE PROGRAM HAS ERRORS")
         lacking = missing(made, self.lives, job.left)
         return tr(Message("{count} ITEMS NOT READY", count=lacking)) if lacking else tr("TOOLS COMPLETE")
 

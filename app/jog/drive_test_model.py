@@ -63,7 +63,7 @@ class HeldTest(HeldJog):
     def _go(self, source: str, axis: str, sign: int, rapid: bool) -> None:
         if rapid:
             self.asked = None
-            self.say(tr("DRIVE TEST HAS NO RAPID. PRESS WITHOUT SHIFT"))
+            self.say(tr("DRIVE TEST HAS NO RAPID. PRESS THE ARROW WITHOUT SHIFT"))
         elif self.asked != (axis, sign):
             self.clear()
             self.asked = axis, sign

@@ -342,7 +342,7 @@ class HandFunctions:
         if snapshot.state is not State.IDLE:
             return ""
         if self.line.busy:
-            return tr("PROVING THE LINE")
+            return tr("CHECKING THE LINE FOR ERRORS")
         return self._ready_words(snapshot)
 
     def _ready_words(self, snapshot: Snapshot) -> str:

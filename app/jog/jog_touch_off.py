@@ -99,7 +99,7 @@ class TouchOff:
         if len(values) < 2:
             return ""
         x, z = (float(values[name]) for name in ("x", "z"))
-        why = ask.touch_off(number, Touch(x, z), self.cause or tr("touch-off, new tool"), new.tip)
+        why = ask.touch_off(number, Touch(x, z), self.cause or tr("touch-off of a new tool"), new.tip)
         if not why:
             new.drop()
         return why

@@ -105,7 +105,7 @@ class SetterTouch:
         """What a press of this direction does: a touch-off, or why not."""
         ways = ways_of(self.tool.row)
         if (axis, sign) not in ways:
-            text = tr("T{number} CAN BE TOUCHED OFF ONLY IN {ways}")
+            text = tr("TOUCH OFF T{number} ONLY IN DIRECTION {ways}")
             words = tr(" OR ").join(way_word(way) for way in ways)
             return tr(Message(text, number=self.tool.number, ways=words))
         self._presses += 1
@@ -134,7 +134,9 @@ class SetterTouch:
         value = stands_at(place, way, model, self.tool.row)
         metric = self.tool.history.mode.metric
         about = signed(touched.error, metric).removeprefix("+")
-        cause = tr(Message("tool setter {direction} ±{error}", direction=way_word(way), error=about))
+        cause = tr(
+            Message(("tool setter, direction {direction}, ±{error}"), direction=way_word(way), error=about)
+        )
         self.tool.found(TOUCH_X if touched.axis == "X" else TOUCH_Z, value, cause)
 
     def prompt(self, snapshot: Snapshot) -> str:
@@ -143,9 +145,9 @@ class SetterTouch:
             return ""
         words = {
             TouchPhase.SEARCH: tr("SEARCHING FOR THE TOOL SETTER. RELEASE THE KEY TO STOP"),
-            TouchPhase.BACK_OFF: tr("TOUCHED: BACKING OFF"),
+            TouchPhase.BACK_OFF: tr("CONTACT MADE. BACKING OFF"),
             TouchPhase.SLOW: tr("MEASURING WITH A SLOW TOUCH"),
-            TouchPhase.RETREAT: tr("TOUCHED: BACKING OFF"),
+            TouchPhase.RETREAT: tr("CONTACT MADE. BACKING OFF"),
             TouchPhase.RETURN: tr("NO CONTACT. RETURNING"),
         }
         if snapshot.touching is not None:
@@ -176,7 +178,7 @@ class HeldTouch(HeldJog):
         if isinstance(asked, str):
             self.say(asked)
         elif rapid:
-            self.say(tr("TOUCH-OFF HAS NO RAPID. PRESS WITHOUT SHIFT"))
+            self.say(tr("NO RAPID DURING TOUCH-OFF. PRESS WITHOUT SHIFT"))
         else:
             self._asked = asked
             self._hold(source, axis, float(sign), False, asked)

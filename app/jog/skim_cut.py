@@ -188,7 +188,7 @@ class SkimCut:
             self.tool.close()
         self.step = CutStep.CUT
         self._anew(snapshot)
-        words = tr("{axis} MOVED {away} AFTER CUT, NOT SAVED. CUT AGAIN OR PRESS ESC")
+        words = tr("{axis} MOVED {away} AFTER THE CUT. NOT SAVED. CUT AGAIN OR PRESS ESC")
         self.spoilt = tr(Message(words, axis=self.axis, away=shown))
 
     def _measure(self, snapshot: Snapshot) -> None:

@@ -49,7 +49,7 @@ def jog_frame(machine: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
             turn = " ".join(f"{axis.name}+Q{120 + _ROTARY.index(axis.name)}" for axis in axes)
             words = tr("{axes} NOT AT THE PLANE ANGLE. FIRST RUN L {turn} FMAX IN MDI")
             return tr(Message(words, axes=tr(" AND ").join(off), turn=turn))
-        return JogFrame(system.place.turn, tr(Message("TILTED PLANE OF LINE {line}", line=system.line)))
+        return JogFrame(system.place.turn, tr(Message("TILTED PLANE FROM LINE {line}", line=system.line)))
     if machine is None or abs(machine.tool_axis(angles)[2] - 1.0) <= _UPRIGHT:
         return tr("NO TILT ACTIVE. RUN PLANE IN MDI (F4) OR TILT THE HEAD")
     heads = [turned(each.direction, angles[each.name]) for each in machine.rotaries if not each.table]

@@ -104,7 +104,9 @@ class ToolSetting:
         if self.by_setter:
             return tr(
                 Message(
-                    "{tool} {axis} FROM THE TOOL SETTER: SAVE IT?", tool=name, axis=self.touching.name.upper()
+                    ("SAVE {tool} {axis} MEASURED AT THE TOOL SETTER?"),
+                    tool=name,
+                    axis=self.touching.name.upper(),
                 )
             )
         if self.asked == TOUCH_X:
@@ -119,14 +121,14 @@ class ToolSetting:
         if self.masters and self.touching.alone:
             return tr(
                 Message(
-                    "ONLY T{number} CHANGES. L: ALL TOOLS FOLLOW",
+                    "ONLY T{number} CHANGES. L: APPLY TO ALL TOOLS",
                     number=edge_number(number),
                 )
             )
         if self.masters:
             return tr(
                 Message(
-                    "T{number} IS THE MASTER, {others} FOLLOW. L: THIS TOOL ONLY",
+                    "T{number} IS THE MASTER. ALSO ADJUSTED: {others}. L: THIS TOOL ONLY",
                     number=edge_number(number),
                     others=follower_names(self.book.tools, number) or tr("no tools"),
                 )

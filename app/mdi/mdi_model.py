@@ -164,7 +164,7 @@ class MdiModel:
     def _of_the_line(self, start: str) -> str:
         """How far the line is."""
         if self.line.busy:
-            return tr("PROVING THE LINE")
+            return tr("CHECKING THE LINE FOR ERRORS")
         if self.line.errors:
             return tr("CORRECT THE LINE. ESC: CLEAR IT")
         if self.line.ready is not None:

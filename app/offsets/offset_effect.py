@@ -226,8 +226,8 @@ class EffectDisplay:
         if not part.differing:
             return tr("NO DIAMETER OR SHOULDER ON THE PART CHANGES. F6: SHOW TABLE")
         if part.differing == 1:
-            return tr("1 PART FEATURE CHANGES. F6: SHOW TABLE")
-        words = tr("{count} PART FEATURES CHANGE. F6: SHOW TABLE")
+            return tr("1 PART FEATURE WILL CHANGE. F6: SHOW TABLE")
+        words = tr("{count} PART FEATURES WILL CHANGE. F6: SHOW TABLE")
         return tr(Message(words, count=part.differing))
 
     @property

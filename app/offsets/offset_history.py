@@ -48,7 +48,7 @@ def counts_from(snapshot: Snapshot) -> str:
     if snapshot.state not in UNDER_WAY:
         return ""
     if snapshot.cycle_repeat:
-        return tr("PROVED OFFSET CHANGES APPLY FROM THE NEXT PART")
+        return tr("OFFSET CHANGES APPLY FROM NEXT PART, AFTER THEY ARE PROVED")
     return tr("WEAR APPLIES FROM NEXT CYCLE START")
 
 

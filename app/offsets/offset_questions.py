@@ -116,7 +116,7 @@ class OffsetQuestions:
         changes = described(found, lambda each: self._named(kind, each), lambda each: _reason(each.doubt))
         text = tr("{changes}. Y: CHANGE   N: KEEP OLD VALUE")
         if others:
-            text = tr("{changes}. TOOLS THAT FOLLOW: {others}. Y: CHANGE   N: KEEP")
+            text = tr("{changes}. ALSO ADJUSTED: {others}. Y: CHANGE   N: KEEP")
         question = tr(Message(text, changes=changes, others=others))
         history.desk.ask(question, lambda: history.answer(save() if unchanged() else _changed_meanwhile()))
         return ""
@@ -157,11 +157,11 @@ class OffsetQuestions:
 
     def _master_question(self, before: int, chosen: int) -> str:
         if not chosen:
-            text = tr("MASTER {before} → NONE: NO TOOLS FOLLOW. Y: CHANGE   N: KEEP")
+            text = tr("MASTER {before} → NONE: NO OTHER TOOLS WILL BE ADJUSTED. Y: CHANGE   N: KEEP")
             return tr(Message(text, before=edge_name(before)))
         text = tr(
-            "MASTER {before} → {tool}. TOOLS THAT FOLLOW: {others}. TOUCH-OFF CHANGES OVER "
-            "{limit} {unit} MUST BE CONFIRMED. Y: CHANGE   N: KEEP"
+            "MASTER {before} → {tool}. TOOLS ADJUSTED WITH THE MASTER: {others}. TOUCH-OFF "
+            "CHANGES OVER {limit} {unit} MUST BE CONFIRMED. Y: CHANGE   N: KEEP"
         )
         mode = self.history.mode
         return tr(
@@ -215,7 +215,7 @@ def _reason(doubt: Doubt) -> str:
         Doubt.TRAVEL: tr("OUTSIDE AXIS TRAVEL"),
         Doubt.SIDE: tr("OPPOSITE SIDE OF THE PART"),
         Doubt.LARGE: tr("LARGE CHANGE"),
-        Doubt.MASTER: tr("OTHER TOOLS FOLLOW THIS TOOL"),
+        Doubt.MASTER: tr("OTHER TOOLS ARE ADJUSTED WITH THIS TOOL"),
     }
     return words[doubt]
 

@@ -53,7 +53,7 @@ UNKNOWN = "?"  # in the place of a figure that could not be read
 
 def not_set(*, unread: bool = False) -> str:
     """Return the word for an offset without values: it was never entered, or it could not be read."""
-    return tr("cannot be read") if unread else tr("not set")
+    return tr("unreadable") if unread else tr("not set")
 
 
 def signed(mm: float, metric: bool) -> str:

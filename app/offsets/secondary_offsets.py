@@ -153,7 +153,7 @@ class SecondaryOffsets(OffsetTable):
             self.text = str(number)
             self._enter()
         else:
-            self.desk.say(tr(Message("FINISH D{number} FIRST, OR PRESS ESC", number=self.number)))
+            self.desk.say(tr(Message("FINISH ENTERING D{number} FIRST, OR PRESS ESC", number=self.number)))
 
     def clear(self) -> None:
         """C; not in the middle of an entry."""

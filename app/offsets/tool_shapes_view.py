@@ -94,7 +94,7 @@ class ShapeTable(Panel):
         painter.fill(room, "panel")
         outline = model.outline
         if model.row is None:
-            text = tr("SHAPE NOT DEFINED: THE PROOF CHECKS ONLY THE TOOL NOSE")
+            text = tr("TOOL SHAPE NOT DEFINED: ONLY THE TOOL NOSE IS CHECKED")
             painter.write(room, text, 1.8, "soft", at=CENTRE, margin=1.0)
         elif outline is None:
             painter.write(room, tr("IMPOSSIBLE TOOL SHAPE"), 1.8, "alarm", at=CENTRE, margin=1.0)

@@ -271,9 +271,9 @@ class PartSheet:
         if not self.name:
             return tr("LOAD A PROGRAM FIRST. STOCK DATA IS SAVED WITH THE PROGRAM")
         if self.desk.lathe is not None and self.desk.lathe.kind != "lathe":
-            return tr("ON A MILL, TURNDESK DOES NOT PROVE THE FINISHED PART")
+            return tr("ON A MILL, TURNDESK DOES NOT CHECK THE FINISHED PART")
         if self.desk.snapshot().state in UNDER_WAY:
-            return tr("PROGRAM RUNNING. CHANGE STOCK AND CHECKS ONLY BETWEEN CYCLES")
+            return tr("PROGRAM RUNNING. EDIT STOCK OR PART CHECKS ONLY BETWEEN CYCLES")
         if self.worker.busy or self.loaded.busy:
             return tr("THE PROGRAM IS BEING PROVED: WAIT A MOMENT")
         return ""

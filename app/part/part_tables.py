@@ -74,7 +74,7 @@ def _at(page: PartSheet, found: Diagnostic) -> str:
         return tr("TURNED OFF IN THE MACHINE FILE") if of_machine else tr("F4: UNDO")
     if not found.n:
         return ""
-    return tr(Message("ELEMENTARY BLOCK {number}", number=found.n))
+    return tr(Message("MOTION SEGMENT {number}", number=found.n))
 
 
 # --- stock ---------------------------------------------------------------------------------------

@@ -161,7 +161,7 @@ class CopyRenameDelete:
             return SAMPLE
         found = self.desk.snapshot().interrupted
         if found is not None and found.program == program.name:
-            words = tr("{name} IS INTERRUPTED. FINISH OR CANCEL IT FIRST")
+            words = tr("{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST")
             return tr(Message(words, name=program.name))
         state = self.desk.snapshot().state
         if state in UNDER_WAY and self.desk.session.now.path == program.path:

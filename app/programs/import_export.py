@@ -344,7 +344,7 @@ class ImportExport:
         elif carried.findings:
             words = tr(
                 Message(
-                    "PROGRAMS IMPORTED: {count}, BUT NOT ALL ARE ERROR-FREE: {value}",
+                    "PROGRAMS IMPORTED: {count}. NOT ALL ARE FREE OF ERRORS: {value}",
                     count=count,
                     value=carried.findings[0],
                 )
@@ -367,5 +367,5 @@ class ImportExport:
             words = tr("COPYING PROGRAM {number} OF {of}. DO NOT REMOVE THE USB STICK")
             return tr(Message(words, number=min(done + 1, of), of=of))
         if self.out:
-            return "ENTER: OPEN   F4: COPY ONE HERE   F5: COPY ALL   ESC: BACK"
+            return "ENTER: OPEN   F4: COPY FILE HERE   F5: COPY ALL   ESC: BACK"
         return "ENTER: OPEN FOLDER OR IMPORT   F5: IMPORT ALL   ESC: BACK"

@@ -95,6 +95,6 @@ def _outcome(snapshot: Snapshot) -> str:
 
 def note_cut_off_runs(store: Store) -> None:
     """At the start, when nothing runs yet: a run without an end is one that the control did not outlive."""
-    told = store.runs_cut_off(CUT_OFF, "{program}: the control stopped during the last run of this program")
+    told = store.runs_cut_off(CUT_OFF, "{program}: the control shut down during the last run of this program")
     with suppress(StoreError):  # a disk that is full gets it later
         told.result()

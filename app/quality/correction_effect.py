@@ -78,7 +78,11 @@ class CorrectionEffect:
             return ""
         if effect.busy:
             return tr("SIMULATING THE PART WITH OLD AND NEW OFFSETS")
-        return tr(Message("THE PART CANNOT BE COMPARED: {why}", why=effect.trouble)) if effect.trouble else ""
+        return (
+            tr(Message(("PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}"), why=effect.trouble))
+            if effect.trouble
+            else ""
+        )
 
     def drawing(self, mode: Mode) -> ChartDrawing:
         """The readings between their limits, their mean, and what the next parts will measure."""

@@ -115,7 +115,7 @@ class FeaturesSection(QualitySection):
     """The list of features; F2 and Return open one to be entered, F6 keeps it."""
 
     name = "FEATURES"
-    use = "nominal, tolerance, sample plan"
+    use = "nominal dimension, tolerance, sampling plan"
 
     def __init__(self, desk: Desk, watch: PartsWatch) -> None:
         super().__init__(desk, watch)
@@ -155,9 +155,9 @@ class FeaturesSection(QualitySection):
             "SAMPLE",
         )
         waits = (
-            tr("PARTS WAIT UNTIL THE SAMPLE PLAN IS DONE")
+            tr("NEXT PART WAITS FOR REQUIRED MEASUREMENTS")
             if self.watch.waits
-            else tr("PARTS DO NOT WAIT FOR THE SAMPLE PLAN")
+            else tr("NEXT PART DOES NOT WAIT FOR REQUIRED MEASUREMENTS")
         )
         notes = (
             (

@@ -89,7 +89,7 @@ class PartsWatch:
         persistence = self.desk.counter.persistence
         persistence.save_setting(_key(self.program), on or None)
         told = (
-            ("the next part cannot start before the sample plan is complete")
+            ("the next part cannot start before the required parts are measured")
             if on
             else ("the next part can start before the required parts are measured")
         )

@@ -139,7 +139,7 @@ class ShiftReport(SpecialFunction):
         return True
 
     def _done(self, name: str) -> None:
-        self.desk.done(tr(Message("{name} SAVED COMPLETELY. YOU CAN NOW REMOVE THE USB STICK", name=name)))
+        self.desk.done(tr(Message("{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW", name=name)))
 
     def prompt(self) -> str:
         """What the keys do."""

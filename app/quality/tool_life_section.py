@@ -69,8 +69,8 @@ class ToolLifeSection(QualitySection):
         heads = ("T", "PARTS", "MINUTES", "STOPS", "LEFT", "USED")
         notes = (
             (
-                "Minutes count only time at feed. 0 removes a limit. STOP: no new part starts "
-                "once the life is used up."
+                "Only time at feed counts toward the minutes. 0 removes a limit. STOP: no new "
+                "part starts once the tool life is used up."
             ),
         )
         return Sheet("TOOL LIFE", heads, (0.1, 0.13, 0.14, 0.13, 0.17, 0.33), rows, self.marked, question,

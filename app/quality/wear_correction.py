@@ -87,7 +87,7 @@ def correction(found: Proposal, desk: Desk, mode: Mode) -> Correction:
 def _tool_value(name: str, row: object, found: Proposal, mode: Mode, number: int) -> Value:
     """As F2 of the tool table adds what is typed."""
     if not isinstance(row, ToolRow):
-        raise EntryError(tr(Message("T{number} IS NOT SET", number=number)))
+        raise EntryError(tr(Message("NO OFFSETS SET FOR T{number}", number=number)))
     return value_added(name, row, fixed(found.change / mode.unit, 10), mode)
 
 

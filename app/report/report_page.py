@@ -77,7 +77,7 @@ class ProgramReport:
             (
                 "Program",
                 Message(
-                    "{blocks} blocks, {elementary} elementary blocks, {dialect}",
+                    "{blocks} program blocks, {elementary} motions and actions, {dialect}",
                     blocks=report.blocks,
                     elementary=report.elementary,
                     dialect=report.dialect,

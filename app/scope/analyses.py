@@ -372,7 +372,9 @@ def _path_sheet(title: str, found: Found, metric: bool, marked: int) -> Sheet:
         tr(Message("Largest error: {distance}", distance=_length(path.greatest, metric))),
         *((tr("Positive values are to the left of the direction of travel."),) if lathe else ()),
         tr("The table shows the worst point of each line."),
-        tr("Axis positions are from home, X as a radius.") if lathe else tr("Axis positions are from home."),
+        tr("Axis positions are measured from home, X as a radius.")
+        if lathe
+        else tr("Axis positions are measured from home."),
     )
     heads = (tr("LINE"), tr("PATH DEVIATION"), *found.slides)
     shares = (0.16, 0.3, 0.27, 0.27) if lathe else (0.11, 0.23, 0.22, 0.22, 0.22)
@@ -402,7 +404,7 @@ def _thread_sheet(title: str, thread: Thread, vmax: float, metric: bool, marked:
             )
         ),
         tr("Flank infeed shifts the entry angle with the depth."),
-        tr(Message("The axis can follow this lead up to {rpm} rpm", rpm=formats.rpm(limit))),
+        tr(Message("The axis is fast enough to cut this lead at up to {rpm} rpm", rpm=formats.rpm(limit))),
     )
     heads = (tr("PASS"), tr("ADDED DEPTH"), tr("ENTRY"), tr("LEAD ERROR"), tr("RPM DROP"))
     shares = (0.12, 0.24, 0.2, 0.24, 0.2)
@@ -447,7 +449,7 @@ def _ball_sheet(title: str, ball: BallBar, found: Found, metric: bool) -> Sheet:
         Row((tr(Message("BACKLASH {axis}", axis=v)), told(ball.backlash[1]))),
         Row((tr(Message("REVERSAL SPIKE {axis}", axis=u)), told(ball.spike[0]))),
         Row((tr(Message("REVERSAL SPIKE {axis}", axis=v)), told(ball.spike[1]))),
-        Row((tr("OUT OF SQUARE"), lean(ball.squareness))),
+        Row((tr("SQUARENESS ERROR"), lean(ball.squareness))),
         Row((tr(Message("SCALE OF {value} RELATIVE TO {v}", value=u, v=v)), lean(ball.scale))),
         Row((tr("RADIUS ERROR"), told(ball.size))),
     )
@@ -464,7 +466,7 @@ def _ball_sheet(title: str, ball: BallBar, found: Found, metric: bool) -> Sheet:
             )
         ),
         tr("A dash means that the arc is too short for a result."),
-        tr("The encoder cannot measure play between the encoder and the tool."),
+        tr("The encoder cannot measure backlash between the encoder and the tool."),
     )
     return Sheet(title, ("", ""), (0.52, 0.48), rows, notes=notes, figures=frozenset({1}))
 

@@ -222,9 +222,10 @@ def response_sheet(title: str, found: AxisResponse, metric: bool) -> Sheet:
     notes = (
         tr(
             Message(
-                "Last move of {axis}. The values are only calculated; nothing was changed.", axis=found.letter
+                ("Last move of {axis}. These values are for information only; no setting was changed."),
+                axis=found.letter,
             )
         ),
-        tr("A single step on the Jog page gives a good result; F9 opens the drive tests."),
+        tr("For a good result, jog a single step on the Jog page; F9 opens the drive tests."),
     )
     return Sheet(title, ("", "", ""), SHARES, tuple(rows), notes=notes, figures=frozenset({1, 2}))

@@ -18,7 +18,8 @@ class ScopeFunction(PageFunction):
     use = "axis and spindle curves"
     page = PAGE
     way = (
-        "Press Enter to open the page. Shift+F10 opens the page from any other page and returns to that page."
+        "Press Enter to open the page. Shift+F10 opens this page from any other page "
+        "and switches back to that page."
     )
 
     def facts(self) -> tuple[Row, ...]:

@@ -153,17 +153,19 @@ def spindle_sheet(title: str, found: SpindleResponse) -> Sheet:
     notes = (
         tr(
             Message(
-                "The machine file assumes {accel} rpm/s; a speed within {share} of the target "
-                "counts as reached.",
+                (
+                    "The acceleration in the machine file is {accel} rpm/s; a speed within {share} "
+                    "of the target counts as reached."
+                ),
                 accel=formats.fixed(model.accel, 0),
                 share=formats.percent(model.at_speed),
             )
         ),
         tr(
-            "Mean error and variation are calculated from the last second. A dash means that the "
-            "speed did not stay within the band."
+            "Mean error and variation are calculated from the last second. A dash means "
+            "that the speed did not stay within the tolerance band."
         ),
-        tr("Last run-up. The values are only calculated; nothing was changed."),
+        tr("Last change of spindle speed. These values are for information only; no setting was changed."),
     )
     return Sheet(title, ("", ""), _SHARES, tuple(map(Row, rows)), notes=notes, figures=frozenset({1}))
 

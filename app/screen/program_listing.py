@@ -94,7 +94,7 @@ class Listing(Panel):
         u = self.look.u
         count = len(self._lines)
         title = Message("PROGRAM  ·  {count} LINES", count=count) if count else "PROGRAM"
-        self.frame(painter, title if self.follows else Message("{title}  ·  HOME: FOLLOW", title=title))
+        self.frame(painter, title if self.follows else Message("{title}  ·  HOME: CURRENT LINE", title=title))
         row = QRectF(0.3 * u, 2.5 * u, self.width() - 0.6 * u, self._high)
         number = self.top + 1
         for _ in range(self.rows):

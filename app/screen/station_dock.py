@@ -185,9 +185,9 @@ class StationDock(FingerPanel):
     def _start(self, painter: Painter) -> None:
         desk = self._desk
         head = self._row(54.2, 2.4)
-        text = "CYCLE START: PRESS BOTH" if desk.two_hand else "CYCLE START"
+        text = "CYCLE START: BOTH BUTTONS" if desk.two_hand else "CYCLE START"
         if self._latches:
-            text = "CYCLE START: TAP BOTH IN TURN"
+            text = "CYCLE START: TAP EACH BUTTON"
         painter.write(head, text, 1.6, "pause" if self._latches else "soft")
         box = self._row(56.8, 13.6)
         if not desk.two_hand:

@@ -167,7 +167,7 @@ class Frame(QWidget):
         if name:
             self.open_record(name)
         else:
-            self.desk.say(tr("NO SCOPE RECORD: ONLY ALARMS AND E-STOPS HAVE ONE"))
+            self.desk.say(tr("NO SCOPE RECORD: ONLY ALARMS AND E-STOPS ARE RECORDED"))
 
     def toggle_log(self) -> None:
         """The log of alarms over the page, or away again."""

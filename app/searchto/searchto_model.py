@@ -380,7 +380,7 @@ def searchto_prompt(
     words = {
         SearchtoStage.SEARCHING: tr("SEARCHING THE PROGRAM. ESC: CANCEL"),
         SearchtoStage.PROVING: tr("PROVING THE RESTART. ESC: CANCEL"),
-        SearchtoStage.SHOWN: trouble or tr("CHECK STATE, PATH AND STARTS. F10: CONFIRM"),
+        SearchtoStage.SHOWN: trouble or tr("CHECK STATE, PATH AND WHAT WILL START. F10: CONFIRM"),
         SearchtoStage.REFUSED: tr("CANNOT START FROM THIS LINE. F8, F9: NEAREST VALID LINE"),
         SearchtoStage.READY: tr(Message("RESUME AT THIS LINE: {start}. ESC: CANCEL", start=start)),
     }

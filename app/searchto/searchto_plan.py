@@ -206,7 +206,7 @@ def _turned(found: RestartPoint, now: MachineNow, machine: Kinematics) -> str:
         if name in names and wanted is None and abs(at) > TURNED:
             return tr(
                 Message(
-                    "CHECK {axis}: NO EARLIER LINE POSITIONED IT. IT STAYS AT {position}",
+                    "CHECK {axis}: NO EARLIER LINE POSITIONS THIS AXIS. IT STAYS AT {position}",
                     axis=name,
                     position=formats.angle(at),
                 )

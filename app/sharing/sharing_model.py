@@ -25,12 +25,12 @@ NO_PLACE = (
     "NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER, GIT REMOTE OR "
     "DATABASE UNDER [sharing] IN THE MACHINE FILE"
 )
-NOTHING_YET = "NOTHING SHARED YET. NEXT CHECK SHARES THE PROGRAM FOLDER"
+NOTHING_YET = "NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER"
 MARK_ONE = "SELECT A PROGRAM FIRST"
 BUSY = "STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE"
 _STATES = {
     "new": ("NOT ON THIS CONTROL", Tone.READY),
-    "newer": ("NEWER ON ANOTHER CONTROL", Tone.PAUSE),
+    "newer": ("NEWER VERSION ON ANOTHER CONTROL", Tone.PAUSE),
     "both": ("CHANGED HERE AND ON ANOTHER CONTROL", Tone.ALARM),
     "same": ("UP TO DATE", Tone.RUN),
 }
@@ -235,7 +235,7 @@ class SharingModel:
         elif why := self._silence() or self._in_use(version.key):
             self.desk.say(why)
         elif here[1].here:
-            words = tr("Y: USE {name} FROM {desk} (LOCAL ONE STAYS STORED)   N: CANCEL")
+            words = tr("Y: USE {name} FROM {desk} (LOCAL VERSION STAYS STORED)   N: CANCEL")
             self.desk.ask(
                 tr(Message(words, name=version.program, desk=version.desk)), lambda: self._take(version)
             )
@@ -269,7 +269,7 @@ class SharingModel:
         """What is here stands against what was changed elsewhere, after asking."""
         here = self.program
         if here is None or not self._both:
-            self.desk.say("NOTHING TO DECIDE: NO OTHER CONTROL HAS CHANGED THIS PROGRAM")
+            self.desk.say("NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM")
             return
         if self.desk.refused(Act.PROGRAMS):
             return
@@ -303,7 +303,7 @@ class SharingModel:
         """Why a program stays as it is; empty when it may be replaced."""
         snapshot, loaded = self.desk.snapshot(), self.desk.session.now
         if snapshot.interrupted is not None and key_of(snapshot.interrupted.program) == key:
-            words = tr("{name} IS INTERRUPTED. FINISH OR CANCEL IT FIRST")
+            words = tr("{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST")
             return tr(Message(words, name=snapshot.interrupted.program))
         names = [Path(snapshot.program).name, loaded.name]
         if loaded.source is not None:

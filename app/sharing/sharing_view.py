@@ -31,7 +31,7 @@ class SharedProgramsPage(ListPage):
         super().__init__(host, model, parent)
         self.table = SheetPanel(self.look, self._chosen, self)
         self.versions = VersionList(self.look, model.elsewhere, self)
-        self.versions.title = "ON OTHER CONTROLS"
+        self.versions.title = "VERSIONS ON OTHER CONTROLS"
         self.versions.show()
 
     def page_keys(self) -> Mapping[str, Key]:

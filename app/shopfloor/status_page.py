@@ -88,7 +88,7 @@ class StatusPage:
         page = frame.substitute(
             title=escape(self.machine),
             language=spoken(),
-            lost=escape(tr("NO RESPONSE: the values below are old")),
+            lost=escape(tr("NO RESPONSE: the values below are out of date")),
             now=self._now(),
             part=_picture("part", "part.png", self.picture(), tr("The part made by the loaded program")),
             alarm=_picture(

@@ -56,8 +56,8 @@ class PartsCounterFunction(FigureFunction):
             notes=(
                 "Cycle Repeat is switched off during the last part. Enter 0 to remove the target.",
                 (
-                    "NO COUNT is for dry runs: the cycle is not counted as a part. A restart that skips "
-                    "lines is not counted either."
+                    "Use NO COUNT for dry runs; the cycle is then not counted as a part. A restart "
+                    "that skips lines is not counted either."
                 ),
             ),
             figures=frozenset({1}),

@@ -20,7 +20,7 @@ WORDS = {
 }
 YES_NO = {
     "dock": ("SHOWN", "HIDDEN"),
-    "latched": ("PRESS ONE AFTER THE OTHER", "PRESS BOTH TOGETHER"),
+    "latched": ("PRESS BUTTONS IN SEQUENCE", "PRESS BUTTONS TOGETHER"),
     "full_screen": ("FULL SCREEN", "WINDOW"),
     "first_job": ("SHOWN", "HIDDEN"),
 }

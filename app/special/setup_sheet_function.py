@@ -345,7 +345,7 @@ class SetupSheetFunction(SpecialFunction):
 
     def _done(self, name: str) -> None:
         self.busy, self.places = "", ()
-        self.desk.done(tr(Message("{name} SAVED COMPLETELY. YOU CAN NOW REMOVE THE USB STICK", name=name)))
+        self.desk.done(tr(Message("{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW", name=name)))
 
     def _not_written(self, why: str) -> None:
         self.busy = ""

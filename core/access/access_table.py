@@ -74,7 +74,7 @@ RULES: dict[Act, Rule] = {
     Act.INSERTS: Rule(
         Level.OPERATOR,
         ("replacing an insert or tool, which resets its tool life to zero"),
-        "W, and F8 on a mill",
+        "W; on a mill also F8",
     ),
     Act.READINGS: Rule(Level.OPERATOR, "entering and deleting the measured values of parts", "W"),
     Act.JOBS: Rule(Level.OPERATOR, "jobs in the queue, with their order, part counts and notes", "J", "jobs"),
@@ -86,8 +86,8 @@ RULES: dict[Act, Rule] = {
     Act.TOOLS: Rule(
         Level.SETUP,
         (
-            "position, nose radius, tip quadrant and master of a tool (entered or touched "
-            "off), and the tools of a mill, including undo and clear"
+            "entering or touching off a tool's position, nose radius, tip quadrant and "
+            "master tool; editing the tools of a mill; undoing or clearing these values"
         ),
         "F8, F5",
         "offsets set, clear, undo",
@@ -161,7 +161,7 @@ NEVER = (
     "ending a running program or operation",
     "drives off",
     "lowering the spindle speed limit",
-    "running a program that is proved",
+    "running a program that has been proved",
 )
 """What no level ever stands in the way of."""
 

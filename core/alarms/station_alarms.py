@@ -41,8 +41,8 @@ STATION: Entries = {
         "pendant disconnected",
         ("the pendant was unplugged", "a fault in the pendant's cable or hub"),
         (
-            "Plug the pendant in again, then press Cycle Start. To work without the pendant, "
-            "remove [pendant] and all entries for it from the machine file"
+            "Plug the pendant in again, then press Cycle Start. To work without the "
+            "pendant, remove [pendant] and all pendant entries from the machine file"
         ),
         tells=True,
     ),

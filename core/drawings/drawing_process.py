@@ -55,7 +55,7 @@ def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Lim
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
         raise DrawingError(
             Message(
-                "{path} cannot be read because a process for reading drawings cannot be started.",
+                "{path} cannot be read because the process that reads drawings cannot be started.",
                 path=path.name,
             ),
             "unreadable",

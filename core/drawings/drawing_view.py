@@ -133,7 +133,10 @@ def line_axis(drawing: Drawing, number: int) -> Axis:
         raise DrawingError(
             (
                 Message(
-                    "{drawing} has {drawn_count} lines, but not a line {number}: choose an existing line.",
+                    (
+                        "{drawing} has {drawn_count} lines, but line {number} does not exist: choose "
+                        "an existing line."
+                    ),
                     drawing=drawing.name,
                     drawn_count=len(drawing.drawn),
                     number=number,

@@ -58,17 +58,17 @@ def in_words(
         )
         yield Message("{span} is not cut: {why}", span=span, why=each.why)
     if comparison is None:
-        yield "proving did not produce a part, so a comparison with the drawing was not possible"
+        yield ("proving did not produce a simulated part, so a comparison with the drawing was not possible")
         return
     for found in comparison.found:
         yield _deviation(found, made.nose_radius, mm, unit, places)
     within = plain(max(comparison.worst, 0.001) / mm, places)
-    what = "elsewhere, the proved part" if comparison.found else "the proved part"
+    what = "elsewhere, the simulated part" if comparison.found else "the simulated part"
     yield Message("{what} matches the drawing to within {within} {unit}", what=what, within=within, unit=unit)
 
 
 def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int) -> str:
-    what = "of stock remains on" if found.most > 0.0 else "too much is cut from"
+    what = "of stock remains, measured on" if found.most > 0.0 else "too much is cut, measured on"
     deep = plain(abs(found.most) / mm, places)
     span = Message(
         "Z {front} to {back}", front=plain(found.front / mm, places), back=plain(found.back / mm, places)
@@ -81,7 +81,9 @@ def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int)
             unit=unit,
             position=at,
         )
-    return Message("{depth} {unit} {what} the radius, {span}", depth=deep, unit=unit, what=what, span=span)
+    return Message(
+        ("{depth} {unit} {what} the radius, from {span}"), depth=deep, unit=unit, what=what, span=span
+    )
 
 
 def is_corner(found: Deviation, nose: float) -> bool:

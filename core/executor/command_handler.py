@@ -192,9 +192,9 @@ class CommandHandler:
             status.next_barred, status.start_refused = command.why, ""
             self._context.log(
                 "switch",
-                Message("further parts are not allowed: {why}", why=command.why)
+                Message("no more parts may be run: {why}", why=command.why)
                 if command.why
-                else ("further parts are allowed"),
+                else ("more parts may be run"),
             )
 
     # --- jog, homing --------------------------------------------------------------------------------------

@@ -88,7 +88,7 @@ class DriveTestPath:
 
     def _sine_refusal(self, limits: Limits) -> str:
         if not self.frequencies or not all(0.5 <= each <= 200.0 for each in self.frequencies):
-            return "the frequency of a sine must be from 0.5 to 200 Hz"
+            return "the sine frequency must be from 0.5 to 200 Hz"
         fastest = max(self.frequencies)
         if fastest > limits.fastest_sine + _ROUND:
             return Message(

@@ -473,4 +473,4 @@ class BlockJogger(Jogger):
 
     def _unready(self) -> str:
         state = self._sink.state()
-        return state.hindrance or ("" if state.resting else "the controller is still moving")
+        return state.hindrance or ("" if state.resting else "the controller is still moving the axes")

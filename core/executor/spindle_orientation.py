@@ -35,7 +35,7 @@ class Orientation:
     def bring(self, angle: float, sense: int) -> bool:
         """Ask for an angle, once; True as soon as the spindle is held there. Raises DriverError."""
         if self._port is None:
-            raise AlarmError("spindle-orient", ("this machine cannot stop the spindle at an angle"))
+            raise AlarmError("spindle-orient", ("this machine cannot orient the spindle to an angle"))
         if self._asked != (angle, sense):
             self._reached = False
             self._port.orient(angle, sense)

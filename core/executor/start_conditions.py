@@ -108,7 +108,7 @@ def lacking(context: MachineContext, proof: Proof | None) -> str:
             )
         if blocks is None and need.what == ORIENT and context.ports.orientation is None:
             return Message(
-                "line {line}: the spindle driver of this machine cannot stop the spindle at an angle",
+                "line {line}: the spindle driver of this machine cannot orient the spindle to an angle",
                 line=need.line,
             )
         if blocks is None and need.what == THREAD and context.ports.spindle.angle() is None:
@@ -141,7 +141,7 @@ def unproved(job: Job | None, proof: Proof | None) -> str:
 
 
 _NOTHING = {
-    Starts.LINE: "no line is ready to start",
+    Starts.LINE: "no MDI line is ready to start",
     Starts.RESTART: "the restart is not ready: search for a line and confirm it",
 }
 _SAME = 0.01  # mm, degrees: nearer than this the slides stand where a way was planned from
@@ -237,7 +237,7 @@ def _changed_for_restart(status: ControlStatus, job: Job, begin: Begin, now: Mod
     if now.collet_closed != wanted:
         is_now, must = ("closed", "open") if now.collet_closed else ("open", "closed")
         return Message(
-            "the collet is {is_now}, but must be {must} at line {line}: change it in MDI",
+            "the collet is {is_now}, but must be {must} at line {line}: change the collet state in MDI",
             is_now=is_now,
             must=must,
             line=begin.line,

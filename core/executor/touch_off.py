@@ -91,7 +91,7 @@ class TouchOff:
         elif self._made and self.phase in {TouchPhase.SEARCH, TouchPhase.SLOW}:
             self._touch(here)
         elif self._made and self.phase is TouchPhase.RETURN:
-            self.end("a touch was detected on the return move; check the setter")
+            self.end("a touch was detected on the return move; check the tool setter")
         elif self._arrives(here):
             self._arrived()
         self._seen = (self._context.sample.t, here)
@@ -130,8 +130,8 @@ class TouchOff:
             (
                 inputs.get(PROBE, False),
                 (
-                    "the probe input is already on; check whether the setter is touched or its cable is "
-                    "damaged"
+                    "the probe input is already on; check whether the tool setter is touched or "
+                    "its cable is damaged"
                 ),
             ),
             (wheel != "", "the handwheel is selected; deselect it first"),
@@ -239,8 +239,10 @@ class TouchOff:
             far = self._length(over)
             self.end(
                 Message(
-                    "the axis moved {distance} past the touch point, which is more than the overtravel "
-                    "setting; check the setter",
+                    (
+                        "the axis moved {distance} past the touch point, which is more than the "
+                        "overtravel setting; check the tool setter"
+                    ),
                     distance=far,
                 )
             )
@@ -258,7 +260,7 @@ class TouchOff:
         elif self.phase is TouchPhase.RETURN:
             self._over(self._failed)
         elif self.phase is TouchPhase.SLOW:
-            self._failed = "no second touch detected; check whether the tool or the setter is loose"
+            self._failed = "no second touch detected; check whether the tool or the tool setter is loose"
             self._go(TouchPhase.RETURN, self._first - sign * model.back_off)
         elif self._made:
             far = self._length(model.back_off)

@@ -112,7 +112,7 @@ def from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
     normal = cross(x, scaled(v, 1.0 / aside))
     sine = math.hypot(*normal)
     if sine < SMALLEST_SINE:
-        raise NoFrameError("the three points are on one line", "points-on-one-line")
+        raise NoFrameError("the three points are on one straight line", "points-on-one-line")
     z = scaled(normal, 1.0 / sine)
     return transposed((x, cross(z, x), z))
 

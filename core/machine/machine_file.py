@@ -60,7 +60,7 @@ def text_of(path: Path) -> str:
     try:
         return input_text(path, _MOST_BYTES)
     except OSError as error:
-        reason = error.strerror or "cannot be read"
+        reason = error.strerror or "unreadable"
         code = "too-large" if isinstance(error, TooLargeError) else "unreadable"
         raise MachineFileError(
             [

@@ -184,7 +184,10 @@ def _stop_below(values: Values) -> str:
         ""
         if below < low
         else Message(
-            "a spindle at {below} rpm counts as stopped, but a speed of {low} rpm may be commanded",
+            (
+                "the spindle counts as stopped below {below} rpm, but speeds down to {low} rpm "
+                "can be commanded"
+            ),
             below=f"{below:g}",
             low=f"{low:g}",
         )
@@ -227,13 +230,13 @@ def _windows(axis: str, unit: Unit) -> tuple[Rule, ...]:
         _below(
             arrived,
             window,
-            ("the in-position window must not be larger than the following error window"),
+            ("the in-position window must not be larger than the following error limit"),
             unit,
         ),
         _below(
             arrived,
             still,
-            ("the in-position window must not be larger than the window allowed at rest"),
+            ("the in-position window must not be larger than the standstill tolerance"),
             unit,
         ),
         _below(
@@ -280,13 +283,13 @@ RULES = (
     _below(
         "machine.lease_ms",
         "machine.lookahead_ms",
-        "jog motion is never queued further ahead than machine.lookahead_ms",
+        "jog motion is never queued more than machine.lookahead_ms ahead",
         Unit.MILLISECONDS,
     ),
     _below(
         "machine.commit_ms",
         "machine.lease_ms",
-        ("the jog watchdog time would expire before it is renewed"),
+        ("the jog watchdog would expire before the control renews it"),
         Unit.MILLISECONDS,
     ),
     Rule("spindle.timeout_s", ("spindle.rpm", "spindle.accel_rpm_s", "spindle.at_speed_s"), _timeout),

@@ -188,7 +188,7 @@ class KinematicsReading:
                 yield Finding(f"{path}.direction", written(direction), expected, "broken-rule")
             if order in orders:
                 expected = Message(
-                    "{orders} already has this order number; choose another number",
+                    "{orders} already uses this order number; choose another number",
                     orders=orders[order],
                 )
                 yield Finding(f"{path}.order", written(int(order)), expected, "broken-rule")

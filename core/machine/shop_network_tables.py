@@ -204,7 +204,7 @@ def _announce_rules(file: FileReading) -> Iterator[Finding]:
         yield Finding(
             "announce.topic",
             written(topic),
-            "this value must be a topic without +, # or blanks, such as shop/lathe3",
+            "this value must be a topic without +, # or spaces, such as shop/lathe3",
             "broken-rule",
         )
 

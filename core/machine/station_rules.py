@@ -57,7 +57,7 @@ def wrong_wheel(file: FileReading) -> Iterator[Finding]:
             yield Finding(
                 path,
                 f"{values.number(path):g}",
-                ("an override pot has no clicks; remove this key"),
+                ("an override potentiometer has no detents; remove this key"),
                 "broken-rule",
             )
     selectors = [selector(axis) for axis in file.axes]
@@ -82,7 +82,7 @@ def wrong_wheel(file: FileReading) -> Iterator[Finding]:
             yield Finding(
                 f"io.in.{name}",
                 at,
-                "this input is a handwheel switch; add [io.analog] handwheel",
+                "this input is a handwheel switch; add the handwheel under [io.analog]",
                 "broken-rule",
             )
 

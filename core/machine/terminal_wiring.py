@@ -43,7 +43,7 @@ def pots(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
                 yield Finding(
                     f"{path}.range",
                     Message("[{low}, {high}]", low=f"{low:g}", high=f"{high:g}"),
-                    Message("the fractions must be between 0 and {top}", top=f"{top:g}"),
+                    Message("the range limits are fractions and must be between 0 and {top}", top=f"{top:g}"),
                     "broken-rule",
                 )
 

@@ -300,8 +300,10 @@ def _demand_passable(braked: FloatArray, hard: FloatArray, slack: float) -> None
         raise MotionError(
             (
                 Message(
-                    "A speed of {braked} mm/s is too high for the rest of the path, which allows {hard} "
-                    "mm/s. Plan from a position and speed on this path.",
+                    (
+                        "A speed of {braked} mm/s is too high for the rest of the path, which allows "
+                        "{hard} mm/s. Plan from a position and a speed that are valid for this path."
+                    ),
                     braked=f"{math.sqrt(braked[i]):.3f}",
                     hard=f"{math.sqrt(hard[i]):.3f}",
                 )

@@ -122,8 +122,8 @@ class AirChecks:
         if in_hole is not None and has_cut:
             yield Found("unmade-cut", ("A drill feeds into an existing hole."), in_hole)
         if fed is not None and not has_cut and length >= _LEAST:
-            what = "A thread is cut" if fed.kind is Kind.THREAD else "A tool feeds"
-            yield Found("unmade-cut", Message("{what} only in air between two rapids.", what=what), fed)
+            what = "Threading moves" if fed.kind is Kind.THREAD else "Feed moves"
+            yield Found("unmade-cut", Message("{what} between two rapids cut only air.", what=what), fed)
 
     def _comes_near(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> bool:
         middle = move.points[len(move.points) // 2]
@@ -136,7 +136,7 @@ class AirChecks:
         self, move: TipMove, gone: TipMove | None, cutter: Cutter, part: TurnedPart, *, fresh: bool
     ) -> Iterator[Found]:
         if gone is not None and not near(cutter, part, *move.points):
-            text = "This move and the next one feed away from the part and cut nothing."
+            text = "This move and the next move feed away from the part and cut nothing."
             yield Found("unmade-cut", text, gone)
         elif move.length >= _AWAY and not near(cutter, part, move.points[-1]):
             if self._out_of_part(move, cutter, fresh=fresh):

@@ -64,7 +64,7 @@ def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator
     if shape.kind in _DRILLS and held:
         limit = (_OF_REAMER if shape.kind is ToolKind.REAMER else _OF_DRILL) * shape.diameter
         words = Message(
-            "{name} feeds {value}, too much for a diameter of {diameter}.",
+            "{name} feeds at {value}, which is too high for a diameter of {diameter}.",
             name=name,
             value=shown,
             diameter=text(shape.diameter),
@@ -72,7 +72,7 @@ def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator
     elif shape.kind in GROOVERS and held:
         limit = _OF_WIDTH * shape.width
         words = Message(
-            "{name} feeds {value}, too much for an edge {width} wide.",
+            "{name} feeds at {value}, which is too high for a cutting edge {width} wide.",
             name=name,
             value=shown,
             width=text(shape.width),
@@ -80,7 +80,7 @@ def _feed(move: TipMove, shape: ToolShape, tool: int, *, held: bool) -> Iterator
     elif shape.kind in INSERTS:
         limit, breaks, least = _COARSE * shape.nose_radius, _BREAKS_INSERT, _NEVER_BREAKS
         words = Message(
-            "{name} feeds {value}, too much for a nose radius of {nose_radius}.",
+            "{name} feeds at {value}, which is too high for a nose radius of {nose_radius}.",
             name=name,
             value=shown,
             nose_radius=text(shape.nose_radius),

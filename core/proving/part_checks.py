@@ -40,13 +40,16 @@ CHECKS: Mapping[str, Check] = {
     "feed-into-holder": Check(
         _ERROR,
         "A feed move runs the holder, shank or boring bar into material.",
-        "During a feed, the non-cutting outline of a tool overlaps material by more than .001 in.",
+        (
+            "During a feed move, the non-cutting part of a tool outline overlaps material "
+            "by more than .001 in."
+        ),
         "Use a longer or slimmer tool, another cutting direction, or a smaller depth of cut.",
     ),
     "holder-into-stock": Check(
         _ERROR,
         "A holder, shank or boring bar collides with material in rapid.",
-        "The non-cutting outline of a tool overlaps material by more than .001 in.",
+        "The non-cutting part of a tool outline overlaps material by more than .001 in.",
         "Use a longer or slimmer tool, or another cutting direction.",
     ),
     "into-chuck": Check(
@@ -83,8 +86,8 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "Another tool on the gang plate collides with the stock.",
         (
-            'With [tooling] kind = "gang", the outline of the other tool, placed by its tool '
-            "offset, overlaps material."
+            'With [tooling] kind = "gang", the outline of another tool, positioned by its '
+            "tool offset, overlaps material."
         ),
         "Use a different path, a shorter tool, or another position on the gang plate.",
         (STOCK,),
@@ -117,10 +120,10 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A tool feeds into the part while neither the tool nor the spindle turns.",
         (
-            "A drill, reamer, mill, turning tool or parting blade cuts more than .001 in of "
-            "material while no live tool is on and the spindle is stopped or clamped as the C "
-            "axis after it has turned. Not checked where the machine file has no M code for a "
-            "live tool."
+            "A drill, reamer, mill, turning tool or parting blade cuts more than .001 in "
+            "of material while no live tool is on and the spindle is stopped, or clamped "
+            "as the C axis after it has turned. Not checked if the machine file has no M "
+            "code for a live tool."
         ),
         "Start the spindle or the live tool before this move.",
     ),
@@ -137,7 +140,7 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "The part is larger than its stock, so a contour is cut in air outside the bar.",
         "A feed move along Z of .1 in or more next to the stock stays at least .08 in outside the stock.",
-        "Check the stock, and whether X is a radius or a diameter.",
+        "Check the stock size, and check whether X is a radius or a diameter.",
         (STOCK,),
     ),
     "cuts-air": Check(
@@ -153,10 +156,10 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         ("A cutting move feeds away from the part, and nothing is cut where a cut seems to be intended."),
         (
-            "A feed move goes away from the part, or out past the part face; the feed "
-            "moves between two rapids, or all feed moves of a live tool, never come near "
-            "material; a rapid moves in and out alongside the part without a cut; a tool "
-            "that reaches the part never feeds; or a drill feeds into an existing hole."
+            "A feed move goes away from the part, or out past the part face; no feed move "
+            "between two rapids, or no feed move of a live tool, comes near material; the "
+            "tool moves in and out alongside the part in rapid without a cut; a tool that "
+            "reaches the part never feeds; or a drill feeds into an existing hole."
         ),
         "Look for a missing minus sign (Z.5 for Z-.5) or a missing decimal point (X4 for X.4).",
     ),
@@ -185,8 +188,8 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A drill goes deeper than its flute length.",
         (
-            "The hole is deeper than the cutting length of the drill. If no cutting length is "
-            "defined, the proof reports this."
+            "The hole is deeper than the cutting length of the drill. A drill without a "
+            "defined cutting length is reported."
         ),
         "Use a longer drill, or peck and check the entered flute length.",
     ),
@@ -194,8 +197,8 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A drill, reamer or tap is not on the spindle centerline when it cuts.",
         (
-            "A drill, center drill, reamer or tap removes material more than .004 in from "
-            "the spindle centerline while the spindle turns."
+            "A drill, center drill, reamer or tap cuts at a distance of more than .004 in "
+            "from the spindle centerline while the spindle turns."
         ),
         "Move to X0 before drilling, and check the X offset of the tool.",
         (TOOL,),
@@ -221,7 +224,7 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A tap removes more material than its thread, because the tap hole is missing or the "
         "tap goes past the bottom of the hole.",
-        "The tap cuts deeper than its pitch, measured on the radius.",
+        "The thread depth that the tap cuts, measured on the radius, is greater than the pitch.",
         "Drill the tap hole, deep enough for the chamfer of the tap.",
         (STOCK, TOOL, HOLES),
     ),
@@ -229,9 +232,10 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "The spindle turns in the wrong direction for the cutting edge.",
         (
-            "M04 is used with a right-hand drill, reamer or tap, or M03 with a left-hand one; "
-            "M04 is used with an upright turning or boring tool in front of the axis; or one "
-            "edge cuts in both spindle directions."
+            "M04 is used with a right-hand drill, reamer or tap, or M03 with a left-hand "
+            "drill, reamer or tap; M04 is used with a turning or boring tool mounted "
+            "upright in front of the spindle centerline; or the same cutting edge is used "
+            "in both spindle directions."
         ),
         "Reverse the spindle, or correct the hand in the tool shape.",
     ),
@@ -254,8 +258,8 @@ CHECKS: Mapping[str, Check] = {
         _WARNING,
         "An arc cuts a concave shape into the front edge of the part, where the edge is usually rounded.",
         (
-            "A quarter circle with a radius of up to .118 in starts along Z at the face and ends "
-            "away from the axis."
+            "An arc of 90° with a radius of up to .118 in starts in the Z direction at the "
+            "part face and ends in the X direction, away from the spindle centerline."
         ),
         "Check the direction of the arc; the opposite direction rounds the edge.",
     ),
@@ -300,10 +304,11 @@ CHECKS: Mapping[str, Check] = {
         _WARNING,
         "One pass is deeper than usual for the insert.",
         (
-            "With specified stock, the mean depth of cut is more than .5 of the cutting edge of "
-            "a C or S insert, .4 of W, .3 of T and D, or .2 of V (Widia's limits for medium "
-            "geometries, without the nose radius; CNMG432 if no insert is specified). The "
-            "material is not known; a soft material may allow more."
+            "With specified stock, the mean depth of cut is more than .5 of the cutting "
+            "edge of a C or S insert, .4 for a W insert, .3 for a T or D insert, or .2 for "
+            "a V insert (Widia's limits for medium geometries, without the nose radius; "
+            "CNMG432 if no insert is specified). TurnDesk does not know the stock "
+            "material; a soft material may allow more."
         ),
         "Use several passes; look for a missing or wrong digit in X.",
     ),
@@ -311,9 +316,10 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "One pass is deeper than the insert or the boring bar can cut.",
         (
-            "With specified stock and a turning spindle, the mean depth of cut is more than 2/3 "
-            "of the cutting edge of a specified C or S insert, half of the edge of a W, T or D "
-            "insert, a quarter of V, .4 of a round insert, or half the diameter of a boring bar."
+            "With specified stock and the spindle running, the mean depth of cut is more "
+            "than 2/3 of the cutting edge of a specified C or S insert, half of the edge "
+            "of a W, T or D insert, a quarter of the edge of a V insert, .4 of a round "
+            "insert, or half the diameter of a boring bar."
         ),
         "Use several passes; look for a missing or wrong digit in X.",
     ),
@@ -347,14 +353,17 @@ CHECKS: Mapping[str, Check] = {
     "thread-run-up": Check(
         _WARNING,
         (
-            "A thread starts before the Z axis has reached the speed for its lead, or ends while "
-            "the axis decelerates."
+            "A thread starts before the Z axis has reached the speed required for the "
+            "lead, or ends while the axis decelerates."
         ),
         (
             "The distance from the start of the pass to the material is less than v²/2a of the Z "
             "axis, or the pass stops in material and v²/2a is more than one lead."
         ),
-        "Start farther away, lower S, end in a groove, or pull out while the tool moves along Z.",
+        (
+            "Start farther from the material, lower S, end in a groove, or pull out while "
+            "the tool moves along Z."
+        ),
     ),
     "thread-in-air": Check(
         _WARNING,
@@ -366,7 +375,7 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A thread pass does not touch the part.",
         "With specified stock, none of the passes with the same lead and the same Z range cuts any material.",
-        "Check X and Z of the thread, and whether X is a diameter.",
+        "Check X and Z of the thread, and check whether X is a diameter.",
     ),
     "thread-form": Check(
         _WARNING,
@@ -395,9 +404,10 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A tap is pulled out of its thread instead of being turned out.",
         (
-            "The tap comes out in rapid, with the spindle stopped or not reversed, or at a "
-            "different feed; or the tap travels more than .5 in before the spindle stops. Not "
-            "checked if the comment says that the holder reverses automatically."
+            "The tap is retracted in rapid, with the spindle stopped or not reversed, or "
+            "at a different feed than it was fed in; or the tap travels more than .5 in "
+            "before the spindle stops. Not checked if the comment says that the holder "
+            "reverses automatically."
         ),
         "Reverse the spindle at the bottom of the hole, and feed out at the pitch.",
         (TOOL,),
@@ -407,18 +417,20 @@ CHECKS: Mapping[str, Check] = {
 PROGRAM_CHECKS: Mapping[str, Check] = {
     "no-tool": Check(
         _ERROR,
-        "A move cuts with no tool active.",
-        "A move cuts before the first T or after T0. The finding is only a warning if the "
-        "program never calls a tool.",
+        "A cutting move is programmed with no tool active.",
+        (
+            "A cutting move is programmed before the first T or after T0. This is only a "
+            "warning if the program never calls a tool."
+        ),
         "Write T and the tool number before this move.",
     ),
     "collet-open": Check(
         _ERROR,
-        "A move cuts with the collet open.",
+        "A cutting move is programmed with the collet open.",
         (
-            "A move cuts after M13. The finding is only a warning if a feed move does not "
-            "go straight away from the spindle as in a bar pull, or if the next cycle "
-            "would start with the collet open."
+            "A cutting move is programmed after M13. This is only a warning if a feed move "
+            "does not go straight away from the spindle as in a bar pull, or if the next "
+            "cycle would start with the collet open."
         ),
         "Close the collet with M12.",
     ),
@@ -451,10 +463,10 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
     ),
     "spindle-off": Check(
         _WARNING,
-        "A move cuts with the spindle stopped.",
+        "A cutting move is programmed with the spindle stopped.",
         (
-            "A move feeds per minute after M05 with no live tool running. With feed per "
-            "revolution, G33 or G96, the finding is an error."
+            "A move in feed per minute is programmed after M05 with no live tool running. "
+            "With feed per revolution, G33 or G96, this is an error."
         ),
         "Start the spindle with M03 or M04.",
     ),
@@ -475,10 +487,10 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
     ),
     "unreached-branch": Check(
         _WARNING,
-        "The proof does not reach some lines of the program.",
+        "Some lines of the program are not reached during proving.",
         (
-            "The proof follows both branches of input-dependent calls, block delete and loops, "
-            "up to its limits."
+            "TurnDesk proves both branches of input-dependent calls, block delete and "
+            "loops, within its limits."
         ),
         "Check the call, or prove again with the inputs that lead to the unreached lines.",
     ),

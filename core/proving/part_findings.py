@@ -363,7 +363,7 @@ class PartFindings:
             entry, why = CHECKS[check], self.silenced.get(check, "")
             rests_on = tuple(each for each in entry.rests_on if each == STOCK) if certain else entry.rests_on
             assumed = self.not_said(rests_on)
-            remedy = Message("Check turned off: {why}", why=why) if why else entry.remedy
+            remedy = Message("This check is turned off: {why}", why=why) if why else entry.remedy
             if assumed and not why:
                 remedy = Message(
                     "{remedy} Assumed: {assumed}.", remedy=remedy, assumed=join_messages(", ", assumed)

@@ -259,7 +259,8 @@ class PartMaking:
         assumed = [each.words for _, each in sorted(self._tools.assumed.items())]
         if stock is None and self._tools.uses:
             assumed.append(
-                "no stock is assumed because feed moves cut in front of Z0, where the stock face cannot be"
+                "no stock is assumed, because feed moves cut in front of Z0, and the stock "
+                "face cannot be there"
             )
         for line, n, text in self._tools.nothing_cut(stock):
             self.findings.nothing_cut(line, n, text)

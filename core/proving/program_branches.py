@@ -370,7 +370,7 @@ class Branches:
         )
         if never:
             text = Message(
-                "{what} Branches that are not proved: {never}.", what=text, never=", ".join(sorted(never)[:5])
+                "{what} Branches not proved: {never}.", what=text, never=", ".join(sorted(never)[:5])
             )
         hint = (
             "So that every possible path can be proved, use fewer conditional calls in "

@@ -237,7 +237,7 @@ class ThreadChecks:
             if pitch and met.depth > _SOLID * pitch:
                 text = move.modal.length_text
                 words = Message(
-                    "{tool} cuts {depth} deep on the radius, but its pitch is {pitch}.",
+                    "{tool} cuts a thread {depth} deep on the radius, but its pitch is only {pitch}.",
                     tool=edge_name(tool),
                     depth=text(met.depth),
                     pitch=text(pitch),
@@ -299,7 +299,7 @@ class ThreadChecks:
         text, into, out = move.modal.length_text, _per_turn(fed), _per_turn(move)
         if abs(out - into) > _OTHER_FEED * into:
             words = Message(
-                "{tool} feeds in at {into} per revolution, but out at {file}.",
+                "{tool} feeds in at {into} per revolution, but feeds out at {file}.",
                 tool=edge_name(tool),
                 into=text(into),
                 file=text(out),

@@ -148,7 +148,7 @@ def check_feature(feature: Feature) -> None:
                 Message(
                     (
                         "{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for "
-                        "no sample plan"
+                        "no sampling plan"
                     ),
                     feature=feature.name,
                     every_most=EVERY_MOST,

@@ -107,7 +107,8 @@ def check_life(life: ToolLife) -> None:
         raise QualityError(
             (
                 Message(
-                    "T{number}: the warning must be set at 1 to 100 % of the tool life", number=life.number
+                    ("T{number}: the tool-life warning must be set between 1 and 100 % of the tool life"),
+                    number=life.number,
                 )
             ),
             "warning-share",

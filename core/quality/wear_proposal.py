@@ -62,7 +62,8 @@ def propose(
     newest = np.asarray(readings[-rule.last :], dtype=np.float64)
     if not np.isfinite(newest).all():
         raise QualityError(
-            Message("{feature}: a reading is not a number; delete it", feature=feature.name), "not-a-number"
+            Message(("{feature}: a reading is not a number; delete that reading"), feature=feature.name),
+            "not-a-number",
         )
     if float(np.abs(newest - feature.middle).max()) > _FAR * feature.width:
         raise QualityError(
@@ -70,7 +71,7 @@ def propose(
                 Message(
                     (
                         "{feature}: a reading is off by more than {distance} times the tolerance, "
-                        "which is too much to be tool wear; measure again"
+                        "which is too large for tool wear; measure again"
                     ),
                     feature=feature.name,
                     distance=f"{_FAR:g}",

@@ -108,8 +108,10 @@ def _read(path: Path, data: io.BytesIO) -> Record:
             raise RecordError(
                 (
                     Message(
-                        "{path} was written by a newer TurnDesk (version {version}); open it with that "
-                        "version",
+                        (
+                            "{path} has file version {version}, which this TurnDesk cannot read; "
+                            "open it with a newer TurnDesk"
+                        ),
                         path=path,
                         version=version,
                     )

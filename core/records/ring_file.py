@@ -106,7 +106,7 @@ def _lock(file: int, path: Path) -> None:
         lock(file)
     except OSError as error:
         raise RecordError(
-            Message("{path} is being written by another TurnDesk", path=path), "in-use"
+            Message("{path} is being written by another TurnDesk process", path=path), "in-use"
         ) from error
 
 
@@ -211,7 +211,10 @@ def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found
         raise RecordError(
             (
                 Message(
-                    "{path} was written by a newer TurnDesk (version {version}); open it with that version",
+                    (
+                        "{path} has file version {version}, which this TurnDesk cannot read; "
+                        "open it with a newer TurnDesk"
+                    ),
                     path=path,
                     version=version,
                 )

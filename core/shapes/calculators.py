@@ -65,7 +65,7 @@ def _taper_checks(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
         )
         yield Refusal("ANGLE", words)
     if filled.n("SMALL") < 0.0 or filled.n("LARGE") < 0.0:
-        yield Refusal("SMALL", "The taper crosses the axis: check the angle and the length.")
+        yield Refusal("SMALL", "The taper crosses the spindle centerline: check the angle and the length.")
 
 
 def _taper_says(filled: Filled, _setting: Setting) -> tuple[str, ...]:

@@ -149,7 +149,10 @@ def _groove_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
             "BOTTOM",
             (
                 Message(
-                    "The bottom diameter of {bottom} must be less than the diameter of {top}.",
+                    (
+                        "The groove bottom diameter {bottom} must be less than {top}, the diameter at "
+                        "which the groove starts."
+                    ),
                     bottom=f"{bottom:g}",
                     top=f"{top:g}",
                 )
@@ -212,7 +215,7 @@ def _slant_checks(filled: Filled, deep: float) -> Iterator[Refusal]:
     bottom = long - deep * sum(_slants(filled))
     if bottom < wide - 1e-9:
         words = Message(
-            "With these walls the groove bottom is {bottom} wide, but the blade is {wide} wide",
+            "With these walls, the groove bottom is {bottom} wide, but the blade is {wide} wide",
             bottom=f"{bottom:.4g}",
             wide=f"{wide:g}",
         )
@@ -250,8 +253,8 @@ def _several(values: Values) -> bool:
 GROOVE = Shape(
     "GROOVE",
     (
-        "one or more grooves on the outside, with a rear tool or in a bore, with "
-        "chamfered edges, square or sloped walls"
+        "one or more grooves on the outside, in a bore or with a rear tool, with "
+        "chamfered edges and square or sloped walls"
     ),
     (
         tool_field(ToolKind.GROOVING),

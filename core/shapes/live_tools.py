@@ -185,7 +185,7 @@ def _flats_checks(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
             stock=f"{stock:g}",
         )
         yield Refusal(
-            "ACROSS", Message("{words}: enter a smaller value, or choose CORNERS ROUND.", words=words)
+            "ACROSS", Message("{words}: enter a smaller value, or set CORNERS to ROUND.", words=words)
         )
     if filled.n("DEEP") > filled.n("LONG"):
         yield Refusal(
@@ -271,8 +271,8 @@ def _slot_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
             (
                 Message(
                     (
-                        "Depth {number} goes past the axis of a part of diameter {number2}: enter a "
-                        "smaller depth."
+                        "Depth {number} goes past the spindle centerline of a part {number2} in "
+                        "diameter: enter a smaller depth."
                     ),
                     number=f"{filled.n('DEEP'):g}",
                     number2=f"{filled.n('FROM'):g}",

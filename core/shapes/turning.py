@@ -459,8 +459,10 @@ def _edge_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
             "EDGE",
             (
                 Message(
-                    "An edge size of {edge} is more than the radius of diameter {across}: enter "
-                    "{across2} or less.",
+                    (
+                        "An edge size of {edge} is more than half of diameter {across}: enter "
+                        "{across2} or less."
+                    ),
                     edge=f"{edge:g}",
                     across=f"{across:g}",
                     across2=f"{across / 2:g}",

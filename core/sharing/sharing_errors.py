@@ -18,8 +18,8 @@ class Cause(Enum):
     """What is in the way, and what to do about it."""
 
     AWAY = (
-        "{place} does not respond ({why}); this control continues to work, and shares "
-        "programs when the connection returns"
+        "{place} does not respond ({why}); this control continues to work, and will "
+        "share programs again when the connection is restored"
     )
     NO_RIGHT = (
         "this user does not have permission for this action in {place} ({why}); ask the "
@@ -49,7 +49,8 @@ class Cause(Enum):
     NO_SSH = "{place} needs ssh, which is not installed on this computer; install openssh-client"
     NO_GIT_THERE = (
         "the host of {place} responds, but not with a git response ({why}); check that "
-        "git is installed on that host and that this user can start git by ssh"
+        "git is installed on that host and that this user account can run git there "
+        "over ssh"
     )
     UNREADABLE = (
         "[sharing] postgresql is not a valid connection string; put a value that contains "
@@ -72,7 +73,7 @@ class Cause(Enum):
         "{place} does not support TLS ({why}); turn on TLS at that server, or, on a network "
         "where you trust every user, write sslmode=disable in [sharing] postgresql"
     )
-    TLS_ONLY = "{place} accepts TLS only ({why}); remove sslmode from [sharing] postgresql"
+    TLS_ONLY = "{place} accepts only TLS connections ({why}); remove sslmode from [sharing] postgresql"
     NO_PSYCOPG = "[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]"
     NAME_TAKEN = (
         "{place}: another control is also named {why}; give this control a name that "

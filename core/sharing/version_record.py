@@ -70,7 +70,7 @@ def checked_text(version: SharedVersion, text: bytes) -> bytes:
     if sha256(text).hexdigest() != version.text:
         raise RecordError(
             Message(
-                "the text of {program} from {machine} differs from the published text",
+                "the text of {program} from {machine} does not match the checksum in the version record",
                 program=version.program,
                 machine=version.desk,
             ),

@@ -28,7 +28,10 @@ def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
             connection.execute(f"INSERT INTO {table} VALUES ({marks})", row_sums.readable(row))
             told.append(
                 Message(
-                    "{table} was damaged in the data store; the values were restored as entered",
+                    (
+                        "{table} was damaged in the data store; the last values entered were restored "
+                        "from the history"
+                    ),
                     table=named(table, key),
                 )
             )

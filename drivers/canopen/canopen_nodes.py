@@ -78,7 +78,10 @@ _NODE = (
 )
 NODE_REFERENCE = TableReference(
     "canopen.nodes.…",
-    "A device on the bus. A drive has the name of its axis or `spindle`; other devices have any name.",
+    (
+        "A device on the bus. A drive must be named after its axis or be named "
+        "`spindle`; other devices can have any name."
+    ),
     _NODE,
 )
 SDO_REFERENCE = TableReference(

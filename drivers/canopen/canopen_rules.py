@@ -77,8 +77,8 @@ def _queue(record: float, commit: float, values: Values) -> Iterator[Finding]:
     if values.says("machine.backend", "canopen") and commit < least - 1e-9:
         expected = Message(
             (
-                "the time must be at least {minimum} ms to cover {records} PVT records queued "
-                "in the drives and a restart"
+                "the time must be at least {minimum} ms to cover a restart and the {records} "
+                "PVT records queued in the drives"
             ),
             minimum=f"{1000 * least:g}",
             records=_RECORDS,
@@ -203,7 +203,7 @@ def _heartbeat(file: FileReading) -> Iterator[Finding]:
                 best = host << 16 | round(3000 * beat)
                 expected = Message(
                     (
-                        "this entry monitors node {watched} with a timeout of {patience} ms; set "
+                        "this entry monitors node {watched} with a timeout of {patience} ms; enter "
                         "{best} to monitor the host with a timeout of 3 heartbeats"
                     ),
                     watched=watched,
@@ -268,7 +268,7 @@ def _outside(file: FileReading) -> Iterator[Finding]:
                 path,
                 "",
                 Message(
-                    "the travel exceeds the counting range of a drive: {maximum} counts of {count} each",
+                    "the travel exceeds a drive's counting range of {maximum} counts at {count} per count",
                     maximum=_MOST,
                     count=f"{count:g}",
                 ),
@@ -325,7 +325,13 @@ def _wrong_terminal(file: FileReading, text: str, *, output: bool, analog: bool)
         )
     if profile == DRIVE:
         right = terminal.index == _DRIVE_INPUT and not output and not analog and terminal.bit < 32
-        return "" if right else ("a drive provides only digital inputs; use object 60FD.0 and bits 0…31")
+        return (
+            ""
+            if right
+            else (
+                "only the digital inputs of a drive can be used; specify object 60FD.0 and a bit from 0 to 31"
+            )
+        )
     wanted = _ANALOG if analog else _OUTPUT if output else INPUT
     most = _WORDS if analog else _BYTES
     if terminal.index != wanted or not 1 <= terminal.sub <= most:

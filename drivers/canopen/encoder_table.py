@@ -96,8 +96,8 @@ def _beside(values: Values) -> Iterator[Finding]:
     if values.has(path) and abs(values.number(path)) < _LEAST:
         expected = Message(
             (
-                "the count must be at least {minimum}; enter a negative value if the encoder "
-                "counts down with M03"
+                "enter at least {minimum} counts; if the encoder counts down with M03, put a "
+                "minus sign before the number"
             ),
             minimum=_LEAST,
         )

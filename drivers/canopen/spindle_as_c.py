@@ -33,7 +33,7 @@ class Step(Enum):
     INDEX = "searching for the encoder index"
     HERE = "setting the current position in the spindle drive"
     POWER = "changing the spindle drive to position mode"
-    TURN = "turning the spindle to its position as the C axis"
+    TURN = "turning the spindle to its C-axis position"
     HELD = "is C"
     LEAVE = "ending C axis mode"
     BACK = "changing the spindle drive to speed mode"

@@ -43,7 +43,10 @@ def act(ports: MachinePorts, head: Mapping[str, object]) -> None:
     order = acts.get(text(head, "what"))
     if order is None:
         raise DriverError(
-            "the driver host does not recognize this command; check that it has the same version as TurnDesk",
+            (
+                "the driver host does not recognize this command; check that the driver host "
+                "and TurnDesk have the same version"
+            ),
             reason="unknown-order",
         )
     order()
@@ -69,7 +72,7 @@ def _hold(ports: MachinePorts, *, on: bool, orient: bool) -> None:
     ports.lock.hold(on, orient)
 
 
-_UNORIENTED = "this machine's spindle driver cannot stop the spindle at an angle"
+_UNORIENTED = "this machine's spindle driver cannot orient the spindle to an angle"
 
 
 def _orient(ports: MachinePorts, angle: float, sense: int) -> None:
@@ -86,7 +89,7 @@ def _release(ports: MachinePorts) -> None:
 
 def _arm(ports: MachinePorts) -> None:
     if ports.touch is None:
-        raise DriverError("this driver cannot latch a touch signal", reason="no-touch")
+        raise DriverError("this driver cannot capture the axis position at a touch signal", reason="no-touch")
     ports.touch.arm()
 
 
@@ -246,8 +249,10 @@ class Feeder:
         answer = self._answers.get(what)
         if answer is None:
             return _refused(
-                "the driver host does not recognize this request; check that it has the same version "
-                "as TurnDesk",
+                (
+                    "the driver host does not recognize this request; check that the driver host "
+                    "and TurnDesk have the same version"
+                ),
                 "unknown-request",
             )
         try:

@@ -177,9 +177,11 @@ class GrblMachine:
             return []
         return [
             Message(
-                "{names}: homing is disabled in the controller ($22=0). If the axis has switches, "
-                "set $22 to 3; otherwise add method = 37 to home = {{ … }} of the axis, and Home "
-                "uses the current position",
+                (
+                    "{names}: homing is disabled in the controller ($22=0). If the axis has "
+                    "switches, set $22 to 3; otherwise add method = 37 to home = {{ … }} of the "
+                    "axis, so that Home uses the current position"
+                ),
                 names=" and ".join(names),
             )
         ]

@@ -411,7 +411,9 @@ def recover(c: Controller) -> Script:
     yield from reset(c)
     yield from full_report(c)
     if _door(c):
-        raise ScriptError(Message("{door}: close it, then press Reset", door=grblhal_codes.DOOR), "door")
+        raise ScriptError(
+            Message(("{door}: close the door, then press Reset"), door=grblhal_codes.DOOR), "door"
+        )
     number = _alarm_of(c)
     if number == grblhal_codes.HOMING_REQUIRED:
         return

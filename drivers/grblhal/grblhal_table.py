@@ -60,7 +60,7 @@ def _read(file: FileReading) -> Iterator[Finding]:
         return
     for key, value in (table or {}).items():
         if not key.isdecimal():
-            expected = "the key must be the number of a setting, such as 13 for $13"
+            expected = "the key must be a setting number, such as 13 for $13"
             yield Finding(f"{_SETTINGS}.{key}", written(value), expected)
         elif not _is_setting(value):
             yield Finding(f"{_SETTINGS}.{key}", written(value), "the setting must be a number or text")

@@ -32,7 +32,7 @@ class Step(Enum):
     INDEX = "searching for the encoder index"
     STOP = "the spindle stops after the index pulse"
     CHANGE = "changing the spindle drive to position mode"
-    TURN = "turning the spindle to its position as the C axis"
+    TURN = "turning the spindle to its C-axis position"
     HELD = "is C"
 
 

@@ -106,40 +106,40 @@ _AXIS = (
     Field("feedback", Kind.TEXT, meaning="Float out: measured position."),
     *_optional(
         {
-            "enable": "Bit in: on while the drive of the axis may have power.",
+            "enable": "Bit in: on while power to the axis drive is allowed.",
             "fault": "Bit out: on while the drive reports a fault.",
             "home": "Bit out: on while the axis is on its home switch.",
             "limit_low": (
-                "Bit out: on at the lower limit switch. The axis stops with an alarm, except in homing."
+                "Bit out: on at the lower limit switch. The axis stops with an alarm, except during homing."
             ),
             "limit_high": (
-                "Bit out: on at the upper limit switch. The axis stops with an alarm, except in homing."
+                "Bit out: on at the upper limit switch. The axis stops with an alarm, except during homing."
             ),
-            "index_enable": "Bit I/O: index enable of the encoder that `feedback` counts.",
+            "index_enable": "Bit I/O: index enable of the encoder that supplies `feedback`.",
         }
     ),
 )
 _TURNS = _optional(
     {
         "speed": "Float in: commanded speed in rpm, negative with M04.",
-        "speed_abs": "Float in: commanded speed in rpm without a sign; it needs `on` or `forward`.",
-        "on": "Bit in: on while the spindle turns by command.",
+        "speed_abs": "Float in: unsigned commanded speed in rpm; requires `on` or `forward`.",
+        "on": "Bit in: on while the spindle is commanded to turn.",
         "forward": "Bit in: on with M03.",
         "reverse": "Bit in: on with M04.",
-        "position": "Float out: position in revolutions, rising with M03. Required with `encoder_ppr`.",
+        "position": ("Float out: position in revolutions, increasing with M03. Required with `encoder_ppr`."),
         "velocity": "Float out: measured speed in rev/s.",
         "at_speed": "Bit out: on while the drive reports that the spindle is at speed.",
         "fault": "Bit out: on while the drive reports a fault.",
         "index_enable": (
-            "Bit I/O: index enable of the encoder that `position` counts. Threads and M19 wait for it."
+            "Bit I/O: index enable of the encoder that supplies `position`. Threads and M19 wait for it."
         ),
         "position_mode": "Bit in: switches the spindle drive to position mode for C.",
         "in_position_mode": (
-            "Bit out: on while the drive is in position mode. Default: the drive does not report it."
+            "Bit out: on while the drive is in position mode. Default: the drive does not report the mode."
         ),
-        "orient": "Bit in: on while the spindle is to be held at an angle.",
+        "orient": "Bit in: on while the spindle must hold the commanded angle.",
         "orient_angle": "Float in: commanded angle in degrees.",
-        "orient_mode": "s32 in: direction of the orientation: 0 the shorter, 1 as M03, 2 as M04.",
+        "orient_mode": ("s32 in: orientation direction: 0 shortest path, 1 as with M03, 2 as with M04."),
         "is_oriented": "Bit out: on while the spindle is at the commanded angle.",
     }
 )
@@ -448,8 +448,11 @@ DRIVER = Driver(
             parts=(
                 TableReference(
                     "hal.axes.…",
-                    "HAL pins of an axis, which is the last word of the heading. Positions are in mm (X: a "
-                    "radius) or degrees. The homing method decides which switches are required.",
+                    (
+                        "HAL pins of one axis; the last word of the heading is the axis name. "
+                        "Positions are in mm (X: a radius) or degrees. The homing method decides which "
+                        "switches are required."
+                    ),
                     _AXIS,
                 ),
                 TableReference("hal.spindle", "HAL pins of the spindle.", _TURNS),

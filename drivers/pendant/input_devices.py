@@ -120,7 +120,7 @@ def chosen(
     if len(groups) > 1:
         raise DriverError(
             Message(
-                "{groups_count} devices match {device}; unplug all of these devices but one; {meant}",
+                "{groups_count} devices match {device}; unplug all but one of these devices; {meant}",
                 groups_count=len(groups),
                 device=device,
                 meant=_apart(meant),
@@ -158,7 +158,7 @@ def _apart(meant: Sequence[DeviceEntry]) -> str:
     if not serials:
         return "the devices cannot be distinguished because they have no serial numbers"
     return Message(
-        ("alternatively, set the serial key to one of these serial numbers: {serials}"),
+        ("alternatively, set serial in the machine file to one of these serial numbers: {serials}"),
         serials=", ".join(serials),
     )
 

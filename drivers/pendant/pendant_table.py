@@ -129,7 +129,7 @@ def _analog(file: FileReading) -> Iterator[Finding]:
             expected = "expected a terminal; the handwheel is the only analog input that can be on a pendant"
             yield Finding(path, written(values.text(path)), expected)
     if (at := _wheel(file)) and wheel_of(at.removeprefix(AT_PENDANT)) is None:
-        expected = "expected the Linux name of a wheel, for example pendant.REL_DIAL or pendant.ABS_WHEEL"
+        expected = "expected the Linux name of a handwheel, for example pendant.REL_DIAL or pendant.ABS_WHEEL"
         yield Finding(f"{_WHEEL}.at", written(at), expected)
 
 

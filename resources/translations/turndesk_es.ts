@@ -165,8 +165,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Angle of a line, measured from Z toward X and given with one end coordinate.</source>
-      <translation>Ángulo de una recta, medido de Z hacia X e indicado con una coordenada final.</translation>
+      <source>Angle of a line, measured from Z toward X; program the angle with one coordinate of the end point.</source>
+      <translation>Ángulo de una recta, medido de Z hacia X; programe el ángulo con una coordenada del punto final.</translation>
     </message>
     <message>
       <location filename="" />
@@ -580,18 +580,18 @@
     </message>
     <message>
       <location filename="" />
-      <source>Cuts a groove with square flanks, WIDG wide and DIAG deep, from the point SPD (a diameter), SPL. VARI 5 cuts toward minus Z and VARI 1 toward plus Z; VARI 7 and 3 do the same inside. The tool width is the distance from D to _DN, or to D+1.</source>
-      <translation>Talla una ranura de flancos rectos, de ancho WIDG y profundidad DIAG, desde el punto SPD (diámetro), SPL. VARI 5 corta hacia Z negativo y VARI 1 hacia Z positivo; VARI 7 y 3 hacen lo mismo por dentro. El ancho de la herramienta es la distancia de D a _DN, o a D+1.</translation>
+      <source>Cuts a groove with square flanks, WIDG wide and DIAG deep, from the point SPD (a diameter), SPL. VARI 5 cuts toward minus Z and VARI 1 toward plus Z; VARI 7 and 3 do the same for inside grooves. The tool width is the distance from cutting edge D to cutting edge _DN, or to D+1.</source>
+      <translation>Talla una ranura de flancos rectos, de ancho WIDG y profundidad DIAG, desde el punto SPD (diámetro), SPL. VARI 5 corta hacia Z negativo y VARI 1 hacia Z positivo; VARI 7 y 3 hacen lo mismo en ranuras interiores. El ancho de la herramienta es la distancia del filo D al filo _DN, o a D+1.</translation>
     </message>
     <message>
       <location filename="" />
-      <source>Cuts a thread from SPL to FPL at the diameters DM1 and DM2, with lead PIT or size MPIT: NRC passes to TDEP less FAL, then NID passes without infeed. NUMT is the number of starts. VARI 1 and 2 use equal depths, and 3 and 4 equal chip cross sections; VARI 2 and 4 cut inside threads. With IANG, the tool feeds in along a flank.</source>
-      <translation>Talla una rosca de SPL a FPL con los diámetros DM1 y DM2, con paso PIT o tamaño MPIT: NRC pasadas hasta TDEP menos FAL, luego NID pasadas sin penetración. NUMT es el número de entradas. VARI 1 y 2 usan profundidad igual, y 3 y 4 sección de viruta igual; VARI 2 y 4 tallan roscas interiores. Con IANG, la herramienta penetra a lo largo de un flanco.</translation>
+      <source>Cuts a thread from SPL to FPL at the diameters DM1 and DM2, with lead PIT or size MPIT: NRC passes to TDEP less FAL, then NID passes without infeed. NUMT is the number of starts. VARI 1 and 2 use equal depths of cut, and 3 and 4 equal chip cross sections; VARI 2 and 4 cut internal threads. With IANG, the tool feeds in along a flank.</source>
+      <translation>Talla una rosca de SPL a FPL con los diámetros DM1 y DM2, con paso PIT o tamaño MPIT: NRC pasadas hasta TDEP menos FAL, luego NID pasadas sin penetración. NUMT es el número de entradas. VARI 1 y 2 usan profundidad de corte igual, y 3 y 4 sección de viruta igual; VARI 2 y 4 tallan roscas interiores. Con IANG, la herramienta penetra a lo largo de un flanco.</translation>
     </message>
     <message>
       <location filename="" />
-      <source>Cuts a thread from SPL, DM1 to FPL, DM2, as in CYCLE97. VARI 300101 and 300102 use equal depths, outside and inside; 300103 and 300104 use equal chip cross sections; 3002.. feeds in along both flanks alternately.</source>
-      <translation>Talla una rosca desde SPL, DM1 hasta FPL, DM2, como en CYCLE97. VARI 300101 y 300102 usan profundidad igual, por fuera y por dentro; 300103 y 300104 usan sección de viruta igual; 3002.. penetra a lo largo de ambos flancos alternando.</translation>
+      <source>Cuts a thread from SPL, DM1 to FPL, DM2, as in CYCLE97. VARI 300101 and 300102 use equal depths of cut, for external and internal threads; 300103 and 300104 use equal chip cross sections; 3002.. feeds in along both flanks alternately.</source>
+      <translation>Talla una rosca desde SPL, DM1 hasta FPL, DM2, como en CYCLE97. VARI 300101 y 300102 usan profundidad de corte igual, en roscas exteriores e interiores; 300103 y 300104 usan sección de viruta igual; 3002.. penetra a lo largo de ambos flancos alternando.</translation>
     </message>
     <message>
       <location filename="" />
@@ -605,18 +605,18 @@
     </message>
     <message>
       <location filename="" />
-      <source>Cuts a thread of constant lead: K along Z, I along X; SF= is the start angle. Further thread blocks may follow.</source>
+      <source>Cuts a thread of constant lead: K along Z, I along X; SF= is the start angle. More thread blocks can follow.</source>
       <translation>Talla una rosca de paso constante: K a lo largo de Z, I a lo largo de X; SF= es el ángulo de entrada. Pueden seguir más bloques de rosca.</translation>
     </message>
     <message>
       <location filename="" />
-      <source>Cuts an undercut (DIN 76) at the shoulder SPL, after a coarse thread of size DIATH: A and B (short) outside, C and D (short) inside; VARI as in CYCLE94.</source>
-      <translation>Talla una garganta (DIN 76) en el hombro SPL, tras una rosca gruesa de medida DIATH: A y B (corta) por fuera, C y D (corta) por dentro; VARI como en CYCLE94.</translation>
+      <source>Cuts a thread undercut (DIN 76) at the shoulder SPL, after a coarse thread of size DIATH: forms A and B (short) are outside, forms C and D (short) are inside; VARI as in CYCLE94.</source>
+      <translation>Talla una garganta de rosca (DIN 76) en el hombro SPL, tras una rosca gruesa de medida DIATH: las formas A y B (corta) son por fuera, las formas C y D (corta) por dentro; VARI como en CYCLE94.</translation>
     </message>
     <message>
       <location filename="" />
-      <source>Cuts an undercut E or F (DIN 509) at the shoulder SPL of the diameter SPD, based on the tip quadrant of the tool: 3 is outside with the shoulder toward minus Z, 4 is outside with the shoulder toward plus Z, and 2 and 1 are the corresponding quadrants inside. VARI 1 to 4 replaces the tip quadrant.</source>
-      <translation>Talla una garganta E o F (DIN 509) en el hombro SPL del diámetro SPD, según el cuadrante de punta de la herramienta: 3 es por fuera con el hombro hacia Z negativo, 4 es por fuera con el hombro hacia Z positivo, y 2 y 1 son los cuadrantes correspondientes por dentro. VARI 1 a 4 sustituye al cuadrante de punta.</translation>
+      <source>Cuts an undercut of form E or F (DIN 509) at diameter SPD and shoulder SPL, based on the tip quadrant of the tool: 3 is outside with the shoulder toward minus Z, 4 is outside with the shoulder toward plus Z, and 2 and 1 are the corresponding quadrants inside. VARI 1 to 4 replaces the tip quadrant.</source>
+      <translation>Talla una garganta de forma E o F (DIN 509) en el diámetro SPD y el hombro SPL, según el cuadrante de punta de la herramienta: 3 es por fuera con el hombro hacia Z negativo, 4 es por fuera con el hombro hacia Z positivo, y 2 y 1 son los cuadrantes correspondientes por dentro. VARI 1 a 4 sustituye al cuadrante de punta.</translation>
     </message>
     <message>
       <location filename="" />
@@ -635,7 +635,7 @@
     </message>
     <message>
       <location filename="" />
-      <source>Cuts the part off at SPL with the active edge, starting at the diameter SPD: first to _DIAG1 at _FF1, then to _DIAG2 at _FF2 and _SS2 rpm. _SV1 is a surface speed if its limit _SV2 is given, otherwise rpm; _SDAC is 3 or 4. Depths are diameters.</source>
+      <source>Cuts the part off at SPL with the active edge, starting at the diameter SPD: first to _DIAG1 at _FF1, then to _DIAG2 at _FF2 and _SS2 rpm. _SV1 is a surface speed if its limit _SV2 is specified, otherwise rpm; _SDAC is 3 or 4. Depths are diameters.</source>
       <translation>Tronza la pieza en SPL con el filo activo, desde el diámetro SPD: primero hasta _DIAG1 con _FF1, luego hasta _DIAG2 con _FF2 y _SS2 rpm. _SV1 es una velocidad de corte si se indica su límite _SV2, si no, rpm; _SDAC es 3 o 4. Las profundidades son diámetros.</translation>
     </message>
     <message>
@@ -680,8 +680,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Defines the blank for the original control's simulation; accepted. This word has no effect because the proof uses the stock that is set by --stock or on the PART page, or that is assumed from the moves.</source>
-      <translation>Define la pieza en bruto para la simulación del control original; se acepta. Esta palabra no tiene efecto porque la comprobación usa el material en bruto fijado con --stock o en la página PIEZA, o supuesto a partir de los movimientos.</translation>
+      <source>Defines the blank for the original control's simulation; accepted. This word has no effect because TurnDesk proves the program with the stock that is set by --stock or on the PART page, or that is assumed from the moves.</source>
+      <translation>Define la pieza en bruto para la simulación del control original; se acepta. Esta palabra no tiene efecto porque TurnDesk comprueba el programa con el material en bruto fijado con --stock o en la página PIEZA, o supuesto a partir de los movimientos.</translation>
     </message>
     <message>
       <location filename="" />
@@ -710,7 +710,7 @@
     </message>
     <message>
       <location filename="" />
-      <source>Drills a deep hole in pecks: the first peck goes to FDEP or by FDPR, and each further peck is smaller by DAM. With VARI 1, the drill leaves the hole after each peck; with VARI 0, it retracts by _VRT.</source>
+      <source>Drills a deep hole in pecks: the first peck drills to FDEP or by the distance FDPR, and each subsequent peck is shorter by DAM. With VARI 1, the drill leaves the hole after each peck; with VARI 0, it retracts by _VRT.</source>
       <translation>Taladra un agujero profundo por picadas: la primera llega a FDEP o avanza FDPR, y cada picada siguiente es menor en DAM. Con VARI 1, la broca sale del agujero tras cada picada; con VARI 0, retrocede _VRT.</translation>
     </message>
     <message>
@@ -725,8 +725,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Drills deep holes: moves slowly to a start point in the hole, then drills at speed with coolant.</source>
-      <translation>Taladra agujeros profundos: entra despacio hasta un punto de inicio en el agujero y luego taladra a velocidad y con refrigerante.</translation>
+      <source>Drills deep holes: moves slowly to a start point in the hole, then drills at the drilling speed with coolant.</source>
+      <translation>Taladra agujeros profundos: entra despacio hasta un punto de inicio en el agujero y luego taladra a la velocidad de taladrado y con refrigerante.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1285,8 +1285,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Jumps forward, or backward if the label is not found ahead.</source>
-      <translation>Salta adelante, o atrás si la etiqueta no se encuentra adelante.</translation>
+      <source>Jumps forward, or backward if the label is not in a later block.</source>
+      <translation>Salta adelante, o atrás si la etiqueta no está en un bloque posterior.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1315,8 +1315,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Jumps to a label that depends on a value.</source>
-      <translation>Salta a una etiqueta que depende de un valor.</translation>
+      <source>Jumps to one of several labels, depending on a value.</source>
+      <translation>Salta a una de varias etiquetas según un valor.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1580,6 +1580,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Mills the face of the part: X and Y are programmed across the face, and C turns the part under the tool. With DIAMON, X is a diameter, but Y is not. Arcs and radius compensation are programmed in the plane G17. TRANS and ROT start from zero.</source>
+      <translation>Fresa la cara de la pieza: X e Y se programan sobre la cara, y C gira la pieza bajo la herramienta. Con DIAMON, X es un diámetro, pero Y no. Los arcos y la compensación de radio se programan en el plano G17. TRANS y ROT empiezan desde cero.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Mills the face: program X and Y across the face; the machine moves X and C.</source>
       <translation>Fresa la cara: programe X e Y sobre la cara; la máquina mueve X y C.</translation>
     </message>
@@ -1625,8 +1630,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Moves the axes that are programmed with 0 to home at rapid: X1=0 Z1=0.</source>
-      <translation>Mueve en rápido a la referencia los ejes programados con 0: X1=0 Z1=0.</translation>
+      <source>Moves axes to home at rapid; program each of these axes with the value 0: X1=0 Z1=0.</source>
+      <translation>Mueve ejes a la referencia en rápido; programe cada uno de esos ejes con el valor 0: X1=0 Z1=0.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1697,11 +1702,6 @@
       <location filename="" />
       <source>No axis moves; the program must turn the rotary axes with Q120 to Q122.</source>
       <translation>No se mueve ningún eje; el programa debe girar los ejes giratorios con Q120 a Q122.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>No further block is prepared until this block is finished.</source>
-      <translation>No se prepara ningún otro bloque hasta que éste termina.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1890,6 +1890,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Preprocessing stop: no later block is prepared until this block is finished.</source>
+      <translation>Parada de preprocesamiento: no se prepara ningún bloque posterior hasta que éste termina.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Prints on the original control. This control prints nothing and shows a message.</source>
       <translation>Imprime en el control original. Este control no imprime nada y muestra un mensaje.</translation>
     </message>
@@ -1900,8 +1905,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Program a move to X and Z before the plane-switching line.</source>
-      <translation>Programe un movimiento a X y Z antes de la línea de cambio de plano.</translation>
+      <source>Program a move to X and Z before the (~PLXC) or (~PLZC) line.</source>
+      <translation>Programe un movimiento a X y Z antes de la línea (~PLXC) o (~PLZC).</translation>
     </message>
     <message>
       <location filename="" />
@@ -1955,8 +1960,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Raises an alarm; the program is rejected if it reaches this block.</source>
-      <translation>Da una alarma; el programa se rechaza si llega a este bloque.</translation>
+      <source>Raises an alarm; a program that reaches this block is rejected.</source>
+      <translation>Da una alarma; un programa que llega a este bloque se rechaza.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2050,8 +2055,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Repeats the lines from here to LF n times.</source>
-      <translation>Repite n veces las líneas desde aquí hasta LF.</translation>
+      <source>Repeats the following lines, up to LF, n times.</source>
+      <translation>Repite n veces las líneas siguientes, hasta LF.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2075,13 +2080,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>Rigid tapping into the hole: the spindle runs as the C axis, synchronized with Z at the lead K (a negative K cuts a left-hand thread).</source>
+      <translation>Roscado rígido hacia dentro del agujero: el husillo trabaja como eje C, sincronizado con Z según el paso K (un K negativo da rosca a izquierdas).</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rigid tapping, without a compensating chuck: the spindle stops at POSS and is then synchronized with Z at the pitch PIT (negative for a left-hand thread) or the pitch of the thread size MPIT. The speed is SST rpm into the hole and SST1 rpm out of the hole. With _VARI 1 and 2, the cycle taps in steps of _DAM. SDAC is the spindle state after the cycle: 3, 4, or 5 for a stopped spindle.</source>
+      <translation>Roscado rígido, sin mandril compensador: el husillo para en POSS y luego se sincroniza con Z según el paso PIT (negativo para rosca a izquierdas) o el paso de la medida de rosca MPIT. La velocidad es SST rpm hacia dentro y SST1 rpm hacia fuera. Con _VARI 1 y 2, el ciclo rosca en tramos de _DAM. SDAC es el estado del husillo después del ciclo: 3, 4, o 5 para husillo parado.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Rotary axes without limits take the shortest path. This is the default unless M127 is programmed first.</source>
       <translation>Los ejes giratorios sin límites toman el camino más corto. Es lo normal si no se programa antes M127.</translation>
     </message>
     <message>
       <location filename="" />
-      <source>Rotary axes without limits turn to their position values directly: from 350 to 10, they turn back through 340 degrees.</source>
-      <translation>Los ejes giratorios sin límites van directamente a sus valores de posición: de 350 a 10 giran hacia atrás 340 grados.</translation>
+      <source>Rotary axes without limits turn by the difference between the position values, not by the shortest path: from 350 to 10, they turn back through 340 degrees.</source>
+      <translation>Los ejes giratorios sin límites giran la diferencia entre los valores de posición, no por el camino más corto: de 350 a 10 giran hacia atrás 340 grados.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2450,8 +2465,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Sets the values of the elements of an array in order, with the last index first; an omitted element retains its value. After DEF, SET may be omitted and only the parentheses written.</source>
-      <translation>Fija los valores de los elementos de un array, en orden, primero el último índice; un elemento omitido conserva su valor. Tras DEF se puede omitir SET y escribir sólo los paréntesis.</translation>
+      <source>Sets the values of the elements of an array in order (the last index changes fastest); an omitted element retains its value. After DEF, you can omit SET and write only the parentheses.</source>
+      <translation>Fija los valores de los elementos de un array, en orden (el último índice cambia más rápido); un elemento omitido conserva su valor. Tras DEF se puede omitir SET y escribir sólo los paréntesis.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2680,6 +2695,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Strings and freely definable tables</source>
+      <translation>Textos y tablas de libre definición</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Subprograms and repeats</source>
       <translation>Subprogramas y repeticiones</translation>
     </message>
@@ -2760,28 +2780,13 @@
     </message>
     <message>
       <location filename="" />
-      <source>Taps into the hole: the spindle runs as the C axis and turns with Z at the lead K (a negative K cuts a left-hand thread).</source>
-      <translation>Rosca con macho hacia dentro: el husillo trabaja como eje C y gira con Z según el paso K (un K negativo da rosca a izquierdas).</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Taps with a compensating chuck: the tap feeds in by PIT or MPIT, or at F with ENC 1; the spindle reverses, and the tap feeds out.</source>
-      <translation>Rosca con mandril compensador: el macho entra según PIT o MPIT, o a F con ENC 1; el husillo invierte el giro y el macho sale.</translation>
+      <source>Taps with a compensating chuck: the tap feeds in at the pitch PIT or of the thread size MPIT, or at F with ENC 1; the spindle reverses, and the tap feeds out.</source>
+      <translation>Rosca con mandril compensador: el macho entra según el paso PIT o el de la medida de rosca MPIT, o a F con ENC 1; el husillo invierte el giro y el macho sale.</translation>
     </message>
     <message>
       <location filename="" />
       <source>Taps with a floating tap holder.</source>
       <translation>Rosca con portamachos flotante.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Taps without a compensating chuck: the spindle stops at POSS, then turns with Z by PIT (negative for a left-hand thread) or MPIT, at SST rpm into the hole and at SST1 rpm out of the hole. With _VARI 1 and 2, the cycle taps in steps of _DAM. SDAC is the spindle state after the cycle: 3, 4, or 5 for a stopped spindle.</source>
-      <translation>Rosca sin mandril compensador: el husillo para en POSS y luego gira con Z según PIT (negativo para rosca a izquierdas) o MPIT, a SST rpm hacia dentro y a SST1 rpm hacia fuera. Con _VARI 1 y 2, el ciclo rosca en tramos de _DAM. SDAC es el estado del husillo después del ciclo: 3, 4, o 5 para husillo parado.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Texts and free tables</source>
-      <translation>Textos y tablas libres</translation>
     </message>
     <message>
       <location filename="" />
@@ -2997,6 +3002,11 @@
       <location filename="" />
       <source>Transformation</source>
       <translation>Transformación</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>TurnDesk proves the program with the stock that is set by --stock or on the PART page, or that is assumed from the moves</source>
+      <translation>TurnDesk comprueba el programa con el material en bruto fijado con --stock o en la página PIEZA, o supuesto a partir de los movimientos</translation>
     </message>
     <message>
       <location filename="" />
@@ -3350,13 +3360,13 @@
     </message>
     <message>
       <location filename="" />
-      <source>Write G40 before the plane-switching line.</source>
-      <translation>Escriba G40 antes de la línea de cambio de plano.</translation>
+      <source>Write G40 before the (~PLXC) or (~PLZC) line.</source>
+      <translation>Escriba G40 antes de la línea (~PLXC) o (~PLZC).</translation>
     </message>
     <message>
       <location filename="" />
-      <source>Write G94 with F before the plane-switching line.</source>
-      <translation>Escriba G94 con F antes de la línea de cambio de plano.</translation>
+      <source>Write G94 with F before the (~PLXC) or (~PLZC) line.</source>
+      <translation>Escriba G94 con F antes de la línea (~PLXC) o (~PLZC).</translation>
     </message>
     <message>
       <location filename="" />
@@ -3380,8 +3390,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Write M19 before the plane-switching line.</source>
-      <translation>Escriba M19 antes de la línea de cambio de plano.</translation>
+      <source>Write M19 before the (~PLXC) or (~PLZC) line.</source>
+      <translation>Escriba M19 antes de la línea (~PLXC) o (~PLZC).</translation>
     </message>
     <message>
       <location filename="" />
@@ -3430,8 +3440,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Writes to the tool table. On this control, no value in the tool table changes, and values that would move an axis are rejected.</source>
-      <translation>Escribe en la tabla de herramientas. En este control no cambia ningún valor de la tabla, y los valores que moverían un eje se rechazan.</translation>
+      <source>Writes to the tool table. This control does not change any value in the tool table, and it rejects values that would move an axis.</source>
+      <translation>Escribe en la tabla de herramientas. Este control no cambia ningún valor de la tabla y rechaza los valores que moverían un eje.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3442,11 +3452,6 @@
       <location filename="" />
       <source>X VALUES: RADIUS</source>
       <translation>RADIO</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>X and Y moves mill the face of the part, and C turns the part under the tool. With DIAMON, X is a diameter, but Y is not. Arcs and radius compensation are programmed in the plane G17. TRANS and ROT start from zero.</source>
-      <translation>Los movimientos en X e Y fresan la cara de la pieza, y C gira la pieza bajo la herramienta. Con DIAMON, X es un diámetro, pero Y no. Los arcos y la compensación de radio se programan en el plano G17. TRANS y ROT empiezan desde cero.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4215,11 +4220,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>the proof uses the stock that is set by --stock or on the PART page, or that is assumed from the moves</source>
-      <translation>la comprobación usa el material en bruto fijado con --stock o en la página PIEZA, o supuesto a partir de los movimientos</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>the pull-out from the thread</source>
       <translation>la salida de la rosca</translation>
     </message>
@@ -4800,8 +4800,8 @@
     </message>
     <message>
       <location filename="app/compose/stored_offsets.py" />
-      <source>OFFSETS COME FROM A FILE (--offsets) AND ARE READ-ONLY. CHANGE THE FILE, OR START WITHOUT IT</source>
-      <translation>LOS CORRECTORES VIENEN DE UN ARCHIVO (--offsets) Y SON DE SÓLO LECTURA. CAMBIE EL ARCHIVO O ARRANQUE SIN ÉL</translation>
+      <source>OFFSETS COME FROM A FILE (--offsets) AND ARE READ-ONLY. CHANGE THIS FILE, OR START WITHOUT THIS OPTION</source>
+      <translation>LOS CORRECTORES VIENEN DE UN ARCHIVO (--offsets) Y SON DE SÓLO LECTURA. CAMBIE ESE ARCHIVO O ARRANQUE SIN ESA OPCIÓN</translation>
     </message>
     <message>
       <location filename="app/compose/stored_offsets.py" />
@@ -4860,8 +4860,8 @@
     </message>
     <message>
       <location filename="app/desk/access.py" />
-      <source>{name} HAS NO PIN. A SERVICE USER MUST SET ONE</source>
-      <translation>{name} NO TIENE PIN. UN USUARIO DE SERVICIO DEBE FIJARLO</translation>
+      <source>{name} HAS NO PIN. A SERVICE USER MUST SET THE PIN</source>
+      <translation>{name} NO TIENE PIN. UN USUARIO DE SERVICIO DEBE FIJAR EL PIN</translation>
     </message>
     <message>
       <location filename="app/desk/access.py" />
@@ -4930,8 +4930,8 @@
     </message>
     <message>
       <location filename="app/desk/arithmetic.py" />
-      <source>+ - * / or the end of the entry</source>
-      <translation>+ - * / o el final de la entrada</translation>
+      <source>+, -, *, / or the end of the entry</source>
+      <translation>+, -, *, / o el final de la entrada</translation>
     </message>
     <message>
       <location filename="app/desk/arithmetic.py" />
@@ -5060,11 +5060,6 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>NOT SAVED, LOST WHEN YOU CLOSE: {what}. Y: CLOSE   N: STAY</source>
-      <translation>SIN GUARDAR, SE PIERDE AL CERRAR: {what}. Y: CERRAR   N: QUEDARSE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
       <source>NOT SAVED: {error}</source>
       <translation>SIN GUARDAR: {error}</translation>
     </message>
@@ -5135,13 +5130,18 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
+      <source>UNSAVED WORK WILL BE LOST: {what}. Y: CLOSE   N: STAY</source>
+      <translation>SE PERDERÁ LO NO GUARDADO: {what}. Y: CERRAR   N: QUEDARSE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
       <source>Y: AUTOMATIC PAGE ONLY, DRIVES ON</source>
       <translation>Y: SÓLO EN LA PÁGINA AUTOMÁTICO, CON SERVOS ENCENDIDOS</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>key or touch on the screen</source>
-      <translation>tecla o toque en la pantalla</translation>
+      <source>a key or a touch on the screen</source>
+      <translation>una tecla o un toque en la pantalla</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5200,13 +5200,13 @@
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
-      <source>PRESS P, LOAD STOCK, CYCLE START. MEASURE. F9: CORRECT WEAR</source>
-      <translation>PULSE P, PONGA MATERIAL, ARRANQUE DE CICLO. MIDA. F9: CORREGIR DESGASTE</translation>
+      <source>P, LOAD STOCK, CYCLE START. MEASURE PART. F9: CORRECT WEAR</source>
+      <translation>P, PONGA MATERIAL, ARRANQUE DE CICLO. MIDA LA PIEZA. F9: CORREGIR DESGASTE</translation>
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
-      <source>PROGRAM IS PROVED AUTOMATICALLY. B (PART): SHOW FINDINGS</source>
-      <translation>EL PROGRAMA SE COMPRUEBA SOLO. B (PIEZA): VER LO HALLADO</translation>
+      <source>PROGRAM IS PROVED AUTOMATICALLY. B (PART): ERRORS, WARNINGS</source>
+      <translation>EL PROGRAMA SE COMPRUEBA SOLO. B (PIEZA): ERRORES Y AVISOS</translation>
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
@@ -5230,8 +5230,8 @@
     </message>
     <message>
       <location filename="app/desk/interrupted_notice.py" />
-      <source> (PROGRAM TEXT CHANGED SINCE THEN)</source>
-      <translation> (EL TEXTO DEL PROGRAMA CAMBIÓ DESDE ENTONCES)</translation>
+      <source> (PROGRAM CHANGED SINCE THEN)</source>
+      <translation> (EL PROGRAMA CAMBIÓ DESDE ENTONCES)</translation>
     </message>
     <message>
       <location filename="app/desk/interrupted_notice.py" />
@@ -5285,8 +5285,8 @@
     </message>
     <message>
       <location filename="app/desk/interrupted_notice.py" />
-      <source>T{tool} MAY BE IN THE PART, {program} LINE {line}. PRESS Y TO CANCEL THAT JOB AND LOAD {name}, N TO KEEP IT</source>
-      <translation>T{tool} PUEDE ESTAR DENTRO DE LA PIEZA, {program} LÍNEA {line}. PULSE Y PARA CANCELAR ESE TRABAJO Y CARGAR {name}, N PARA CONSERVARLO</translation>
+      <source>T{tool} MAY BE IN THE PART ({program}, LINE {line}). PRESS Y TO CANCEL THE INTERRUPTED JOB AND LOAD {name}, N TO KEEP IT</source>
+      <translation>T{tool} PUEDE ESTAR DENTRO DE LA PIEZA ({program}, LÍNEA {line}). PULSE Y PARA CANCELAR EL TRABAJO INTERRUMPIDO Y CARGAR {name}, N PARA CONSERVARLO</translation>
     </message>
     <message>
       <location filename="app/desk/machine_file_changes.py" />
@@ -5390,8 +5390,8 @@
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
-      <source>G10 AT NEXT T</source>
-      <translation>G10 EN LA SIGUIENTE T</translation>
+      <source>G10 FROM NEXT T</source>
+      <translation>G10 DESDE LA SIGUIENTE T</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -5570,11 +5570,6 @@
     </message>
     <message>
       <location filename="app/desk/page_entry.py" />
-      <source>FOR SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R</source>
-      <translation>PARA BUSCAR A, DEJE TERMINAR EL PROGRAMA, O PÁRELO Y PULSE R</translation>
-    </message>
-    <message>
-      <location filename="app/desk/page_entry.py" />
       <source>PROGRAM RUNNING. LET IT END, OR STOP IT AND PRESS R FIRST</source>
       <translation>PROGRAMA EN MARCHA. DEJE QUE TERMINE, O PÁRELO Y PULSE R</translation>
     </message>
@@ -5599,6 +5594,11 @@
       <translation>PARA ABRIR MDI, DEJE TERMINAR EL PROGRAMA, O PÁRELO Y PULSE R</translation>
     </message>
     <message>
+      <location filename="app/desk/page_entry.py" />
+      <source>TO USE SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R</source>
+      <translation>PARA USAR BUSCAR A, DEJE TERMINAR EL PROGRAMA, O PÁRELO Y PULSE R</translation>
+    </message>
+    <message>
       <location filename="app/desk/persistence.py" />
       <source>nothing is saved here; start turndesk with a writable folder (TURNDESK_HOME)</source>
       <translation>aquí no se guarda nada; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
@@ -5615,18 +5615,18 @@
     </message>
     <message>
       <location filename="app/desk/program_folder.py" />
-      <source>CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED TEXT</source>
-      <translation>{name} ILEGIBLE: REVISE LA CARPETA. EL ARRANQUE DE CICLO EJECUTA LO CARGADO</translation>
+      <source>CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION</source>
+      <translation>NO SE PUEDE LEER {name}: REVISE LA CARPETA. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN CARGADA</translation>
     </message>
     <message>
       <location filename="app/desk/program_folder.py" />
-      <source>{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD TEXT</source>
-      <translation>{name} HA CAMBIADO. F2: RECARGAR. EL ARRANQUE DE CICLO EJECUTA EL TEXTO ANTERIOR</translation>
+      <source>{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION</source>
+      <translation>{name} HA CAMBIADO. F2: RECARGAR. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN ANTERIOR</translation>
     </message>
     <message>
       <location filename="app/desk/program_folder.py" />
-      <source>{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED TEXT</source>
-      <translation>{name} NO ESTÁ EN EL DISCO. EL ARRANQUE DE CICLO EJECUTA EL TEXTO CARGADO</translation>
+      <source>{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED PROGRAM</source>
+      <translation>{name} NO ESTÁ EN EL DISCO. EL ARRANQUE DE CICLO EJECUTA EL PROGRAMA CARGADO</translation>
     </message>
     <message>
       <location filename="app/desk/program_loading.py" />
@@ -5717,6 +5717,11 @@
       <location filename="app/desk/prompt_line.py" />
       <source>E-STOP: MAKE THE MACHINE SAFE. {release}. THEN D: DRIVES ON</source>
       <translation>PARO DE EMERGENCIA: PONGA LA MÁQUINA SEGURA. {release}. LUEGO D: ENCENDER SERVOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/prompt_line.py" />
+      <source>ERRORS FOUND WHEN PROVING</source>
+      <translation>LA COMPROBACIÓN DIO ERRORES</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -5812,11 +5817,6 @@
       <location filename="app/desk/prompt_line.py" />
       <source>THE PROGRAM IS NOT PROVED YET AND WILL NOT START</source>
       <translation>EL PROGRAMA AÚN NO ESTÁ COMPROBADO Y NO ARRANCARÁ</translation>
-    </message>
-    <message>
-      <location filename="app/desk/prompt_line.py" />
-      <source>THE PROOF FOUND ERRORS</source>
-      <translation>LA COMPROBACIÓN HALLÓ ERRORES</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6070,7 +6070,7 @@
     </message>
     <message>
       <location filename="app/desk/readouts.py" />
-      <source>TILTED PLANE OF LINE {line}</source>
+      <source>TILTED PLANE FROM LINE {line}</source>
       <translation>PLANO INCLINADO DE LA LÍNEA {line}</translation>
     </message>
     <message>
@@ -6515,8 +6515,8 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>SAVED. MACHINE STILL RUNS OLD TEXT. F2: RELOAD AFTER THE RUN</source>
-      <translation>GUARDADO. LA MÁQUINA AÚN EJECUTA EL TEXTO ANTERIOR. F2: RECARGAR AL TERMINAR</translation>
+      <source>SAVED. OLD VERSION STILL RUNNING. F2: RELOAD AFTER THE RUN</source>
+      <translation>GUARDADO. AÚN SE EJECUTA LA VERSIÓN ANTERIOR. F2: RECARGAR AL TERMINAR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6555,8 +6555,8 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>{name} SAVED, NOT LOADED. F2: LOAD. CYCLE START RUNS OLD TEXT</source>
-      <translation>{name} GUARDADO, NO CARGADO. F2: CARGAR. EL ARRANQUE DE CICLO EJECUTA EL TEXTO ANTERIOR</translation>
+      <source>{name} SAVED, NOT LOADED. F2: LOAD. CYCLE START RUNS OLD VERSION</source>
+      <translation>{name} GUARDADO, NO CARGADO. F2: CARGAR. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN ANTERIOR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6920,8 +6920,8 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>F1, F2: LOAD A PROGRAM   F1, F6, F10: ADD ONE FROM THE LIST</source>
-      <translation>F1, F2: CARGAR UN PROGRAMA   F1, F6, F10: AÑADIR UNO DE LA LISTA</translation>
+      <source>F1, F2: LOAD A PROGRAM   F1, F6, F10: ADD JOB FROM THE LIST</source>
+      <translation>F1, F2: CARGAR UN PROGRAMA   F1, F6, F10: AÑADIR TRABAJO DE LA LISTA</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -6965,8 +6965,8 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>NO NOTES DURING A CYCLE: LETTER KEYS STOP THE MACHINE</source>
-      <translation>SIN NOTAS DURANTE UN CICLO: LAS LETRAS PARAN LA MÁQUINA</translation>
+      <source>NO NOTES DURING A CYCLE: LETTER KEYS WOULD STOP THE MACHINE</source>
+      <translation>SIN NOTAS DURANTE UN CICLO: LAS LETRAS PARARÍAN LA MÁQUINA</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -6980,8 +6980,8 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>PROGRAM LOADED. SEE ITS FINDINGS ON PAGE B</source>
-      <translation>PROGRAMA CARGADO. VEA SUS HALLAZGOS EN LA PÁGINA B</translation>
+      <source>PROGRAM LOADED. SEE ITS ERRORS AND WARNINGS ON PAGE B</source>
+      <translation>PROGRAMA CARGADO. VEA SUS ERRORES Y AVISOS EN LA PÁGINA B</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -7095,8 +7095,8 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_watch.py" />
-      <source>PROOF FOUND ERRORS</source>
-      <translation>LA COMPROBACIÓN HALLÓ ERRORES</translation>
+      <source>THE PROGRAM HAS ERRORS</source>
+      <translation>EL PROGRAMA TIENE ERRORES</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_watch.py" />
@@ -7125,8 +7125,8 @@
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
-      <source>DRIVE TEST HAS NO RAPID. PRESS WITHOUT SHIFT</source>
-      <translation>LA PRUEBA DE ACCIONAMIENTO NO TIENE RÁPIDO. PULSE SIN MAYÚS</translation>
+      <source>DRIVE TEST HAS NO RAPID. PRESS THE ARROW WITHOUT SHIFT</source>
+      <translation>LA PRUEBA DE ACCIONAMIENTO NO TIENE RÁPIDO. PULSE LA FLECHA SIN MAYÚS</translation>
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
@@ -7320,6 +7320,11 @@
     </message>
     <message>
       <location filename="app/jog/hand_functions.py" />
+      <source>CHECKING THE LINE FOR ERRORS</source>
+      <translation>COMPROBANDO SI LA LÍNEA TIENE ERRORES</translation>
+    </message>
+    <message>
+      <location filename="app/jog/hand_functions.py" />
       <source>DRIVES ARE OFF. PRESS D TO TURN THEM ON</source>
       <translation>LOS SERVOS ESTÁN APAGADOS. PULSE D PARA ENCENDERLOS</translation>
     </message>
@@ -7347,11 +7352,6 @@
       <location filename="app/jog/hand_functions.py" />
       <source>PICK 1–6, THEN CYCLE START. 9: RPM. B: TOOL SETTING</source>
       <translation>ELIJA 1–6, LUEGO ARRANQUE DE CICLO. 9: RPM. B: AJUSTE DE HERRAMIENTA</translation>
-    </message>
-    <message>
-      <location filename="app/jog/hand_functions.py" />
-      <source>PROVING THE LINE</source>
-      <translation>COMPROBANDO LA LÍNEA</translation>
     </message>
     <message>
       <location filename="app/jog/hand_functions.py" />
@@ -7805,13 +7805,13 @@
     </message>
     <message>
       <location filename="app/jog/jog_touch_off.py" />
-      <source>touch-off Ø</source>
-      <translation>toque Ø</translation>
+      <source>touch-off of a new tool</source>
+      <translation>toque de una herramienta nueva</translation>
     </message>
     <message>
       <location filename="app/jog/jog_touch_off.py" />
-      <source>touch-off, new tool</source>
-      <translation>toque, herramienta nueva</translation>
+      <source>touch-off Ø</source>
+      <translation>toque Ø</translation>
     </message>
     <message>
       <location filename="app/jog/jog_touch_off.py" />
@@ -7910,6 +7910,11 @@
     </message>
     <message>
       <location filename="app/jog/setter_touch.py" />
+      <source>CONTACT MADE. BACKING OFF</source>
+      <translation>HAY CONTACTO. RETROCEDIENDO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
       <source>MEASURING WITH A SLOW TOUCH</source>
       <translation>MIDIENDO CON UN TOQUE LENTO</translation>
     </message>
@@ -7917,6 +7922,11 @@
       <location filename="app/jog/setter_touch.py" />
       <source>NO CONTACT. RETURNING</source>
       <translation>SIN CONTACTO. VOLVIENDO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
+      <source>NO RAPID DURING TOUCH-OFF. PRESS WITHOUT SHIFT</source>
+      <translation>SIN RÁPIDO DURANTE EL TOQUE. PULSE SIN MAYÚS</translation>
     </message>
     <message>
       <location filename="app/jog/setter_touch.py" />
@@ -7940,23 +7950,13 @@
     </message>
     <message>
       <location filename="app/jog/setter_touch.py" />
+      <source>TOUCH OFF T{number} ONLY IN DIRECTION {ways}</source>
+      <translation>TOQUE T{number} SOLO EN LA DIRECCIÓN {ways}</translation>
+    </message>
+    <message>
+      <location filename="app/jog/setter_touch.py" />
       <source>TOUCH-OFF FAILED: {why}</source>
       <translation>EL TOQUE FALLÓ: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>TOUCH-OFF HAS NO RAPID. PRESS WITHOUT SHIFT</source>
-      <translation>EL TOQUE NO TIENE RÁPIDO. PULSE SIN MAYÚS</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>TOUCHED: BACKING OFF</source>
-      <translation>TOCADO: RETROCEDIENDO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/setter_touch.py" />
-      <source>T{number} CAN BE TOUCHED OFF ONLY IN {ways}</source>
-      <translation>T{number} SOLO SE PUEDE TOCAR EN {ways}</translation>
     </message>
     <message>
       <location filename="app/jog/setter_touch.py" />
@@ -7965,8 +7965,8 @@
     </message>
     <message>
       <location filename="app/jog/setter_touch.py" />
-      <source>tool setter {direction} ±{error}</source>
-      <translation>palpador {direction} ±{error}</translation>
+      <source>tool setter, direction {direction}, ±{error}</source>
+      <translation>palpador, dirección {direction}, ±{error}</translation>
     </message>
     <message>
       <location filename="app/jog/skim_cut.py" />
@@ -8025,8 +8025,8 @@
     </message>
     <message>
       <location filename="app/jog/skim_cut.py" />
-      <source>{axis} MOVED {away} AFTER CUT, NOT SAVED. CUT AGAIN OR PRESS ESC</source>
-      <translation>{axis} SE MOVIÓ {away} TRAS LA PASADA, NO SE GUARDÓ. CORTE DE NUEVO O PULSE ESC</translation>
+      <source>{axis} MOVED {away} AFTER THE CUT. NOT SAVED. CUT AGAIN OR PRESS ESC</source>
+      <translation>{axis} SE MOVIÓ {away} TRAS LA PASADA. NO SE GUARDÓ. CORTE DE NUEVO O PULSE ESC</translation>
     </message>
     <message>
       <location filename="app/jog/tilted_jog.py" />
@@ -8060,8 +8060,13 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
-      <source>ONLY T{number} CHANGES. L: ALL TOOLS FOLLOW</source>
-      <translation>SOLO CAMBIA T{number}. L: TODAS LA SIGUEN</translation>
+      <source>ONLY T{number} CHANGES. L: APPLY TO ALL TOOLS</source>
+      <translation>SOLO CAMBIA T{number}. L: APLICAR A TODAS</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_setting.py" />
+      <source>SAVE {tool} {axis} MEASURED AT THE TOOL SETTER?</source>
+      <translation>¿GUARDAR {tool} {axis} MEDIDO EN EL PALPADOR?</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -8085,8 +8090,8 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
-      <source>T{number} IS THE MASTER, {others} FOLLOW. L: THIS TOOL ONLY</source>
-      <translation>T{number} ES LA MAESTRA, LA SIGUEN {others}. L: SOLO ESTA HERRAMIENTA</translation>
+      <source>T{number} IS THE MASTER. ALSO ADJUSTED: {others}. L: THIS TOOL ONLY</source>
+      <translation>T{number} ES LA MAESTRA. TAMBIÉN SE AJUSTAN: {others}. L: SOLO ESTA HERRAMIENTA</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -8112,11 +8117,6 @@
       <location filename="app/jog/tool_setting.py" />
       <source>{tool} Z POSITION OF THE FACE?</source>
       <translation>¿POSICIÓN Z DE LA CARA PARA {tool}?</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>{tool} {axis} FROM THE TOOL SETTER: SAVE IT?</source>
-      <translation>{tool} {axis} DEL PALPADOR: ¿GUARDAR?</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting_view.py" />
@@ -8385,8 +8385,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
-      <source>1 PART FEATURE CHANGES. F6: SHOW TABLE</source>
-      <translation>CAMBIA 1 MEDIDA DE LA PIEZA. F6: VER TABLA</translation>
+      <source>1 PART FEATURE WILL CHANGE. F6: SHOW TABLE</source>
+      <translation>CAMBIARÁ 1 MEDIDA DE LA PIEZA. F6: VER TABLA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
@@ -8455,8 +8455,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
-      <source>{count} PART FEATURES CHANGE. F6: SHOW TABLE</source>
-      <translation>CAMBIAN {count} MEDIDAS DE LA PIEZA. F6: VER TABLA</translation>
+      <source>{count} PART FEATURES WILL CHANGE. F6: SHOW TABLE</source>
+      <translation>CAMBIARÁN {count} MEDIDAS DE LA PIEZA. F6: VER TABLA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
@@ -8470,13 +8470,13 @@
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
-      <source>PROGRAM RUNNING. ONLY WEAR AND F9 OFFSETS CAN CHANGE</source>
-      <translation>PROGRAMA EN MARCHA. SOLO PUEDEN CAMBIAR EL DESGASTE Y LOS CORRECTORES DE F9</translation>
+      <source>OFFSET CHANGES APPLY FROM NEXT PART, AFTER THEY ARE PROVED</source>
+      <translation>LOS CAMBIOS DE CORRECTOR VALEN DESDE LA PRÓXIMA PIEZA, UNA VEZ COMPROBADOS</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
-      <source>PROVED OFFSET CHANGES APPLY FROM THE NEXT PART</source>
-      <translation>LOS CAMBIOS DE CORRECTOR COMPROBADOS VALEN DESDE LA PRÓXIMA PIEZA</translation>
+      <source>PROGRAM RUNNING. ONLY WEAR AND F9 OFFSETS CAN CHANGE</source>
+      <translation>PROGRAMA EN MARCHA. SOLO PUEDEN CAMBIAR EL DESGASTE Y LOS CORRECTORES DE F9</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
@@ -8515,13 +8515,13 @@
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
-      <source>MASTER {before} → NONE: NO TOOLS FOLLOW. Y: CHANGE   N: KEEP</source>
-      <translation>MAESTRA {before} → NINGUNA: NINGUNA LA SIGUE. Y: CAMBIAR   N: CONSERVAR</translation>
+      <source>MASTER {before} → NONE: NO OTHER TOOLS WILL BE ADJUSTED. Y: CHANGE   N: KEEP</source>
+      <translation>MAESTRA {before} → NINGUNA: NO SE AJUSTARÁ NINGUNA OTRA HERRAMIENTA. Y: CAMBIAR   N: CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
-      <source>MASTER {before} → {tool}. TOOLS THAT FOLLOW: {others}. TOUCH-OFF CHANGES OVER {limit} {unit} MUST BE CONFIRMED. Y: CHANGE   N: KEEP</source>
-      <translation>MAESTRA {before} → {tool}. HERRAMIENTAS QUE LA SIGUEN: {others}. LOS CAMBIOS POR TOQUE DE MÁS DE {limit} {unit} SE DEBEN CONFIRMAR. Y: CAMBIAR   N: CONSERVAR</translation>
+      <source>MASTER {before} → {tool}. TOOLS ADJUSTED WITH THE MASTER: {others}. TOUCH-OFF CHANGES OVER {limit} {unit} MUST BE CONFIRMED. Y: CHANGE   N: KEEP</source>
+      <translation>MAESTRA {before} → {tool}. HERRAMIENTAS QUE SE AJUSTAN CON LA MAESTRA: {others}. LOS CAMBIOS POR TOQUE DE MÁS DE {limit} {unit} SE DEBEN CONFIRMAR. Y: CAMBIAR   N: CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
@@ -8540,8 +8540,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
-      <source>OTHER TOOLS FOLLOW THIS TOOL</source>
-      <translation>OTRAS HERRAMIENTAS SIGUEN A ESTA</translation>
+      <source>OTHER TOOLS ARE ADJUSTED WITH THIS TOOL</source>
+      <translation>OTRAS HERRAMIENTAS SE AJUSTAN CON ESTA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
@@ -8575,8 +8575,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
-      <source>{changes}. TOOLS THAT FOLLOW: {others}. Y: CHANGE   N: KEEP</source>
-      <translation>{changes}. HERRAMIENTAS QUE LA SIGUEN: {others}. Y: CAMBIAR   N: CONSERVAR</translation>
+      <source>{changes}. ALSO ADJUSTED: {others}. Y: CHANGE   N: KEEP</source>
+      <translation>{changes}. TAMBIÉN SE AJUSTAN: {others}. Y: CAMBIAR   N: CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
@@ -8775,11 +8775,6 @@
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
-      <source>cannot be read</source>
-      <translation>no se puede leer</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_values.py" />
       <source>no</source>
       <translation>no</translation>
     </message>
@@ -8787,6 +8782,11 @@
       <location filename="app/offsets/offset_values.py" />
       <source>not set</source>
       <translation>sin poner</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_values.py" />
+      <source>unreadable</source>
+      <translation>ilegible</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_values.py" />
@@ -8960,8 +8960,8 @@
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
-      <source>FINISH D{number} FIRST, OR PRESS ESC</source>
-      <translation>TERMINE PRIMERO D{number}, U PULSE ESC</translation>
+      <source>FINISH ENTERING D{number} FIRST, OR PRESS ESC</source>
+      <translation>TERMINE PRIMERO DE ESCRIBIR D{number}, O PULSE ESC</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
@@ -9100,8 +9100,8 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
-      <source>X AND Z ARE RELATIVE TO THE MASTER. F3: ENTER THEM FROM HOME</source>
-      <translation>X Y Z SON RELATIVAS A LA MAESTRA. F3: ESCRIBIRLAS DESDE LA REFERENCIA</translation>
+      <source>X AND Z ARE RELATIVE TO THE MASTER. F3: EDIT VALUES FROM HOME</source>
+      <translation>X Y Z SON RELATIVAS A LA MAESTRA. F3: EDITAR VALORES DESDE LA REFERENCIA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
@@ -9175,13 +9175,13 @@
     </message>
     <message>
       <location filename="app/offsets/tool_shapes_view.py" />
-      <source>SHAPE NOT DEFINED: THE PROOF CHECKS ONLY THE TOOL NOSE</source>
-      <translation>FORMA SIN DEFINIR: LA COMPROBACIÓN SOLO CONSIDERA LA PUNTA</translation>
+      <source>SHAPE OF T{number}</source>
+      <translation>FORMA DE T{number}</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_shapes_view.py" />
-      <source>SHAPE OF T{number}</source>
-      <translation>FORMA DE T{number}</translation>
+      <source>TOOL SHAPE NOT DEFINED: ONLY THE TOOL NOSE IS CHECKED</source>
+      <translation>FORMA DE LA HERRAMIENTA SIN DEFINIR: SOLO SE COMPRUEBA LA PUNTA</translation>
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
@@ -9255,7 +9255,7 @@
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
-      <source>ON A MILL, TURNDESK DOES NOT PROVE THE FINISHED PART</source>
+      <source>ON A MILL, TURNDESK DOES NOT CHECK THE FINISHED PART</source>
       <translation>EN UNA FRESADORA, TURNDESK NO COMPRUEBA LA PIEZA TERMINADA</translation>
     </message>
     <message>
@@ -9265,8 +9265,8 @@
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
-      <source>PROGRAM RUNNING. CHANGE STOCK AND CHECKS ONLY BETWEEN CYCLES</source>
-      <translation>PROGRAMA EN MARCHA. CAMBIE MATERIAL Y COMPROBACIONES SOLO ENTRE CICLOS</translation>
+      <source>PROGRAM RUNNING. EDIT STOCK OR PART CHECKS ONLY BETWEEN CYCLES</source>
+      <translation>PROGRAMA EN MARCHA. EDITE EL MATERIAL O LAS COMPROBACIONES DE PIEZA SOLO ENTRE CICLOS</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -9385,11 +9385,6 @@
     </message>
     <message>
       <location filename="app/part/part_tables.py" />
-      <source>ELEMENTARY BLOCK {number}</source>
-      <translation>BLOQUE ELEMENTAL {number}</translation>
-    </message>
-    <message>
-      <location filename="app/part/part_tables.py" />
       <source>F4: UNDO</source>
       <translation>F4: DESHACER</translation>
     </message>
@@ -9402,6 +9397,11 @@
       <location filename="app/part/part_tables.py" />
       <source>LENGTH</source>
       <translation>LONGITUD</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
+      <source>MOTION SEGMENT {number}</source>
+      <translation>SEGMENTO DE MOVIMIENTO {number}</translation>
     </message>
     <message>
       <location filename="app/part/part_tables.py" />
@@ -9700,13 +9700,13 @@
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
-      <source>{name} IS INTERRUPTED. FINISH OR CANCEL IT FIRST</source>
-      <translation>{name} ESTÁ INTERRUMPIDO. PRIMERO TERMÍNELO O CANCÉLELO</translation>
+      <source>{name} IS RUNNING. LET IT FINISH FIRST</source>
+      <translation>{name} ESTÁ EN MARCHA. DEJE QUE TERMINE</translation>
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
-      <source>{name} IS RUNNING. LET IT FINISH FIRST</source>
-      <translation>{name} ESTÁ EN MARCHA. DEJE QUE TERMINE</translation>
+      <source>{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST</source>
+      <translation>{name} FUE INTERRUMPIDO. PRIMERO TERMINE O CANCELE LA EJECUCIÓN</translation>
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
@@ -9795,8 +9795,8 @@
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
-      <source>ENTER: OPEN   F4: COPY ONE HERE   F5: COPY ALL   ESC: BACK</source>
-      <translation>ENTER: ABRIR   F4: COPIAR UNO AQUÍ   F5: COPIAR TODOS   ESC: VOLVER</translation>
+      <source>ENTER: OPEN   F4: COPY FILE HERE   F5: COPY ALL   ESC: BACK</source>
+      <translation>ENTER: ABRIR   F4: COPIAR ARCHIVO   F5: COPIAR TODOS   ESC: VOLVER</translation>
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
@@ -9840,8 +9840,8 @@
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
-      <source>PROGRAMS IMPORTED: {count}, BUT NOT ALL ARE ERROR-FREE: {value}</source>
-      <translation>PROGRAMAS IMPORTADOS: {count}, PERO NO TODOS ESTÁN SIN ERRORES: {value}</translation>
+      <source>PROGRAMS IMPORTED: {count}. NOT ALL ARE FREE OF ERRORS: {value}</source>
+      <translation>PROGRAMAS IMPORTADOS: {count}. NO TODOS ESTÁN SIN ERRORES: {value}</translation>
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
@@ -10085,8 +10085,8 @@
     </message>
     <message>
       <location filename="app/programs/run_history.py" />
-      <source>{program}: the control stopped during the last run of this program</source>
-      <translation>{program}: el control se detuvo durante la última ejecución de este programa</translation>
+      <source>{program}: the control shut down during the last run of this program</source>
+      <translation>{program}: el control se apagó durante la última ejecución de este programa</translation>
     </message>
     <message>
       <location filename="app/programs/whole_file.py" />
@@ -10180,8 +10180,8 @@
     </message>
     <message>
       <location filename="app/quality/correction_effect.py" />
-      <source>THE PART CANNOT BE COMPARED: {why}</source>
-      <translation>LA PIEZA NO SE PUEDE COMPARAR: {why}</translation>
+      <source>PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}</source>
+      <translation>NO SE PUEDEN COMPARAR LAS PIEZAS CON CORRECTORES VIEJOS Y NUEVOS: {why}</translation>
     </message>
     <message>
       <location filename="app/quality/correction_effect.py" />
@@ -10270,6 +10270,16 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
+      <source>NEXT PART DOES NOT WAIT FOR REQUIRED MEASUREMENTS</source>
+      <translation>LA PIEZA SIGUIENTE NO ESPERA LAS MEDICIONES REQUERIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
+      <source>NEXT PART WAITS FOR REQUIRED MEASUREMENTS</source>
+      <translation>LA PIEZA SIGUIENTE ESPERA LAS MEDICIONES REQUERIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
       <source>NO WAIT</source>
       <translation>NO ESPERAR</translation>
     </message>
@@ -10285,18 +10295,8 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
-      <source>PARTS DO NOT WAIT FOR THE SAMPLE PLAN</source>
-      <translation>LAS PIEZAS NO ESPERAN AL PLAN DE MUESTRAS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
       <source>PARTS PER SAMPLE</source>
       <translation>PIEZAS POR MUESTRA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>PARTS WAIT UNTIL THE SAMPLE PLAN IS DONE</source>
-      <translation>LAS PIEZAS ESPERAN HASTA CUMPLIR EL PLAN DE MUESTRAS</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -10360,8 +10360,8 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
-      <source>nominal, tolerance, sample plan</source>
-      <translation>nominal, tolerancia, plan de muestras</translation>
+      <source>nominal dimension, tolerance, sampling plan</source>
+      <translation>medida nominal, tolerancia, plan de muestreo</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -10460,8 +10460,8 @@
     </message>
     <message>
       <location filename="app/quality/parts_watch.py" />
-      <source>the next part cannot start before the sample plan is complete</source>
-      <translation>la pieza siguiente no puede empezar antes de cumplir el plan de muestras</translation>
+      <source>the next part cannot start before the required parts are measured</source>
+      <translation>la pieza siguiente no puede empezar antes de medir las piezas requeridas</translation>
     </message>
     <message>
       <location filename="app/quality/plots_view.py" />
@@ -10730,8 +10730,8 @@
     </message>
     <message>
       <location filename="app/quality/shift_function.py" />
-      <source>{name} SAVED COMPLETELY. YOU CAN NOW REMOVE THE USB STICK</source>
-      <translation>{name} GUARDADO POR COMPLETO. YA PUEDE RETIRAR LA MEMORIA USB</translation>
+      <source>{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW</source>
+      <translation>{name} GUARDADO. SI USÓ UNA MEMORIA USB, YA PUEDE RETIRARLA</translation>
     </message>
     <message>
       <location filename="app/quality/shift_page.py" />
@@ -10920,11 +10920,6 @@
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
-      <source>Minutes count only time at feed. 0 removes a limit. STOP: no new part starts once the life is used up.</source>
-      <translation>Los minutos cuentan solo el tiempo en avance. 0 quita el límite. PARO: no empieza otra pieza al agotarse la vida.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
       <source>NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO</source>
       <translation>¿PLAQUITA NUEVA EN T{number}? USO DE LA VIEJA: {words}. Y: SÍ   N: NO</translation>
     </message>
@@ -10932,6 +10927,11 @@
       <location filename="app/quality/tool_life_section.py" />
       <source>NO TOOL HAS OFFSETS YET</source>
       <translation>AÚN NO HAY HERRAMIENTAS CON CORRECTOR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>Only time at feed counts toward the minutes. 0 removes a limit. STOP: no new part starts once the tool life is used up.</source>
+      <translation>Solo el tiempo en avance cuenta para los minutos. 0 quita el límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
@@ -11170,8 +11170,8 @@
     </message>
     <message>
       <location filename="app/quality/wear_correction.py" />
-      <source>T{number} IS NOT SET</source>
-      <translation>T{number} ESTÁ SIN DEFINIR</translation>
+      <source>NO OFFSETS SET FOR T{number}</source>
+      <translation>T{number} NO TIENE CORRECTORES DEFINIDOS</translation>
     </message>
     <message>
       <location filename="app/quality/wear_correction.py" />
@@ -11195,13 +11195,13 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
-      <source>Axis positions are from home, X as a radius.</source>
-      <translation>Las posiciones de los ejes son desde la referencia, X como radio.</translation>
+      <source>Axis positions are measured from home, X as a radius.</source>
+      <translation>Las posiciones de los ejes se miden desde la referencia, X como radio.</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
-      <source>Axis positions are from home.</source>
-      <translation>Las posiciones de los ejes son desde la referencia.</translation>
+      <source>Axis positions are measured from home.</source>
+      <translation>Las posiciones de los ejes se miden desde la referencia.</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
@@ -11255,11 +11255,6 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
-      <source>OUT OF SQUARE</source>
-      <translation>FUERA DE ESCUADRA</translation>
-    </message>
-    <message>
-      <location filename="app/scope/analyses.py" />
       <source>PASS</source>
       <translation>Nº</translation>
     </message>
@@ -11310,6 +11305,11 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
+      <source>SQUARENESS ERROR</source>
+      <translation>ERROR DE PERPENDICULARIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
       <source>THREAD</source>
       <translation>ROSCA</translation>
     </message>
@@ -11320,12 +11320,12 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
-      <source>The axis can follow this lead up to {rpm} rpm</source>
-      <translation>El eje puede seguir este paso hasta {rpm} rpm</translation>
+      <source>The axis is fast enough to cut this lead at up to {rpm} rpm</source>
+      <translation>El eje es bastante rápido para tallar este paso hasta {rpm} rpm</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
-      <source>The encoder cannot measure play between the encoder and the tool.</source>
+      <source>The encoder cannot measure backlash between the encoder and the tool.</source>
       <translation>El encoder no puede medir el juego entre el encoder y la herramienta.</translation>
     </message>
     <message>
@@ -11415,8 +11415,8 @@
     </message>
     <message>
       <location filename="app/scope/analyses_view.py" />
-      <source>ARROWS: ROW   Z: MAGNIFY   SAME F-KEY AGAIN: NEW SAMPLES</source>
-      <translation>FLECHAS: FILA   Z: AMPLIAR   MISMA TECLA F: MUESTRAS NUEVAS</translation>
+      <source>ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY: NEW SAMPLES</source>
+      <translation>FLECHAS: ELEGIR FILA   Z: AMPLIAR   MISMA TECLA F: NUEVAS</translation>
     </message>
     <message>
       <location filename="app/scope/analyses_view.py" />
@@ -11427,11 +11427,6 @@
       <location filename="app/scope/analyses_view.py" />
       <source>TEST</source>
       <translation>PRUEBA</translation>
-    </message>
-    <message>
-      <location filename="app/scope/axis_response.py" />
-      <source>A single step on the Jog page gives a good result; F9 opens the drive tests.</source>
-      <translation>Un solo paso en la página Manual da un buen resultado; F9 abre las pruebas de accionamiento.</translation>
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
@@ -11455,6 +11450,11 @@
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
+      <source>For a good result, jog a single step on the Jog page; F9 opens the drive tests.</source>
+      <translation>Para un buen resultado, mueva un solo paso en la página Manual; F9 abre las pruebas de accionamiento.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
       <source>LARGEST ERROR</source>
       <translation>ERROR MAYOR</translation>
     </message>
@@ -11465,8 +11465,8 @@
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
-      <source>Last move of {axis}. The values are only calculated; nothing was changed.</source>
-      <translation>Último movimiento de {axis}. Los valores son solo calculados; no se cambió nada.</translation>
+      <source>Last move of {axis}. These values are for information only; no setting was changed.</source>
+      <translation>Último movimiento de {axis}. Estos valores son solo informativos; no se cambió ningún ajuste.</translation>
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
@@ -11625,8 +11625,8 @@
     </message>
     <message>
       <location filename="app/scope/scope_function.py" />
-      <source>Press Enter to open the page. Shift+F10 opens the page from any other page and returns to that page.</source>
-      <translation>Pulse Enter para abrir la página. Mayús+F10 abre la página desde cualquier otra y regresa a esa otra.</translation>
+      <source>Press Enter to open the page. Shift+F10 opens this page from any other page and switches back to that page.</source>
+      <translation>Pulse Enter para abrir la página. Mayús+F10 abre esta página desde cualquier otra y regresa a esa otra.</translation>
     </message>
     <message>
       <location filename="app/scope/scope_function.py" />
@@ -12075,8 +12075,8 @@
     </message>
     <message>
       <location filename="app/scope/spindle_response.py" />
-      <source>Last run-up. The values are only calculated; nothing was changed.</source>
-      <translation>Último arranque. Los valores son solo calculados; no se cambió nada.</translation>
+      <source>Last change of spindle speed. These values are for information only; no setting was changed.</source>
+      <translation>Último cambio de velocidad del husillo. Estos valores son solo informativos; no se cambió ningún ajuste.</translation>
     </message>
     <message>
       <location filename="app/scope/spindle_response.py" />
@@ -12085,8 +12085,8 @@
     </message>
     <message>
       <location filename="app/scope/spindle_response.py" />
-      <source>Mean error and variation are calculated from the last second. A dash means that the speed did not stay within the band.</source>
-      <translation>El desvío medio y la variación se calculan del último segundo. Una raya indica que la velocidad no se mantuvo en la banda.</translation>
+      <source>Mean error and variation are calculated from the last second. A dash means that the speed did not stay within the tolerance band.</source>
+      <translation>El desvío medio y la variación se calculan del último segundo. Una raya indica que la velocidad no se mantuvo en la banda de tolerancia.</translation>
     </message>
     <message>
       <location filename="app/scope/spindle_response.py" />
@@ -12100,8 +12100,8 @@
     </message>
     <message>
       <location filename="app/scope/spindle_response.py" />
-      <source>The machine file assumes {accel} rpm/s; a speed within {share} of the target counts as reached.</source>
-      <translation>El archivo de máquina supone {accel} rpm/s; una velocidad dentro de {share} del valor cuenta como alcanzada.</translation>
+      <source>The acceleration in the machine file is {accel} rpm/s; a speed within {share} of the target counts as reached.</source>
+      <translation>La aceleración en el archivo de máquina es {accel} rpm/s; una velocidad dentro de {share} del valor cuenta como alcanzada.</translation>
     </message>
     <message>
       <location filename="app/scope/spindle_response.py" />
@@ -12375,8 +12375,8 @@
     </message>
     <message>
       <location filename="app/screen/program_listing.py" />
-      <source>{title}  ·  HOME: FOLLOW</source>
-      <translation>{title}  ·  INICIO: SEGUIR</translation>
+      <source>{title}  ·  HOME: CURRENT LINE</source>
+      <translation>{title}  ·  INICIO: LÍNEA ACTUAL</translation>
     </message>
     <message>
       <location filename="app/screen/readout_panels.py" />
@@ -12435,12 +12435,12 @@
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
-      <source>CYCLE START: PRESS BOTH</source>
+      <source>CYCLE START: BOTH BUTTONS</source>
       <translation>ARRANQUE CICLO: AMBOS</translation>
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
-      <source>CYCLE START: TAP BOTH IN TURN</source>
+      <source>CYCLE START: TAP EACH BUTTON</source>
       <translation>ARRANQUE CICLO: UNO Y OTRO</translation>
     </message>
     <message>
@@ -12510,8 +12510,8 @@
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
-      <source>NO SCOPE RECORD: ONLY ALARMS AND E-STOPS HAVE ONE</source>
-      <translation>SIN REGISTRO DEL OSCILOSCOPIO: SÓLO LO TIENEN ALARMAS Y PAROS DE EMERGENCIA</translation>
+      <source>NO SCOPE RECORD: ONLY ALARMS AND E-STOPS ARE RECORDED</source>
+      <translation>SIN REGISTRO: SÓLO SE REGISTRAN ALARMAS Y PAROS DE EMERGENCIA</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
@@ -12550,8 +12550,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
-      <source>CHECK STATE, PATH AND STARTS. F10: CONFIRM</source>
-      <translation>REVISE ESTADO, TRAYECTORIA Y ARRANQUES. F10: CONFIRMAR</translation>
+      <source>CHECK STATE, PATH AND WHAT WILL START. F10: CONFIRM</source>
+      <translation>REVISE ESTADO, TRAYECTORIA Y LO QUE ARRANCARÁ. F10: CONFIRMAR</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -12640,8 +12640,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
-      <source>CHECK {axis}: NO EARLIER LINE POSITIONED IT. IT STAYS AT {position}</source>
-      <translation>REVISE {axis}: NINGUNA LÍNEA ANTERIOR LO POSICIONÓ. SE QUEDA EN {position}</translation>
+      <source>CHECK {axis}: NO EARLIER LINE POSITIONS THIS AXIS. IT STAYS AT {position}</source>
+      <translation>REVISE {axis}: NINGUNA LÍNEA ANTERIOR POSICIONA ESTE EJE. SE QUEDA EN {position}</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
@@ -13205,8 +13205,8 @@
     </message>
     <message>
       <location filename="app/sharing/sharing.py" />
-      <source>no decision is needed, because no other control has changed this program</source>
-      <translation>no hay nada que decidir, porque ningún otro control ha cambiado este programa</translation>
+      <source>no decision is necessary, because no other control has changed this program</source>
+      <translation>no hace falta decidir, porque ningún otro control ha cambiado este programa</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing.py" />
@@ -13265,8 +13265,13 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
-      <source>NEWER ON ANOTHER CONTROL</source>
-      <translation>MÁS NUEVO EN OTRO CONTROL</translation>
+      <source>NEWER VERSION ON ANOTHER CONTROL</source>
+      <translation>VERSIÓN MÁS NUEVA EN OTRO CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
+      <source>NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM</source>
+      <translation>NO HACE FALTA DECIDIR: NINGÚN OTRO CONTROL HA CAMBIADO ESTE PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -13285,13 +13290,8 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
-      <source>NOTHING SHARED YET. NEXT CHECK SHARES THE PROGRAM FOLDER</source>
-      <translation>AÚN NO SE COMPARTE NADA. LA PRÓXIMA COMPROBACIÓN COMPARTE LA CARPETA</translation>
-    </message>
-    <message>
-      <location filename="app/sharing/sharing_model.py" />
-      <source>NOTHING TO DECIDE: NO OTHER CONTROL HAS CHANGED THIS PROGRAM</source>
-      <translation>NADA QUE DECIDIR: NINGÚN OTRO CONTROL HA CAMBIADO ESTE PROGRAMA</translation>
+      <source>NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER</source>
+      <translation>AÚN NO SE COMPARTE NADA. LA PRÓXIMA ACTUALIZACIÓN COMPARTE LA CARPETA DE PROGRAMAS</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -13325,8 +13325,8 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
-      <source>Y: USE {name} FROM {desk} (LOCAL ONE STAYS STORED)   N: CANCEL</source>
-      <translation>Y: USAR {name} DE {desk} (EL LOCAL QUEDA GUARDADO)   N: CANCELAR</translation>
+      <source>Y: USE {name} FROM {desk} (LOCAL VERSION STAYS STORED)   N: CANCEL</source>
+      <translation>Y: USAR {name} DE {desk} (LA VERSIÓN LOCAL QUEDA GUARDADA)   N: CANCELAR</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -13360,8 +13360,8 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_view.py" />
-      <source>ON OTHER CONTROLS</source>
-      <translation>EN OTROS CONTROLES</translation>
+      <source>VERSIONS ON OTHER CONTROLS</source>
+      <translation>VERSIONES EN OTROS CONTROLES</translation>
     </message>
     <message>
       <location filename="app/shopfloor/agent_desk.py" />
@@ -13420,8 +13420,8 @@
     </message>
     <message>
       <location filename="app/shopfloor/status_page.py" />
-      <source>NO RESPONSE: the values below are old</source>
-      <translation>SIN RESPUESTA: los valores de abajo son antiguos</translation>
+      <source>NO RESPONSE: the values below are out of date</source>
+      <translation>SIN RESPUESTA: los valores de abajo no están actualizados</translation>
     </message>
     <message>
       <location filename="app/shopfloor/status_page.py" />
@@ -13875,11 +13875,6 @@
     </message>
     <message>
       <location filename="app/special/lamps_and_sound.py" />
-      <source>A RUNNING CYCLE HAS A LAMP BUT NO SOUND</source>
-      <translation>UN CICLO EN MARCHA TIENE LÁMPARA PERO NO SONIDO</translation>
-    </message>
-    <message>
-      <location filename="app/special/lamps_and_sound.py" />
       <source>AMBER</source>
       <translation>ÁMBAR</translation>
     </message>
@@ -13922,6 +13917,11 @@
       <location filename="app/special/lamps_and_sound.py" />
       <source>LOUDER</source>
       <translation>MÁS</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>NO SOUND IS AVAILABLE FOR A RUNNING CYCLE, ONLY A LAMP</source>
+      <translation>PARA UN CICLO EN MARCHA NO HAY SONIDO, SÓLO LÁMPARA</translation>
     </message>
     <message>
       <location filename="app/special/lamps_and_sound.py" />
@@ -14015,8 +14015,8 @@
     </message>
     <message>
       <location filename="app/special/logged_events.py" />
-      <source>what happened and when; search</source>
-      <translation>qué pasó y cuándo; buscar</translation>
+      <source>event history with times; search</source>
+      <translation>historial de eventos con hora; buscar</translation>
     </message>
     <message>
       <location filename="app/special/logged_events.py" />
@@ -14140,11 +14140,6 @@
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
-      <source>NO COUNT is for dry runs: the cycle is not counted as a part. A restart that skips lines is not counted either.</source>
-      <translation>SIN CONT es para marchas en vacío: el ciclo no se cuenta como pieza. Tampoco se cuenta un rearranque que omite líneas.</translation>
-    </message>
-    <message>
-      <location filename="app/special/parts_counter.py" />
       <source>NO TARGET</source>
       <translation>SIN META</translation>
     </message>
@@ -14197,6 +14192,11 @@
       <location filename="app/special/parts_counter.py" />
       <source>TYPE THE NUMBER OF PARTS   ENTER: ACCEPT   ESC: BACK</source>
       <translation>ESCRIBA EL NÚMERO DE PIEZAS   ENTER: ACEPTAR   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/special/parts_counter.py" />
+      <source>Use NO COUNT for dry runs; the cycle is then not counted as a part. A restart that skips lines is not counted either.</source>
+      <translation>Use SIN CONT en las marchas en vacío; el ciclo entonces no se cuenta como pieza. Tampoco se cuenta un rearranque que omite líneas.</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -14295,13 +14295,13 @@
     </message>
     <message>
       <location filename="app/special/preferences.py" />
-      <source>PRESS BOTH TOGETHER</source>
-      <translation>PULSAR LOS DOS A LA VEZ</translation>
+      <source>PRESS BUTTONS IN SEQUENCE</source>
+      <translation>PULSAR UNO TRAS OTRO</translation>
     </message>
     <message>
       <location filename="app/special/preferences.py" />
-      <source>PRESS ONE AFTER THE OTHER</source>
-      <translation>PULSAR UNO TRAS OTRO</translation>
+      <source>PRESS BUTTONS TOGETHER</source>
+      <translation>PULSAR LOS DOS A LA VEZ</translation>
     </message>
     <message>
       <location filename="app/special/preferences.py" />
@@ -16505,8 +16505,8 @@
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
-      <source>Plug the pendant in again, then press Cycle Start. To work without the pendant, remove [pendant] and all entries for it from the machine file</source>
-      <translation>Enchufe otra vez el mando colgante, luego pulse arranque de ciclo. Para trabajar sin él, quite [pendant] y todo lo conectado a él del archivo de máquina</translation>
+      <source>Plug the pendant in again, then press Cycle Start. To work without the pendant, remove [pendant] and all pendant entries from the machine file</source>
+      <translation>Enchufe otra vez el mando colgante, luego pulse arranque de ciclo. Para trabajar sin él, borre del archivo de máquina [pendant] y todo lo que se refiere al mando colgante</translation>
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
@@ -16730,8 +16730,8 @@
     </message>
     <message>
       <location filename="core/drawings/drawing_process.py" />
-      <source>{path} cannot be read because a process for reading drawings cannot be started.</source>
-      <translation>{path} no se puede leer porque no se puede iniciar un proceso para leer dibujos.</translation>
+      <source>{path} cannot be read because the process that reads drawings cannot be started.</source>
+      <translation>{path} no se puede leer porque no se puede iniciar el proceso que lee los dibujos.</translation>
     </message>
     <message>
       <location filename="core/drawings/drawing_process.py" />
@@ -16760,8 +16760,8 @@
     </message>
     <message>
       <location filename="core/drawings/drawing_view.py" />
-      <source>{drawing} has {drawn_count} lines, but not a line {number}: choose an existing line.</source>
-      <translation>{drawing} tiene {drawn_count} líneas, pero no la línea {number}: elija una línea existente.</translation>
+      <source>{drawing} has {drawn_count} lines, but line {number} does not exist: choose an existing line.</source>
+      <translation>{drawing} tiene {drawn_count} líneas, pero la línea {number} no existe: elija una línea existente.</translation>
     </message>
     <message>
       <location filename="core/drawings/drawing_view.py" />
@@ -16850,8 +16850,8 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>elsewhere, the proved part</source>
-      <translation>por lo demás, la pieza comprobada</translation>
+      <source>elsewhere, the simulated part</source>
+      <translation>por lo demás, la pieza simulada</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -16860,13 +16860,13 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>of stock remains on</source>
-      <translation>de material quedan en</translation>
+      <source>of stock remains, measured on</source>
+      <translation>de material quedan, medidos en</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>proving did not produce a part, so a comparison with the drawing was not possible</source>
-      <translation>la comprobación no dio pieza, así que no se pudo comparar con el dibujo</translation>
+      <source>proving did not produce a simulated part, so a comparison with the drawing was not possible</source>
+      <translation>la comprobación no produjo una pieza simulada, así que no se pudo comparar con el dibujo</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -16875,8 +16875,8 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>the proved part</source>
-      <translation>la pieza comprobada</translation>
+      <source>the simulated part</source>
+      <translation>la pieza simulada</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -16885,8 +16885,8 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>too much is cut from</source>
-      <translation>de más se cortan en</translation>
+      <source>too much is cut, measured on</source>
+      <translation>de más se cortan, medidos en</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -16895,8 +16895,8 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>{depth} {unit} {what} the radius, {span}</source>
-      <translation>{depth} {unit} {what} el radio, {span}</translation>
+      <source>{depth} {unit} {what} the radius, from {span}</source>
+      <translation>{depth} {unit} {what} el radio, de {span}</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -17020,16 +17020,6 @@
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
-      <source>further parts are allowed</source>
-      <translation>se permiten más piezas</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
-      <source>further parts are not allowed: {why}</source>
-      <translation>no se permiten más piezas: {why}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
       <source>homing: {why}</source>
       <translation>referencia: {why}</translation>
     </message>
@@ -17047,6 +17037,16 @@
       <location filename="core/executor/command_handler.py" />
       <source>lamp test</source>
       <translation>prueba de lámparas</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
+      <source>more parts may be run</source>
+      <translation>se pueden hacer más piezas</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
+      <source>no more parts may be run: {why}</source>
+      <translation>no se pueden hacer más piezas: {why}</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -17200,8 +17200,8 @@
     </message>
     <message>
       <location filename="core/executor/drive_test_path.py" />
-      <source>the frequency of a sine must be from 0.5 to 200 Hz</source>
-      <translation>la frecuencia de un seno debe ser de 0.5 a 200 Hz</translation>
+      <source>the sine frequency must be from 0.5 to 200 Hz</source>
+      <translation>la frecuencia de la senoide debe ser de 0.5 a 200 Hz</translation>
     </message>
     <message>
       <location filename="core/executor/drive_test_path.py" />
@@ -17445,8 +17445,8 @@
     </message>
     <message>
       <location filename="core/executor/jogging.py" />
-      <source>the controller is still moving</source>
-      <translation>el controlador todavía se mueve</translation>
+      <source>the controller is still moving the axes</source>
+      <translation>el controlador aún mueve los ejes</translation>
     </message>
     <message>
       <location filename="core/executor/jogging.py" />
@@ -17790,8 +17790,8 @@
     </message>
     <message>
       <location filename="core/executor/spindle_orientation.py" />
-      <source>this machine cannot stop the spindle at an angle</source>
-      <translation>esta máquina no puede parar el husillo en un ángulo</translation>
+      <source>this machine cannot orient the spindle to an angle</source>
+      <translation>esta máquina no puede orientar el husillo a un ángulo</translation>
     </message>
     <message>
       <location filename="core/executor/standstill.py" />
@@ -17835,8 +17835,8 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
-      <source>line {line}: the spindle driver of this machine cannot stop the spindle at an angle</source>
-      <translation>línea {line}: el driver del husillo de esta máquina no puede pararlo en un ángulo</translation>
+      <source>line {line}: the spindle driver of this machine cannot orient the spindle to an angle</source>
+      <translation>línea {line}: el driver del husillo de esta máquina no puede orientar el husillo a un ángulo</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -17855,8 +17855,8 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
-      <source>no line is ready to start</source>
-      <translation>no hay ninguna línea lista para arrancar</translation>
+      <source>no MDI line is ready to start</source>
+      <translation>no hay ninguna línea MDI lista para arrancar</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -17890,8 +17890,8 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
-      <source>the collet is {is_now}, but must be {must} at line {line}: change it in MDI</source>
-      <translation>la pinza está {is_now}, pero debe estar {must} en la línea {line}: cámbiela en MDI</translation>
+      <source>the collet is {is_now}, but must be {must} at line {line}: change the collet state in MDI</source>
+      <translation>la pinza está {is_now}, pero debe estar {must} en la línea {line}: cambie el estado de la pinza en MDI</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -18075,7 +18075,7 @@
     </message>
     <message>
       <location filename="core/executor/touch_off.py" />
-      <source>a touch was detected on the return move; check the setter</source>
+      <source>a touch was detected on the return move; check the tool setter</source>
       <translation>se detectó un toque en el movimiento de regreso; revise el palpador</translation>
     </message>
     <message>
@@ -18095,7 +18095,7 @@
     </message>
     <message>
       <location filename="core/executor/touch_off.py" />
-      <source>no second touch detected; check whether the tool or the setter is loose</source>
+      <source>no second touch detected; check whether the tool or the tool setter is loose</source>
       <translation>no se detectó el segundo toque; vea si está floja la herramienta o el palpador</translation>
     </message>
     <message>
@@ -18105,7 +18105,7 @@
     </message>
     <message>
       <location filename="core/executor/touch_off.py" />
-      <source>the axis moved {distance} past the touch point, which is more than the overtravel setting; check the setter</source>
+      <source>the axis moved {distance} past the touch point, which is more than the overtravel setting; check the tool setter</source>
       <translation>el eje pasó {distance} del punto de toque, más que el valor de overtravel; revise el palpador</translation>
     </message>
     <message>
@@ -18120,7 +18120,7 @@
     </message>
     <message>
       <location filename="core/executor/touch_off.py" />
-      <source>the probe input is already on; check whether the setter is touched or its cable is damaged</source>
+      <source>the probe input is already on; check whether the tool setter is touched or its cable is damaged</source>
       <translation>la entrada probe ya está activa; vea si el palpador está tocado o su cable está dañado</translation>
     </message>
     <message>
@@ -18285,8 +18285,8 @@
     </message>
     <message>
       <location filename="core/geometry/rotation_frames.py" />
-      <source>the three points are on one line</source>
-      <translation>los tres puntos están en una línea</translation>
+      <source>the three points are on one straight line</source>
+      <translation>los tres puntos están en una recta</translation>
     </message>
     <message>
       <location filename="core/geometry/rotation_frames.py" />
@@ -18970,8 +18970,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
-      <source>Write Z+0, and enter the surface in Q203.</source>
-      <translation>Escriba Z+0 e indique la superficie en Q203.</translation>
+      <source>Write Z+0, and enter the surface coordinate in Q203.</source>
+      <translation>Escriba Z+0 e indique la coordenada de la superficie en Q203.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -19125,8 +19125,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
-      <source>Cycle 204 moves through the hole with the spindle stopped at an angle, but {unoriented}.</source>
-      <translation>El ciclo 204 pasa por el agujero con el husillo parado en un ángulo, pero {unoriented}.</translation>
+      <source>Cycle 204 moves through the hole with the spindle oriented, but {unoriented}.</source>
+      <translation>El ciclo 204 pasa por el agujero con el husillo orientado, pero {unoriented}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
@@ -19160,6 +19160,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/hole_cycles.py" />
+      <source>Q249 = {depth} mm is negative, so the tool would move away from the part.</source>
+      <translation>Q249 = {depth} mm es negativo, así que la herramienta se alejaría de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/hole_cycles.py" />
       <source>Q426 must be 3, 4 or 5.</source>
       <translation>Q426 debe ser 3, 4 o 5.</translation>
     </message>
@@ -19187,11 +19192,6 @@
       <location filename="core/interpreter/klartext/hole_cycles.py" />
       <source>The tool, infeed or feed rate of cycle 208 is not valid for the hole.</source>
       <translation>La herramienta, la profundización o el avance del ciclo 208 no es válido para el agujero.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/hole_cycles.py" />
-      <source>With Q249={depth} mm, the cycle would bore away from the part.</source>
-      <translation>Con Q249={depth} mm, el ciclo mandrinaría alejándose de la pieza.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
@@ -20165,8 +20165,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
-      <source>The thread would need {revolutions} turns, which is too many.</source>
-      <translation>La rosca necesitaría {revolutions} vueltas, que son demasiadas.</translation>
+      <source>The thread would need {revolutions} helical turns, which is too many.</source>
+      <translation>La rosca necesitaría {revolutions} vueltas helicoidales, que son demasiadas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
@@ -20405,8 +20405,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>Turn C farther, or raise F; otherwise the axes stop before the end point.</source>
-      <translation>Gire más C, o suba F; si no, los ejes se paran antes del punto final.</translation>
+      <source>Turn C farther, or increase F; otherwise the axes stop before the end point.</source>
+      <translation>Gire más C, o aumente F; si no, los ejes se paran antes del punto final.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/c_axis.py" />
@@ -20455,8 +20455,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
-      <source>A corner needs two straight moves in a row.</source>
-      <translation>Una esquina necesita dos rectas seguidas.</translation>
+      <source>A chamfer or corner radius needs two consecutive straight moves.</source>
+      <translation>Un chaflán o radio de esquina necesita dos rectas seguidas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
@@ -20635,8 +20635,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/drilling_cycles.py" />
-      <source>R is the Z to which the drill retracts out of the hole.</source>
-      <translation>R es la Z a la que la broca se retira del agujero.</translation>
+      <source>R is the Z position to which the drill retracts from the hole.</source>
+      <translation>R es la posición Z a la que la broca se retira del agujero.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/drilling_cycles.py" />
@@ -20740,13 +20740,13 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/feeds.py" />
-      <source>a feed per revolution</source>
-      <translation>un avance por vuelta</translation>
+      <source>constant surface speed</source>
+      <translation>velocidad superficial constante</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/feeds.py" />
-      <source>constant surface speed</source>
-      <translation>velocidad superficial constante</translation>
+      <source>feed per revolution</source>
+      <translation>avance por vuelta</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/follow_ups.py" />
@@ -20810,6 +20810,11 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
+      <source>Subroutine {inside} has no M99 before this line.</source>
+      <translation>La subrutina {inside} no tiene M99 antes de esta línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
       <source>Subroutine {inside} has no M99.</source>
       <translation>La subrutina {inside} no tiene M99.</translation>
     </message>
@@ -20820,13 +20825,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Subroutine {number} is called, but }}{number2} is missing.</source>
-      <translation>Se llama la subrutina {number}, pero falta }}{number2}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Subroutine }}{inside} has no M99 before this line.</source>
-      <translation>La subrutina }}{inside} no tiene M99 antes de esta línea.</translation>
+      <source>Subroutine {number} is called, but the program does not contain }}{number2}.</source>
+      <translation>Se llama la subrutina {number}, pero el programa no contiene }}{number2}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
@@ -20845,8 +20845,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
-      <source>Write M30 at the end of the program, or delete the line.</source>
-      <translation>Escriba M30 al final del programa o borre la línea.</translation>
+      <source>Write M30 at the end of the program, or delete this line.</source>
+      <translation>Escriba M30 al final del programa o borre esta línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/loops_and_subroutines.py" />
@@ -20870,8 +20870,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/m_codes.py" />
-      <source>Assign an output to the code in the machine file.</source>
-      <translation>Asigne una salida al código en el archivo de máquina.</translation>
+      <source>In the machine file, assign an output to this M code.</source>
+      <translation>En el archivo de máquina, asigne una salida a este código M.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/m_codes.py" />
@@ -20955,8 +20955,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>Plane switching is not allowed while G{state} is active.</source>
-      <translation>El cambio de plano no está permitido con G{state} activo.</translation>
+      <source>Plane switching with (~PLXC) or (~PLZC) is not allowed while G{state} is active.</source>
+      <translation>El cambio de plano con (~PLXC) o (~PLZC) no está permitido con G{state} activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
@@ -21200,8 +21200,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>Plane switching on line {plane} has no (END).</source>
-      <translation>El cambio de plano de la línea {plane} no tiene (END).</translation>
+      <source>Plane switching that begins on line {plane} has no (END).</source>
+      <translation>El cambio de plano que empieza en la línea {plane} no tiene (END).</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
@@ -21435,8 +21435,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Z{z} is past the center; Z is the diameter at the tool tip.</source>
-      <translation>Z{z} está más allá del centro; Z es el diámetro en la punta de la herramienta.</translation>
+      <source>Z{z} is past the spindle centerline; Z is the diameter at the tool tip.</source>
+      <translation>Z{z} está más allá del eje de giro del husillo; Z es el diámetro en la punta de la herramienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/program_size.py" />
@@ -21545,12 +21545,12 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>U must be less than the distance from the start point to X.</source>
-      <translation>U debe ser menor que la distancia del punto de inicio a X.</translation>
+      <source>U must be less than the distance in X from the start point to the programmed X.</source>
+      <translation>U debe ser menor que la distancia en X del punto de inicio a la X programada.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>With {text}, no material remains to be cut in the box.</source>
+      <source>With {text}, no material remains for the box cycle to cut.</source>
       <translation>Con {text}, no queda material por cortar en la caja.</translation>
     </message>
     <message>
@@ -21665,8 +21665,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>The run-up is {run_up}, but the Z axis needs {needed} to reach the speed for the lead.</source>
-      <translation>La carrera de arranque es {run_up}, pero el eje Z necesita {needed} para llegar a la velocidad del paso.</translation>
+      <source>The acceleration distance is {run_up}, but the Z axis needs {needed} to reach the threading feed rate.</source>
+      <translation>La distancia de aceleración es {run_up}, pero el eje Z necesita {needed} para alcanzar el avance de roscado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
@@ -21765,8 +21765,8 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/loop_passes.py" />
-      <source>Line {line} is executed only {blocks_count} times, so pass {number} does not exist.</source>
-      <translation>La línea {line} se ejecuta sólo {blocks_count} veces, así que la pasada {number} no existe.</translation>
+      <source>Line {line} is executed only {blocks_count} times, so execution {number} does not exist.</source>
+      <translation>La línea {line} se ejecuta sólo {blocks_count} veces, así que la ejecución {number} no existe.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/loop_passes.py" />
@@ -21925,8 +21925,8 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
-      <source>Plane switching is active at line {line}.</source>
-      <translation>El cambio de plano está activo en la línea {line}.</translation>
+      <source>Plane switching with (~PLXC) or (~PLZC) is active at line {line}.</source>
+      <translation>El cambio de plano con (~PLXC) o (~PLZC) está activo en la línea {line}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
@@ -22405,8 +22405,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/fixed_points.py" />
-      <source>{word} has no effect with G75: the axis goes to machine position {end} mm.</source>
-      <translation>{word} no tiene efecto con G75: el eje va a la posición de máquina {end} mm.</translation>
+      <source>{word} has no effect with G75: the axis moves to machine position {end} mm.</source>
+      <translation>{word} no tiene efecto con G75: el eje se mueve a la posición de máquina {end} mm.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/fixed_points.py" />
@@ -23580,7 +23580,7 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>{word} is relative to a spindle angle, but the spindle is not positioned at any angle.</source>
+      <source>{word} is relative to a spindle angle, but the spindle has not been positioned at an angle.</source>
       <translation>{word} es relativo a un ángulo del husillo, pero el husillo no está posicionado en ningún ángulo.</translation>
     </message>
     <message>
@@ -23675,11 +23675,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/stock_removal.py" />
-      <source>{name} does not leave any material to cut</source>
-      <translation>{name} no deja material por cortar</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/stock_removal.py" />
       <source>{name} has {contour_count} elements; the maximum is {most_elements}</source>
       <translation>{name} tiene {contour_count} elementos; el máximo es {most_elements}</translation>
     </message>
@@ -23715,8 +23710,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/stock_removal.py" />
-      <source>{name} specifies a contour that blocks the tool path to the contour ends</source>
-      <translation>{name} indica un contorno que obstruye la trayectoria de la herramienta a los extremos del contorno</translation>
+      <source>{name} specifies a contour that the tool cannot approach or leave with enough clearance</source>
+      <translation>{name} indica un contorno al que la herramienta no puede acercarse, o del que no puede salir, con holgura suficiente</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/stock_removal.py" />
+      <source>{name} specifies a contour with no material to cut</source>
+      <translation>{name} indica un contorno sin material por cortar</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/stock_removal.py" />
@@ -23740,8 +23740,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
-      <source>Put the whole section to repeat before or after this block.</source>
-      <translation>Ponga toda la parte a repetir antes o después de este bloque.</translation>
+      <source>Put the whole section to be repeated before or after this block.</source>
+      <translation>Ponga toda la sección que se repite antes o después de este bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
@@ -23770,8 +23770,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
-      <source>the program section to repeat contains the {steering} block or does not end before that block.</source>
-      <translation>la parte del programa a repetir contiene el bloque de {steering} o no termina antes de ese bloque.</translation>
+      <source>the program section to be repeated contains the {steering} block or does not end before that block.</source>
+      <translation>la sección del programa que se repite contiene el bloque de {steering} o no termina antes de ese bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
@@ -23780,8 +23780,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
-      <source>Enter 0; otherwise, enter 4 after M3 or 3 after M4.</source>
-      <translation>Indique 0; si no, indique 4 tras M3 o 3 tras M4.</translation>
+      <source>Enter 0, or enter 4 after M3 or 3 after M4.</source>
+      <translation>Indique 0, o indique 4 tras M3 o 3 tras M4.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
@@ -23835,8 +23835,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
-      <source>{call}: {name} is {value} rpm, but the maximum for C is {maximum} rpm, so C taps at that speed.</source>
-      <translation>{call}: {name} es {value} rpm, pero el máximo de C es {maximum} rpm, así que C rosca a esa velocidad.</translation>
+      <source>{call}: {name} is {value} rpm, but C taps at its maximum speed, {maximum} rpm.</source>
+      <translation>{call}: {name} es {value} rpm, pero C rosca a su velocidad máxima, {maximum} rpm.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
@@ -23870,8 +23870,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
-      <source>{name} does not reverse the tap</source>
-      <translation>{name} no invierte el giro del macho</translation>
+      <source>{name} does not reverse the spindle for the tap</source>
+      <translation>{name} no invierte el husillo para el macho</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
@@ -23910,8 +23910,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_chain_cycle.py" />
-      <source>{name} does not continue along Z</source>
-      <translation>{name} no continúa a lo largo de Z</translation>
+      <source>{name} does not continue in the same Z direction</source>
+      <translation>{name} no continúa en la misma dirección Z</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
@@ -23970,8 +23970,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
-      <source>{name} is the same as the start of the thread</source>
-      <translation>{name} es igual al inicio de la rosca</translation>
+      <source>{name} is the same position as the start of the thread</source>
+      <translation>{name} es la misma posición que el inicio de la rosca</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
@@ -23995,8 +23995,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_moves.py" />
-      <source>End the chain with G0.</source>
-      <translation>Termine la cadena con G0.</translation>
+      <source>End the thread chain with G0.</source>
+      <translation>Termine la cadena de roscas con G0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_moves.py" />
@@ -24240,8 +24240,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformations.py" />
-      <source>{word}: the spindle is turning, but it must be locked as C.</source>
-      <translation>{word}: el husillo está girando, pero debe estar bloqueado como C.</translation>
+      <source>{word}: the spindle is turning, but it must be locked as the C axis.</source>
+      <translation>{word}: el husillo está girando, pero debe estar bloqueado como eje C.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformed_plane.py" />
@@ -24535,8 +24535,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/contour_blocks.py" />
-      <source>A contour with its own depth</source>
-      <translation>Un contorno con su propia profundidad</translation>
+      <source>A contour with a separate depth</source>
+      <translation>Un contorno con una profundidad aparte</translation>
     </message>
     <message>
       <location filename="core/language/klartext/contour_blocks.py" />
@@ -25025,8 +25025,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Drills at the points where tool Q13 plunges in cycle 22.</source>
-      <translation>Taladra en los puntos donde la herramienta Q13 baja en el ciclo 22.</translation>
+      <source>Drills at the points where the tool with the number Q13 plunges in cycle 22.</source>
+      <translation>Taladra en los puntos donde la herramienta con el número Q13 baja en el ciclo 22.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
@@ -25120,8 +25120,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>its own depth</source>
-      <translation>su propia profundidad</translation>
+      <source>a separate depth</source>
+      <translation>una profundidad aparte</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
@@ -25440,8 +25440,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Bores from below: with the spindle at angle Q336, the tool goes through the hole, offset from the center by Q251.</source>
-      <translation>Mandrina desde abajo: con el husillo en el ángulo Q336, la herramienta atraviesa el agujero, a Q251 del centro.</translation>
+      <source>Back boring: with the spindle at angle Q336, the tool enters the hole offset from the center by Q251, then bores from below.</source>
+      <translation>Mandrinado inverso: con el husillo en el ángulo Q336, la herramienta entra en el agujero desplazada Q251 del centro y después mandrina desde abajo.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
@@ -25820,8 +25820,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Reads cells of a row into Q5, Q6, ...</source>
-      <translation>Lee celdas de una fila en Q5, Q6, ...</translation>
+      <source>Reads cells of a table row into Q5, Q6, ...</source>
+      <translation>Lee celdas de una fila de la tabla en Q5, Q6, ...</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_text_book.py" />
@@ -25845,8 +25845,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Waits for the blocks that are read ahead. TurnDesk does not need this wait and reports the block.</source>
-      <translation>Espera a los bloques leídos por adelantado. TurnDesk no necesita esta espera y avisa del bloque.</translation>
+      <source>Stops the look-ahead until all earlier blocks have run. TurnDesk does not need this wait and reports the block.</source>
+      <translation>Detiene la lectura anticipada hasta que se hayan ejecutado todos los bloques anteriores. TurnDesk no necesita esta espera y avisa del bloque.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_text_book.py" />
@@ -25885,8 +25885,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/line_cursor.py" />
-      <source>Feed programmed as a time for the move (FT, FMAXT)</source>
-      <translation>El avance programado como tiempo del movimiento (FT, FMAXT)</translation>
+      <source>Feed specified by travel time (FT, FMAXT)</source>
+      <translation>El avance especificado por el tiempo de recorrido (FT, FMAXT)</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line_cursor.py" />
@@ -26095,8 +26095,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/path_block.py" />
-      <source>{form} accepts only a size and a feed</source>
-      <translation>{form} acepta sólo un tamaño y un avance</translation>
+      <source>{form} accepts only a radius or length, and a feed rate</source>
+      <translation>{form} acepta sólo un radio o una longitud, y un avance</translation>
     </message>
     <message>
       <location filename="core/language/klartext/path_block.py" />
@@ -26585,8 +26585,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>Use only R or D, L, DIST, RI or DI.</source>
-      <translation>Use sólo R o D, L, DIST, RI o DI.</translation>
+      <source>Use only R (or D), L, DIST and RI (or DI).</source>
+      <translation>Use sólo R (o D), L, DIST y RI (o DI).</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -26760,8 +26760,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/foreign_program.py" />
-      <source>Rewrite the program with the codes of this control; each finding below names the code to use.</source>
-      <translation>Reescriba el programa con los códigos de este control; cada aviso siguiente indica el código que debe usar.</translation>
+      <source>Rewrite the program with the codes of this control; each message below names the code to use.</source>
+      <translation>Reescriba el programa con los códigos de este control; cada mensaje siguiente indica el código que debe usar.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/foreign_program.py" />
@@ -26805,11 +26805,6 @@
     </message>
     <message>
       <location filename="core/language/omniturn/intended_code.py" />
-      <source>LinuxCNC codes G7 and G8 are G72 (diameters) and G73 (radii) on this control.</source>
-      <translation>Los códigos G7 y G8 de LinuxCNC son G72 (diámetros) y G73 (radios) en este control.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/intended_code.py" />
       <source>M98 has no repeat count.</source>
       <translation>M98 no tiene número de repeticiones.</translation>
     </message>
@@ -26820,8 +26815,13 @@
     </message>
     <message>
       <location filename="core/language/omniturn/intended_code.py" />
-      <source>On this control, G72 selects diameters; G75 roughs to a contour.</source>
-      <translation>En este control, G72 selecciona diámetros; G75 desbasta hasta un contorno.</translation>
+      <source>On this control, G72 (diameter programming) and G73 (radius programming) replace the LinuxCNC codes G7 and G8.</source>
+      <translation>En este control, G72 (programación en diámetro) y G73 (programación en radio) sustituyen a los códigos G7 y G8 de LinuxCNC.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>On this control, G72 selects diameter programming; G75 roughs to a contour.</source>
+      <translation>En este control, G72 selecciona la programación en diámetro; G75 desbasta hasta un contorno.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/intended_code.py" />
@@ -27025,8 +27025,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>On this control, a cycle acts only on its own line and needs no cancel code.</source>
-      <translation>En este control, un ciclo actúa sólo en su propia línea y no necesita código de cancelación.</translation>
+      <source>On this control, a cycle is active only on its own line and does not need a cancel code.</source>
+      <translation>En este control, un ciclo está activo sólo en su propia línea y no necesita código de cancelación.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -27220,8 +27220,13 @@
     </message>
     <message>
       <location filename="core/language/omniturn/plane_switching_lines.py" />
-      <source>'{value}' is not allowed in a plane switching statement.</source>
-      <translation>'{value}' no se permite en una instrucción de cambio de plano.</translation>
+      <source>'{value}' is not allowed in a statement between (~PLXC) or (~PLZC) and (END).</source>
+      <translation>'{value}' no se permite en una instrucción entre (~PLXC) o (~PLZC) y (END).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/plane_switching_lines.py" />
+      <source>Between (~PLXC) or (~PLZC) and (END), an arc can move only X and Y.</source>
+      <translation>Entre (~PLXC) o (~PLZC) y (END), un arco sólo puede mover X e Y.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane_switching_lines.py" />
@@ -27242,11 +27247,6 @@
       <location filename="core/language/omniturn/plane_switching_lines.py" />
       <source>This line is not a statement in parentheses.</source>
       <translation>Esta línea no es una instrucción entre paréntesis.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/plane_switching_lines.py" />
-      <source>With plane switching active, an arc can move only X and Y.</source>
-      <translation>Con el cambio de plano activo, un arco sólo puede mover X y Y.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane_switching_lines.py" />
@@ -27280,8 +27280,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/plane_switching_lines.py" />
-      <source>{word} is not allowed in plane switching.</source>
-      <translation>{word} no se permite en el cambio de plano.</translation>
+      <source>{word} is not allowed between (~PLXC) or (~PLZC) and (END).</source>
+      <translation>{word} no se permite entre (~PLXC) o (~PLZC) y (END).</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane_switching_lines.py" />
@@ -27290,8 +27290,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/plane_switching_lines.py" />
-      <source>{word}: the only G codes allowed in plane switching are G02 and G03.</source>
-      <translation>{word}: los únicos códigos G permitidos en el cambio de plano son G02 y G03.</translation>
+      <source>{word}: between (~PLXC) or (~PLZC) and (END), the only G codes allowed are G02 and G03.</source>
+      <translation>{word}: entre (~PLXC) o (~PLZC) y (END), los únicos códigos G permitidos son G02 y G03.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -27845,21 +27845,6 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>lead of the first section</source>
-      <translation>paso del primer tramo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>lead of the second section</source>
-      <translation>paso del segundo tramo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>lead of the third section</source>
-      <translation>paso del tercer tramo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
       <source>number of roughing passes</source>
       <translation>número de pasadas de desbaste</translation>
     </message>
@@ -27980,6 +27965,21 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>thread lead in the first section</source>
+      <translation>paso de rosca en el primer tramo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>thread lead in the second section</source>
+      <translation>paso de rosca en el segundo tramo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
+      <source>thread lead in the third section</source>
+      <translation>paso de rosca en el tercer tramo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/cycle_words.py" />
       <source>undercut form, specified by a letter</source>
       <translation>forma de la entalla, indicada con una letra</translation>
     </message>
@@ -28065,13 +28065,13 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/iso_words.py" />
-      <source>{match}: on this control, use {word} for incremental moves; this lathe has no {word2} axis.</source>
-      <translation>{match}: en este control, use {word} para los movimientos incrementales; este torno no tiene eje {word2}.</translation>
+      <source>{match}: on this control, the corner is programmed with {word}.</source>
+      <translation>{match}: en este control, la esquina se programa con {word}.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/iso_words.py" />
-      <source>{match}: on this control, {word} programs the corner.</source>
-      <translation>{match}: en este control, {word} programa la esquina.</translation>
+      <source>{match}: on this control, use {word} for incremental moves; this lathe has no {word2} axis.</source>
+      <translation>{match}: en este control, use {word} para los movimientos incrementales; este torno no tiene eje {word2}.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/iso_words.py" />
@@ -28350,13 +28350,13 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>this control does not support this word</source>
-      <translation>este control no admite esta palabra</translation>
+      <source>this control does not support axis-specific words</source>
+      <translation>este control no admite palabras específicas de un eje</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>this control does not support words for a single axis</source>
-      <translation>este control no admite palabras para un solo eje</translation>
+      <source>this control does not support this word</source>
+      <translation>este control no admite esta palabra</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -28665,8 +28665,8 @@
     </message>
     <message>
       <location filename="core/motion/motion_plan.py" />
-      <source>A speed of {braked} mm/s is too high for the rest of the path, which allows {hard} mm/s. Plan from a position and speed on this path.</source>
-      <translation>Una velocidad de {braked} mm/s es demasiada para el resto de la trayectoria, que permite {hard} mm/s. Planifique desde una posición y una velocidad de esta trayectoria.</translation>
+      <source>A speed of {braked} mm/s is too high for the rest of the path, which allows {hard} mm/s. Plan from a position and a speed that are valid for this path.</source>
+      <translation>Una velocidad de {braked} mm/s es demasiada para el resto de la trayectoria, que permite {hard} mm/s. Planifique desde una posición y una velocidad válidas para esta trayectoria.</translation>
     </message>
     <message>
       <location filename="core/motion/motion_plan.py" />
@@ -28920,23 +28920,18 @@
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
-      <source>A thread is cut</source>
-      <translation>Se corta una rosca</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>A tool feeds</source>
-      <translation>Una herramienta avanza</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
       <source>After this rapid alongside the part, the tool retracts without cutting.</source>
       <translation>Después de este rápido junto a la pieza, la herramienta se retira sin cortar.</translation>
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
-      <source>This move and the next one feed away from the part and cut nothing.</source>
-      <translation>Este movimiento y el siguiente avanzan alejándose de la pieza y no cortan nada.</translation>
+      <source>Feed moves</source>
+      <translation>Los movimientos de avance</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
+      <source>This move and the next move feed away from the part and cut nothing.</source>
+      <translation>Este movimiento y el movimiento siguiente avanzan alejándose de la pieza y no cortan nada.</translation>
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
@@ -28960,13 +28955,18 @@
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
+      <source>Threading moves</source>
+      <translation>Los movimientos de roscado</translation>
+    </message>
+    <message>
+      <location filename="core/proving/air_checks.py" />
       <source>Tools have fed through air for {long_air} s up to this move.</source>
       <translation>Las herramientas han avanzado en el aire durante {long_air} s hasta este movimiento.</translation>
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
-      <source>{what} only in air between two rapids.</source>
-      <translation>{what} sólo en el aire entre dos rápidos.</translation>
+      <source>{what} between two rapids cut only air.</source>
+      <translation>{what} entre dos rápidos solo cortan aire.</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
@@ -29065,18 +29065,18 @@
     </message>
     <message>
       <location filename="core/proving/cut_sizes.py" />
-      <source>{name} feeds {value}, too much for a diameter of {diameter}.</source>
-      <translation>{name} avanza {value}, demasiado para un diámetro de {diameter}.</translation>
+      <source>{name} feeds at {value}, which is too high for a cutting edge {width} wide.</source>
+      <translation>{name} avanza a {value}, demasiado para un filo de {width} de ancho.</translation>
     </message>
     <message>
       <location filename="core/proving/cut_sizes.py" />
-      <source>{name} feeds {value}, too much for a nose radius of {nose_radius}.</source>
-      <translation>{name} avanza {value}, demasiado para un radio de punta de {nose_radius}.</translation>
+      <source>{name} feeds at {value}, which is too high for a diameter of {diameter}.</source>
+      <translation>{name} avanza a {value}, demasiado para un diámetro de {diameter}.</translation>
     </message>
     <message>
       <location filename="core/proving/cut_sizes.py" />
-      <source>{name} feeds {value}, too much for an edge {width} wide.</source>
-      <translation>{name} avanza {value}, demasiado para un filo de {width} de ancho.</translation>
+      <source>{name} feeds at {value}, which is too high for a nose radius of {nose_radius}.</source>
+      <translation>{name} avanza a {value}, demasiado para un radio de punta de {nose_radius}.</translation>
     </message>
     <message>
       <location filename="core/proving/cut_sizes.py" />
@@ -29375,8 +29375,33 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A cutting move is programmed after M13. This is only a warning if a feed move does not go straight away from the spindle as in a bar pull, or if the next cycle would start with the collet open.</source>
+      <translation>Se programa un movimiento de corte tras M13. Es solo un aviso si un avance no se aleja en línea recta del husillo como al jalar la barra, o si el ciclo siguiente empezaría con la pinza abierta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A cutting move is programmed before the first T or after T0. This is only a warning if the program never calls a tool.</source>
+      <translation>Se programa un movimiento de corte antes de la primera T o tras T0. Es solo un aviso si el programa no llama ninguna herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A cutting move is programmed with no tool active.</source>
+      <translation>Se programa un movimiento de corte sin herramienta activa.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A cutting move is programmed with plane switching active, but no live tool is running. If the spindle is locked as the C axis, this is only a warning.</source>
       <translation>Se programa un movimiento de corte con el cambio de plano activo, pero no hay ninguna herramienta motorizada en marcha. Si el husillo está bloqueado como eje C, es solo un aviso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A cutting move is programmed with the collet open.</source>
+      <translation>Se programa un movimiento de corte con la pinza abierta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A cutting move is programmed with the spindle stopped.</source>
+      <translation>Se programa un movimiento de corte con el husillo parado.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29390,13 +29415,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A drill, center drill, reamer or tap cuts under G96 without an active speed limit, so the spindle runs at its maximum speed.</source>
-      <translation>Una broca, una broca de centrar, un escariador o un macho corta bajo G96 sin límite de velocidad activo, así que el husillo gira a su velocidad máxima.</translation>
+      <source>A drill, center drill, reamer or tap cuts at a distance of more than .004 in from the spindle centerline while the spindle turns.</source>
+      <translation>Una broca, una broca de centrar, un escariador o un macho corta a una distancia de más de .004 in de la línea de centro del husillo mientras el husillo gira.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A drill, center drill, reamer or tap removes material more than .004 in from the spindle centerline while the spindle turns.</source>
-      <translation>Una broca, una broca de centrar, un escariador o un macho arranca material a más de .004 in de la línea de centro del husillo mientras el husillo gira.</translation>
+      <source>A drill, center drill, reamer or tap cuts under G96 without an active speed limit, so the spindle runs at its maximum speed.</source>
+      <translation>Una broca, una broca de centrar, un escariador o un macho corta bajo G96 sin límite de velocidad activo, así que el husillo gira a su velocidad máxima.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29405,8 +29430,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A drill, reamer, mill, turning tool or parting blade cuts more than .001 in of material while no live tool is on and the spindle is stopped or clamped as the C axis after it has turned. Not checked where the machine file has no M code for a live tool.</source>
-      <translation>Una broca, un escariador, una fresa, una herramienta de torneado o una cuchilla de tronzar corta más de .001 in de material mientras no hay ninguna herramienta motorizada encendida y el husillo está parado o sujeto como eje C después de haber girado. No se comprueba si el archivo de máquina no tiene código M para una herramienta motorizada.</translation>
+      <source>A drill, reamer, mill, turning tool or parting blade cuts more than .001 in of material while no live tool is on and the spindle is stopped, or clamped as the C axis after it has turned. Not checked if the machine file has no M code for a live tool.</source>
+      <translation>Una broca, un escariador, una fresa, una herramienta de torneado o una cuchilla de tronzar corta más de .001 in de material mientras no hay ninguna herramienta motorizada encendida y el husillo está parado, o sujeto como eje C después de haber girado. No se comprueba si el archivo de máquina no tiene código M para una herramienta motorizada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29420,8 +29445,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A feed move goes away from the part, or out past the part face; the feed moves between two rapids, or all feed moves of a live tool, never come near material; a rapid moves in and out alongside the part without a cut; a tool that reaches the part never feeds; or a drill feeds into an existing hole.</source>
-      <translation>Un avance se aleja de la pieza, o sale más allá de su cara; los avances entre dos rápidos, o todos los de una herramienta motorizada, nunca se acercan al material; un rápido entra y sale junto a la pieza sin ningún corte; una herramienta que llega a la pieza nunca avanza; o una broca avanza en un agujero ya existente.</translation>
+      <source>A feed move goes away from the part, or out past the part face; no feed move between two rapids, or no feed move of a live tool, comes near material; the tool moves in and out alongside the part in rapid without a cut; a tool that reaches the part never feeds; or a drill feeds into an existing hole.</source>
+      <translation>Un avance se aleja de la pieza, o sale más allá de su cara; ningún avance entre dos rápidos, o ningún avance de una herramienta motorizada, se acerca al material; la herramienta entra y sale en rápido junto a la pieza sin ningún corte; una herramienta que llega a la pieza nunca avanza; o una broca avanza en un agujero ya existente.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29445,33 +29470,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A move cuts after M13. The finding is only a warning if a feed move does not go straight away from the spindle as in a bar pull, or if the next cycle would start with the collet open.</source>
-      <translation>Un movimiento corta tras M13. El hallazgo es solo un aviso si un avance no se aleja en línea recta del husillo como al jalar la barra, o si el ciclo siguiente empezaría con la pinza abierta.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>A move cuts before the first T or after T0. The finding is only a warning if the program never calls a tool.</source>
-      <translation>Un movimiento corta antes de la primera T o tras T0. El hallazgo es solo un aviso si el programa no llama ninguna herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>A move cuts with no tool active.</source>
-      <translation>Un movimiento corta sin herramienta activa.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>A move cuts with the collet open.</source>
-      <translation>Un movimiento corta con la pinza abierta.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>A move cuts with the spindle stopped.</source>
-      <translation>Un movimiento corta con el husillo parado.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>A move feeds per minute after M05 with no live tool running. With feed per revolution, G33 or G96, the finding is an error.</source>
-      <translation>Un movimiento avanza por minuto tras M05 sin herramienta motorizada en marcha. Con avance por vuelta, G33 o G96, el hallazgo es un error.</translation>
+      <source>A move in feed per minute is programmed after M05 with no live tool running. With feed per revolution, G33 or G96, this is an error.</source>
+      <translation>Se programa un movimiento con avance por minuto tras M05 sin herramienta motorizada en marcha. Con avance por vuelta, G33 o G96, esto es un error.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29482,11 +29482,6 @@
       <location filename="core/proving/part_checks.py" />
       <source>A parting tool stops just short of the spindle centerline.</source>
       <translation>Una herramienta de tronzar se detiene justo antes de la línea de centro del husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>A quarter circle with a radius of up to .118 in starts along Z at the face and ends away from the axis.</source>
-      <translation>Un cuarto de círculo de radio hasta .118 in empieza a lo largo de Z en la cara y termina alejándose del eje.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29520,8 +29515,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A thread starts before the Z axis has reached the speed for its lead, or ends while the axis decelerates.</source>
-      <translation>Una rosca empieza antes de que el eje Z tenga la velocidad de su paso, o termina mientras el eje frena.</translation>
+      <source>A thread starts before the Z axis has reached the speed required for the lead, or ends while the axis decelerates.</source>
+      <translation>Una rosca empieza antes de que el eje Z alcance la velocidad que requiere el paso, o termina mientras el eje frena.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29575,6 +29570,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>An arc of 90° with a radius of up to .118 in starts in the Z direction at the part face and ends in the X direction, away from the spindle centerline.</source>
+      <translation>Un arco de 90° de radio hasta .118 in empieza en dirección Z en la cara de la pieza y termina en dirección X, alejándose del centro del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>An arc of more than 200° cuts material. Not checked for a round insert.</source>
       <translation>Un arco de más de 200° corta material. No se comprueba con una plaquita redonda.</translation>
     </message>
@@ -29625,8 +29625,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Check X and Z of the thread, and whether X is a diameter.</source>
-      <translation>Compruebe X y Z de la rosca, y si X es un diámetro.</translation>
+      <source>Check X and Z of the thread, and check whether X is a diameter.</source>
+      <translation>Compruebe X y Z de la rosca, y compruebe si X es un diámetro.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29660,8 +29660,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Check the stock, and whether X is a radius or a diameter.</source>
-      <translation>Compruebe el material en bruto, y si X es un radio o un diámetro.</translation>
+      <source>Check the stock size, and check whether X is a radius or a diameter.</source>
+      <translation>Compruebe la medida del material en bruto, y compruebe si X es un radio o un diámetro.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29695,8 +29695,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>During a feed, the non-cutting outline of a tool overlaps material by more than .001 in.</source>
-      <translation>En avance, el perfil no cortante de una herramienta solapa el material en más de .001 in.</translation>
+      <source>During a feed move, the non-cutting part of a tool outline overlaps material by more than .001 in.</source>
+      <translation>Durante un avance, la parte no cortante del perfil de una herramienta solapa el material en más de .001 in.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29750,8 +29750,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>M04 is used with a right-hand drill, reamer or tap, or M03 with a left-hand one; M04 is used with an upright turning or boring tool in front of the axis; or one edge cuts in both spindle directions.</source>
-      <translation>Se usa M04 con una broca, un escariador o un macho a derechas, o M03 con uno a izquierdas; se usa M04 con una herramienta de tornear o mandrinar montada derecha delante del eje; o un filo corta en ambos sentidos de giro.</translation>
+      <source>M04 is used with a right-hand drill, reamer or tap, or M03 with a left-hand drill, reamer or tap; M04 is used with a turning or boring tool mounted upright in front of the spindle centerline; or the same cutting edge is used in both spindle directions.</source>
+      <translation>Se usa M04 con una broca, un escariador o un macho a derechas, o M03 con uno a izquierdas; se usa M04 con una herramienta de tornear o mandrinar montada derecha delante del centro del husillo; o el mismo filo se usa en ambos sentidos de giro.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29815,13 +29815,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>Some lines of the program are not reached during proving.</source>
+      <translation>Al comprobar el programa no se llega a algunas líneas.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Start at the diameter of the first pass; check X at the start of the thread.</source>
       <translation>Empiece en el diámetro de la primera pasada; compruebe la X al inicio de la rosca.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Start farther away, lower S, end in a groove, or pull out while the tool moves along Z.</source>
-      <translation>Empiece más lejos, baje S, termine en una ranura o salga mientras la herramienta avanza en Z.</translation>
+      <source>Start farther from the material, lower S, end in a groove, or pull out while the tool moves along Z.</source>
+      <translation>Empiece más lejos del material, baje S, termine en una ranura o salga mientras la herramienta avanza en Z.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29915,8 +29920,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The hole is deeper than the cutting length of the drill. If no cutting length is defined, the proof reports this.</source>
-      <translation>El agujero es más profundo que la longitud de corte de la broca. Si no hay longitud de corte definida, la comprobación lo indica.</translation>
+      <source>The hole is deeper than the cutting length of the drill. A drill without a defined cutting length is reported.</source>
+      <translation>El agujero es más profundo que la longitud de corte de la broca. Se avisa si una broca no tiene longitud de corte definida.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29935,8 +29940,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The non-cutting outline of a tool overlaps material by more than .001 in.</source>
-      <translation>El perfil no cortante de una herramienta solapa el material en más de .001 in.</translation>
+      <source>The non-cutting part of a tool outline overlaps material by more than .001 in.</source>
+      <translation>La parte no cortante del perfil de una herramienta solapa el material en más de .001 in.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29970,16 +29975,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The proof does not reach some lines of the program.</source>
-      <translation>La comprobación no llega a algunas líneas del programa.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>The proof follows both branches of input-dependent calls, block delete and loops, up to its limits.</source>
-      <translation>La comprobación sigue ambas ramas de las llamadas por entradas, del salto de bloque y de los bucles, hasta sus límites.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>The speed is more than half the first critical speed of the protruding stock, calculated as a brass bar clamped at one end.</source>
       <translation>La velocidad supera la mitad de la primera velocidad crítica del material en voladizo, calculada como una barra de latón sujeta por un extremo.</translation>
     </message>
@@ -30000,13 +29995,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The tap comes out in rapid, with the spindle stopped or not reversed, or at a different feed; or the tap travels more than .5 in before the spindle stops. Not checked if the comment says that the holder reverses automatically.</source>
-      <translation>El macho sale en rápido, con el husillo parado o sin invertir, o con otro avance; o el macho recorre más de .5 in antes de que el husillo se pare. No se comprueba si el comentario dice que el portamachos invierte automáticamente.</translation>
+      <source>The tap is retracted in rapid, with the spindle stopped or not reversed, or at a different feed than it was fed in; or the tap travels more than .5 in before the spindle stops. Not checked if the comment says that the holder reverses automatically.</source>
+      <translation>El macho se retira en rápido, con el husillo parado o sin invertir, o con un avance distinto del de entrada; o el macho recorre más de .5 in antes de que el husillo se pare. No se comprueba si el comentario dice que el portamachos invierte automáticamente.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The tap cuts deeper than its pitch, measured on the radius.</source>
-      <translation>El macho corta más profundo que su paso, medido en el radio.</translation>
+      <source>The thread depth that the tap cuts, measured on the radius, is greater than the pitch.</source>
+      <translation>La profundidad de rosca que corta el macho, medida en el radio, es mayor que el paso.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30032,6 +30027,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>Turn on the live tool with its M code from the machine file.</source>
       <translation>Encienda la herramienta motorizada con su código M del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>TurnDesk proves both branches of input-dependent calls, block delete and loops, within its limits.</source>
+      <translation>TurnDesk comprueba ambas ramas de las llamadas por entradas, del salto de bloque y de los bucles, dentro de sus límites.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30075,13 +30075,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>With [tooling] kind = "gang", the outline of the other tool, placed by its tool offset, overlaps material.</source>
-      <translation>Con [tooling] kind = "gang", el perfil de la otra herramienta, situado por su corrector, se solapa con el material.</translation>
+      <source>With [tooling] kind = "gang", the outline of another tool, positioned by its tool offset, overlaps material.</source>
+      <translation>Con [tooling] kind = "gang", el perfil de otra herramienta, situado por su corrector, se solapa con el material.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>With specified stock and a turning spindle, the mean depth of cut is more than 2/3 of the cutting edge of a specified C or S insert, half of the edge of a W, T or D insert, a quarter of V, .4 of a round insert, or half the diameter of a boring bar.</source>
-      <translation>Con un material en bruto especificado y el husillo girando, la profundidad media de corte es más de 2/3 del filo de una plaquita C o S especificada, la mitad del filo de una W, T o D, un cuarto de V, .4 de una redonda, o la mitad del diámetro de una barra de mandrinar.</translation>
+      <source>With specified stock and the spindle running, the mean depth of cut is more than 2/3 of the cutting edge of a specified C or S insert, half of the edge of a W, T or D insert, a quarter of the edge of a V insert, .4 of a round insert, or half the diameter of a boring bar.</source>
+      <translation>Con un material en bruto especificado y el husillo girando, la profundidad media de corte es más de 2/3 del filo de una plaquita C o S especificada, la mitad del filo de una plaquita W, T o D, un cuarto del filo de una plaquita V, .4 de una plaquita redonda, o la mitad del diámetro de una barra de mandrinar.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30090,8 +30090,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>With specified stock, the mean depth of cut is more than .5 of the cutting edge of a C or S insert, .4 of W, .3 of T and D, or .2 of V (Widia's limits for medium geometries, without the nose radius; CNMG432 if no insert is specified). The material is not known; a soft material may allow more.</source>
-      <translation>Con un material en bruto especificado, la profundidad media de corte es más de .5 del filo de una plaquita C o S, .4 de W, .3 de T y D, o .2 de V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 si no se especifica la plaquita). El material no se conoce; un material blando puede admitir más.</translation>
+      <source>With specified stock, the mean depth of cut is more than .5 of the cutting edge of a C or S insert, .4 for a W insert, .3 for a T or D insert, or .2 for a V insert (Widia's limits for medium geometries, without the nose radius; CNMG432 if no insert is specified). TurnDesk does not know the stock material; a soft material may allow more.</source>
+      <translation>Con un material en bruto especificado, la profundidad media de corte es más de .5 del filo de una plaquita C o S, .4 en una plaquita W, .3 en una T o D, o .2 en una V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 si no se especifica la plaquita). TurnDesk no conoce el material de la pieza; un material blando puede admitir más.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30145,11 +30145,6 @@
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
-      <source>Check turned off: {why}</source>
-      <translation>Comprobación desactivada: {why}</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_findings.py" />
       <source>Live tool {tool} feeds but never touches material.</source>
       <translation>La herramienta motorizada {tool} avanza pero nunca toca material.</translation>
     </message>
@@ -30172,6 +30167,11 @@
       <location filename="core/proving/part_findings.py" />
       <source>The stock sticks out so far that it whips at {whip} rpm; the spindle turns at {rpm} rpm.</source>
       <translation>El material en bruto sobresale tanto que latiguea a {whip} rpm; el husillo gira a {rpm} rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_findings.py" />
+      <source>This check is turned off: {why}</source>
+      <translation>Esta comprobación está desactivada: {why}</translation>
     </message>
     <message>
       <location filename="core/proving/part_findings.py" />
@@ -30250,8 +30250,8 @@
     </message>
     <message>
       <location filename="core/proving/part_making.py" />
-      <source>no stock is assumed because feed moves cut in front of Z0, where the stock face cannot be</source>
-      <translation>no se supone material en bruto porque hay movimientos de avance que cortan delante de Z0, donde no puede estar su cara</translation>
+      <source>no stock is assumed, because feed moves cut in front of Z0, and the stock face cannot be there</source>
+      <translation>no se supone material en bruto, porque hay movimientos de avance que cortan delante de Z0 y la cara del material no puede estar ahí</translation>
     </message>
     <message>
       <location filename="core/proving/part_proof.py" />
@@ -30295,7 +30295,7 @@
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
-      <source>{what} Branches that are not proved: {never}.</source>
+      <source>{what} Branches not proved: {never}.</source>
       <translation>{what} Ramas sin comprobar: {never}.</translation>
     </message>
     <message>
@@ -30355,8 +30355,8 @@
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
-      <source>{tool} cuts {depth} deep on the radius, but its pitch is {pitch}.</source>
-      <translation>{tool} corta {depth} de profundidad en el radio, pero su paso es {pitch}.</translation>
+      <source>{tool} cuts a thread {depth} deep on the radius, but its pitch is only {pitch}.</source>
+      <translation>{tool} corta una rosca de {depth} de profundidad en el radio, pero su paso es solo {pitch}.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
@@ -30365,8 +30365,8 @@
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
-      <source>{tool} feeds in at {into} per revolution, but out at {file}.</source>
-      <translation>{tool} entra a {into} por vuelta, pero sale a {file}.</translation>
+      <source>{tool} feeds in at {into} per revolution, but feeds out at {file}.</source>
+      <translation>{tool} entra con un avance de {into} por vuelta, pero sale con {file}.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
@@ -30540,8 +30540,8 @@
     </message>
     <message>
       <location filename="core/quality/measured_feature.py" />
-      <source>{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for no sample plan</source>
-      <translation>{feature}: el intervalo de medición debe ser de 1 a {every_most} piezas, o 0 sin plan de muestras</translation>
+      <source>{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for no sampling plan</source>
+      <translation>{feature}: el intervalo de medición debe ser de 1 a {every_most} piezas, o 0 sin plan de muestreo</translation>
     </message>
     <message>
       <location filename="core/quality/measured_feature.py" />
@@ -30565,8 +30565,8 @@
     </message>
     <message>
       <location filename="core/quality/tool_life.py" />
-      <source>T{number}: the warning must be set at 1 to 100 % of the tool life</source>
-      <translation>T{number}: el aviso debe ponerse del 1 al 100 % de la vida</translation>
+      <source>T{number}: the tool-life warning must be set between 1 and 100 % of the tool life</source>
+      <translation>T{number}: el aviso de vida de la herramienta debe ponerse entre el 1 y el 100 % de la vida</translation>
     </message>
     <message>
       <location filename="core/quality/tool_life.py" />
@@ -30615,12 +30615,12 @@
     </message>
     <message>
       <location filename="core/quality/wear_proposal.py" />
-      <source>{feature}: a reading is not a number; delete it</source>
-      <translation>{feature}: una lectura no es un número; bórrela</translation>
+      <source>{feature}: a reading is not a number; delete that reading</source>
+      <translation>{feature}: una lectura no es un número; borre esa lectura</translation>
     </message>
     <message>
       <location filename="core/quality/wear_proposal.py" />
-      <source>{feature}: a reading is off by more than {distance} times the tolerance, which is too much to be tool wear; measure again</source>
+      <source>{feature}: a reading is off by more than {distance} times the tolerance, which is too large for tool wear; measure again</source>
       <translation>{feature}: una lectura se desvía más de {distance} veces la tolerancia, demasiado para ser desgaste; mida de nuevo</translation>
     </message>
     <message>
@@ -30740,6 +30740,11 @@
     </message>
     <message>
       <location filename="core/records/record_file.py" />
+      <source>{path} has file version {version}, which this TurnDesk cannot read; open it with a newer TurnDesk</source>
+      <translation>{path} tiene la versión de archivo {version}, que este TurnDesk no puede leer; ábralo con un TurnDesk más nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/records/record_file.py" />
       <source>{path} is incomplete and cannot be read</source>
       <translation>{path} está incompleto y no se puede leer</translation>
     </message>
@@ -30754,11 +30759,6 @@
       <translation>{path} no es un registro del osciloscopio; elija un archivo que termine en {ending}</translation>
     </message>
     <message>
-      <location filename="core/records/record_file.py" />
-      <source>{path} was written by a newer TurnDesk (version {version}); open it with that version</source>
-      <translation>{path} fue escrito por un TurnDesk más nuevo (versión {version}); ábralo con esa versión</translation>
-    </message>
-    <message>
       <location filename="core/records/ring_file.py" />
       <source>the file header has an invalid length</source>
       <translation>la cabecera del archivo tiene una longitud no válida</translation>
@@ -30770,8 +30770,8 @@
     </message>
     <message>
       <location filename="core/records/ring_file.py" />
-      <source>{path} is being written by another TurnDesk</source>
-      <translation>otro TurnDesk está escribiendo {path}</translation>
+      <source>{path} is being written by another TurnDesk process</source>
+      <translation>otro proceso de TurnDesk está escribiendo {path}</translation>
     </message>
     <message>
       <location filename="core/records/ring_file.py" />
@@ -30975,8 +30975,8 @@
     </message>
     <message>
       <location filename="core/shapes/calculators.py" />
-      <source>The taper crosses the axis: check the angle and the length.</source>
-      <translation>El cono cruza el eje: revise el ángulo y la longitud.</translation>
+      <source>The taper crosses the spindle centerline: check the angle and the length.</source>
+      <translation>El cono cruza el centro del husillo: revise el ángulo y la longitud.</translation>
     </message>
     <message>
       <location filename="core/shapes/calculators.py" />
@@ -31255,13 +31255,13 @@
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>The bottom diameter of {bottom} must be less than the diameter of {top}.</source>
-      <translation>El diámetro del fondo de {bottom} debe ser menor que el diámetro de {top}.</translation>
+      <source>The chamfer is at least as deep as the groove: enter a smaller chamfer.</source>
+      <translation>El chaflán es al menos tan hondo como la ranura: introduzca un chaflán menor.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>The chamfer is at least as deep as the groove: enter a smaller chamfer.</source>
-      <translation>El chaflán es al menos tan hondo como la ranura: introduzca un chaflán menor.</translation>
+      <source>The groove bottom diameter {bottom} must be less than {top}, the diameter at which the groove starts.</source>
+      <translation>El diámetro del fondo de la ranura, {bottom}, debe ser menor que {top}, el diámetro donde empieza la ranura.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
@@ -31270,13 +31270,13 @@
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>With these walls the groove bottom is {bottom} wide, but the blade is {wide} wide</source>
-      <translation>Con estas paredes el fondo de la ranura mide {bottom} de ancho, pero la cuchilla mide {wide}</translation>
+      <source>With these walls, the groove bottom is {bottom} wide, but the blade is {wide} wide</source>
+      <translation>Con estas paredes, el fondo de la ranura mide {bottom} de ancho, pero la cuchilla mide {wide}</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>one or more grooves on the outside, with a rear tool or in a bore, with chamfered edges, square or sloped walls</source>
-      <translation>una o varias ranuras por fuera, con herramienta trasera o en un interior, con chaflanes, de paredes rectas o inclinadas</translation>
+      <source>one or more grooves on the outside, in a bore or with a rear tool, with chamfered edges and square or sloped walls</source>
+      <translation>una o varias ranuras por fuera, en un interior o con herramienta trasera, con chaflanes y paredes rectas o inclinadas</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
@@ -31330,8 +31330,8 @@
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
-      <source>Depth {number} goes past the axis of a part of diameter {number2}: enter a smaller depth.</source>
-      <translation>La profundidad {number} pasa del eje de una pieza de diámetro {number2}: introduzca una profundidad menor.</translation>
+      <source>Depth {number} goes past the spindle centerline of a part {number2} in diameter: enter a smaller depth.</source>
+      <translation>La profundidad {number} pasa del centro del husillo en una pieza de diámetro {number2}: introduzca una profundidad menor.</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
@@ -31430,8 +31430,8 @@
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
-      <source>{words}: enter a smaller value, or choose CORNERS ROUND.</source>
-      <translation>{words}: introduzca un valor menor, o elija esquinas ROUND.</translation>
+      <source>{words}: enter a smaller value, or set CORNERS to ROUND.</source>
+      <translation>{words}: introduzca un valor menor, o ponga las esquinas en ROUND.</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
@@ -31835,8 +31835,8 @@
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
-      <source>An edge size of {edge} is more than the radius of diameter {across}: enter {across2} or less.</source>
-      <translation>Un canto de {edge} es más que el radio del diámetro {across}: introduzca {across2} o menos.</translation>
+      <source>An edge size of {edge} is more than half of diameter {across}: enter {across2} or less.</source>
+      <translation>Un canto de {edge} es más que la mitad del diámetro {across}: introduzca {across2} o menos.</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
@@ -32060,8 +32060,8 @@
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
-      <source>the host of {place} responds, but not with a git response ({why}); check that git is installed on that host and that this user can start git by ssh</source>
-      <translation>el equipo de {place} responde, pero no con una respuesta de git ({why}); revise que git esté instalado en ese equipo y que este usuario pueda iniciar git por ssh</translation>
+      <source>the host of {place} responds, but not with a git response ({why}); check that git is installed on that host and that this user account can run git there over ssh</source>
+      <translation>el equipo de {place} responde, pero no con una respuesta de git ({why}); revise que git esté instalado en ese equipo y que esta cuenta de usuario pueda ejecutar allí git por ssh</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
@@ -32070,8 +32070,8 @@
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
-      <source>{place} accepts TLS only ({why}); remove sslmode from [sharing] postgresql</source>
-      <translation>{place} solo acepta TLS ({why}); quite sslmode de [sharing] postgresql</translation>
+      <source>{place} accepts only TLS connections ({why}); remove sslmode from [sharing] postgresql</source>
+      <translation>{place} solo acepta conexiones TLS ({why}); quite sslmode de [sharing] postgresql</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
@@ -32080,8 +32080,8 @@
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
-      <source>{place} does not respond ({why}); this control continues to work, and shares programs when the connection returns</source>
-      <translation>{place} no responde ({why}); este control sigue trabajando, y comparte programas cuando vuelva la conexión</translation>
+      <source>{place} does not respond ({why}); this control continues to work, and will share programs again when the connection is restored</source>
+      <translation>{place} no responde ({why}); este control sigue trabajando, y volverá a compartir programas cuando se restablezca la conexión</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
@@ -32250,8 +32250,8 @@
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
-      <source>{table} was damaged in the data store; the values were restored as entered</source>
-      <translation>{table} se dañó en el almacén de datos; los valores se restauraron como se introdujeron</translation>
+      <source>{table} was damaged in the data store; the last values entered were restored from the history</source>
+      <translation>{table} se dañó en el almacén de datos; los últimos valores introducidos se restauraron del historial</translation>
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />

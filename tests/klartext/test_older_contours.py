@@ -158,7 +158,7 @@ def test_contour_def_takes_programs_and_declared_contours() -> None:
         (DECLARED + "QC10 = QC1 + QC2", "Syntax error", "joins QC"),
         (DECLARED + "QC10 = QC1 | QC7", "Cycle incomplete", "QC7"),
         ('DECLARE CONTOUR QC1 = "NONE"\nQC10 = QC1 | QC1', "Program not found", "NONE"),
-        ('DECLARE CONTOUR QC1 = "ONE" DEPTH5', "Not supported", "its own depth"),
+        ('DECLARE CONTOUR QC1 = "ONE" DEPTH5', "Not supported", "a separate depth"),
         ('SEL CONTOUR "NONE"', "Program not found", "NONE"),
         ('SEL CONTOUR "ONE"', "Cycle incomplete", "no contour formula"),
         (DECLARED + "QC10 = ( QC1 & QC2 ) \\ QC1", "Input value incorrect", "islands cover the pockets"),

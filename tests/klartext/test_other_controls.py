@@ -102,8 +102,8 @@ def test_cycle_19_with_a_feed_turns_the_axes() -> None:
     [
         ("X+10 Y+10 F100", "Syntax error", "one axis"),
         ("L X+10 Y+10 R+", "Syntax error", "one axis"),
-        ("L X+20 FT5", "Not supported", "Feed programmed as a time"),
-        ("L X+20 FMAXT5", "Not supported", "Feed programmed as a time"),
+        ("L X+20 FT5", "Not supported", "Feed specified by travel time"),
+        ("L X+20 FMAXT5", "Not supported", "Feed specified by travel time"),
         ("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS REFPNT TIP-CENTER", "Not supported", "REFPNT"),
         ("FUNCTION FEED DWELL D-TIME1 F-TIME5", "Not supported", "FEED DWELL"),
         ('CYCL DEF 225 ENGRAVING QS500="A" Q513=+10', "Not supported", "225"),

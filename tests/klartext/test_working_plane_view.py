@@ -65,7 +65,7 @@ def test_figures_count_in_the_working_plane(chamfers: tuple[Scene, list[Block]])
     view = status_of(snapshot, Readout.POSITION, with_c=False).position
     assert [axis.name for axis in view.axes] == list(NAMES)
     assert values(snapshot, Readout.POSITION) == ["115.0000", "−7.0710", "0.0000", "45.000", "90.000"]
-    assert view.x_words.startswith("TILTED PLANE OF LINE")
+    assert view.x_words.startswith("TILTED PLANE FROM LINE")
     assert all(axis.mark == "" for axis in view.axes)
 
 
@@ -142,7 +142,7 @@ def test_the_plane_of_a_line(chamfers: tuple[Scene, list[Block]]) -> None:
     here = at_line(scene, first)
     assert here.axes["A"] == 45.0
     assert plane_words(here.swivel) == (
-        f"TILTED PLANE OF LINE {first}:  A+45.000  C+0.000   Z' 0.000  −0.707  0.707"
+        f"TILTED PLANE FROM LINE {first}:  A+45.000  C+0.000   Z' 0.000  −0.707  0.707"
     )
     assert at_line(scene, first + 1).swivel is here.swivel  # a line without a block: the one before it
     assert at_line(scene, 0).swivel is None

@@ -97,7 +97,7 @@ def test_a_pendant_and_a_setter() -> None:
         ('coolant = { at = "OUT-1"', 'coolant = { at = "pendant.BTN_A"', "a pendant cannot switch an output"),
         ("pendant.BTN_2", "pendant.BTN_0", "io.in.wheel_x already uses"),
         ("pendant.BTN_2", "pendant.BTN_NOPE", "expected the Linux name of a button"),
-        ("pendant.REL_DIAL", "pendant.BTN_A", "expected the Linux name of a wheel"),
+        ("pendant.REL_DIAL", "pendant.BTN_A", "expected the Linux name of a handwheel"),
         ("wheel_step", "wheel_axis", "a button or switches, not both"),
         ("jog_z_minus", "jog_y_minus", "is not a jog button; use one of jog_rapid, jog_x_plus"),
         (

@@ -45,7 +45,7 @@ def test_counts_that_make_no_sense(old: str, new: str, path: str, expected: str)
 
 def test_switches_of_a_wheel_that_is_not_there() -> None:
     text = changed("[io.in]", SWITCHES)
-    assert_refused(text, "io.in.wheel_x", "add [io.analog] handwheel")
+    assert_refused(text, "io.in.wheel_x", "add the handwheel under [io.analog]")
 
 
 def test_a_switch_that_selects_nothing() -> None:

@@ -226,7 +226,7 @@ def test_what_cannot_be_gone_through_is_named(monkeypatch: pytest.MonkeyPatch) -
         "unreached-branch",
         "warning",
     )
-    assert "Branches that are not proved: input " in found.message
+    assert "Branches not proved: input " in found.message
     assert report.ways.proved == 3
 
 

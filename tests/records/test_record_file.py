@@ -115,7 +115,7 @@ def changed(path: Path, **changes: object) -> None:
 
 def test_a_newer_one_is_refused(tmp_path: Path) -> None:
     changed(tmp_path / "new.scope", version=9)
-    with raises_code(RecordError, "newer-version", "version 9"):
+    with raises_code(RecordError, "newer-version", "file version 9"):
         open_record(tmp_path / "new.scope")
 
 

@@ -216,7 +216,7 @@ def test_a_ring_that_is_cut_off_or_newer_is_refused(tmp_path: Path) -> None:
     with raises_code(RecordError, "cut-off"):
         read_ring(path)
     path.write_bytes(whole[:14] + b"\x07\x00\x00\x00" + whole[18:])
-    with raises_code(RecordError, "newer-version", "version 7"):
+    with raises_code(RecordError, "newer-version", "file version 7"):
         read_ring(path)
     path.write_bytes(whole[:40] + b"\xff" * 60 + whole[100:])
     with raises_code(RecordError, "damaged"):

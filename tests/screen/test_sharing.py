@@ -81,7 +81,7 @@ def test_what_is_newer_is_compared_and_taken_when_asked(day: Day, sharing: Shari
     peg = tmp_path / "home" / "programs" / "peg.nc"
     opened(day)
     day.sees(lambda: bool(model(day).elsewhere.changes))
-    assert model(day).sheet().rows[0].cells[:3] == ("peg.nc", "NEWER ON ANOTHER CONTROL", "LATHE 2")
+    assert model(day).sheet().rows[0].cells[:3] == ("peg.nc", "NEWER VERSION ON ANOTHER CONTROL", "LATHE 2")
     signs = [(row.sign, row.text) for row in model(day).elsewhere.changes if row.sign in "+-"]
     assert signs == [("-", "G01G94F60Z-.3"), ("+", "G01G94F40Z-.3")]
     day.key(Key.Key_F2)

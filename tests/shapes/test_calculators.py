@@ -53,7 +53,7 @@ def test_a_triangle_that_is_none() -> None:
     four = filled(TRIANGLE, {**TAPER, "ANGLE": 20.0}, INCH)
     assert said(four, INCH) == [wording("shapes.no-taper", angle=14.04)]
     through = filled(TRIANGLE, {"LARGE": 0.5, "LONG": 1.0, "ANGLE": 30.0}, INCH)
-    assert "crosses the axis" in said(through, INCH)[0]
+    assert "crosses the spindle centerline" in said(through, INCH)[0]
 
 
 @pytest.mark.parametrize(

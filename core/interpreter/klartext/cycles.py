@@ -421,7 +421,7 @@ class Cycles:
             at = word_values.coordinate(self._state, word)
             if word.axis == "Z" and (at or word.incremental):
                 text = "CYCL CALL POS with a Z other than +0 is not supported."
-                hint = "Write Z+0, and enter the surface in Q203."
+                hint = "Write Z+0, and enter the surface coordinate in Q203."
                 raise self._state.refuse(word.column, INPUT_VALUE, text, hint)
             x = (x + at if word.incremental else at) if word.axis == "X" else x
             y = (y + at if word.incremental else at) if word.axis == "Y" else y

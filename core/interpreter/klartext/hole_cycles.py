@@ -101,7 +101,7 @@ def back_boring(tool: CycleTool) -> Iterator[Block]:
     """
     if not tool.orients:
         text = Message(
-            "Cycle 204 moves through the hole with the spindle stopped at an angle, but {unoriented}.",
+            "Cycle 204 moves through the hole with the spindle oriented, but {unoriented}.",
             unoriented=UNORIENTED,
         )
         raise tool.refuse(
@@ -112,7 +112,10 @@ def back_boring(tool: CycleTool) -> Iterator[Block]:
     surface, depth = tool.length(203, 0.0), tool.length(249)
     if depth < 0.0:
         raise tool.refuse(
-            Message("With Q249={depth} mm, the cycle would bore away from the part.", depth=f"{depth:+.10g}"),
+            Message(
+                ("Q249 = {depth} mm is negative, so the tool would move away from the part."),
+                depth=f"{depth:+.10g}",
+            ),
             ("Enter the depth without a minus sign."),
         )
     clear, through, slow = surface + tool.length(200), tool.length(250) + tool.length(252), tool.feed(253)

@@ -54,7 +54,10 @@ class _Thread:
         turns = math.ceil(depth / (rise * per_step) - SMALLEST)
         if turns > _MOST_TURNS:
             raise self.tool.refuse(
-                Message("The thread would need {revolutions} turns, which is too many.", revolutions=turns),
+                Message(
+                    ("The thread would need {revolutions} helical turns, which is too many."),
+                    revolutions=turns,
+                ),
                 ("Correct the pitch and the depth."),
             )
         if per_step == 1:

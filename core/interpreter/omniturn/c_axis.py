@@ -152,7 +152,7 @@ def _check_turns(state: State, statement: Statement, word: Word, way: float, tur
             turn=f"{turn:g}",
             needed=f"{round(needed, 4):g}",
         )
-        hint = "Turn C farther, or raise F; otherwise the axes stop before the end point."
+        hint = "Turn C farther, or increase F; otherwise the axes stop before the end point."
         raise statement.refuse(word, "c-too-little", text, hint)
     speed = feed * modal.c_rpm / 60.0
     if speed > limits.max_feed * (1.0 + 1e-9):

@@ -269,19 +269,19 @@ _plane = partial(
         When.C_FREE: Refusal(
             "c-unlocked",
             "(~{name}) rotates the C axis, but the C axis is not locked.",
-            "Write M19 before the plane-switching line.", 1),
+            "Write M19 before the (~PLXC) or (~PLZC) line.", 1),
         When.PER_REV: Refusal(
             "plane-feed-mode",
             "(~{name}) needs a feed in inches per minute, but G95 is active.",
-            "Write G94 with F before the plane-switching line.", 1),
+            "Write G94 with F before the (~PLXC) or (~PLZC) line.", 1),
         When.NOSE_COMPENSATION: Refusal(
             "plane-nose-comp",
             "(~{name}) cannot run while nose compensation is active.",
-            "Write G40 before the plane-switching line.", 1),
+            "Write G40 before the (~PLXC) or (~PLZC) line.", 1),
         When.TOOL_NOT_MOVED: Refusal(
             "tool-first-move",
             "No X and Z move is programmed after the T on line {line}.",
-            "Program a move to X and Z before the plane-switching line.", 1),
+            "Program a move to X and Z before the (~PLXC) or (~PLZC) line.", 1),
     },
 )
 _PLANE = names("arc-radius feed-missing feed-range plane-open plane-side plane-sign plane-word")
@@ -550,7 +550,7 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
     )),
     ("Program flow", (
         _flow("LS", "LSn",
-        "Repeats the lines from here to LF n times.", "LS3\nG91\nZ-.1\nG90\nLF",
+        "Repeats the following lines, up to LF, n times.", "LS3\nG91\nZ-.1\nG90\nLF",
             handler="loops_and_subroutines.Flow.steer", words=names("LS"), deletable=False,
             not_in_mdi=
                 "cannot start a loop in MDI; a loop needs more than one line, with LF at the end",

@@ -206,7 +206,7 @@ def _impossible(line: int, column: int, letter: str, code: str, why: str) -> Pro
     hint = (
         "Use a smaller chamfer or radius."
         if code == "corner-too-large"
-        else "A corner needs two straight moves in a row."
+        else "A chamfer or corner radius needs two consecutive straight moves."
     )
     return program_error(
         line, column, code, Message("Corner {letter} is not possible: {why}.", letter=letter, why=why), hint

@@ -176,7 +176,7 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
     if x0 * x < 0:  # over the centre
         rpm = max(rpm, abs(state.rpm_at(0.0)))
     if not rpm:
-        why = "a feed per revolution" if modal.per_rev else "constant surface speed"
+        why = "feed per revolution" if modal.per_rev else "constant surface speed"
         text = Message("The spindle is stopped, but the move uses {why}.", why=why)
         _once(state, line, "spindle-stopped", text, "Start the spindle with M03 or M04, or use G94.")
         return

@@ -104,7 +104,7 @@ class _Finder:
             self._refuse(
                 statement,
                 "subroutine-open",
-                Message("Subroutine }}{inside} has no M99 before this line.", inside=self._inside),
+                Message("Subroutine {inside} has no M99 before this line.", inside=self._inside),
                 "Add M99.",
             )
         elif not self._ended:
@@ -122,7 +122,7 @@ class _Finder:
 
     def _close_subroutine(self, statement: Statement) -> None:
         if self._inside is None:
-            hint = "Write M30 at the end of the program, or delete the line."
+            hint = "Write M30 at the end of the program, or delete this line."
             self._refuse(statement, "m99-outside", "M99 is not in a subroutine.", hint)
             return
         self._unclosed_loops()
@@ -218,7 +218,9 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Struct
         if number not in finder.found.subroutines:
             column, hint = statement.column("P") or 1, "Write the subroutine after M30."
             text = Message(
-                "Subroutine {number} is called, but }}{number2} is missing.", number=number, number2=number
+                ("Subroutine {number} is called, but the program does not contain }}{number2}."),
+                number=number,
+                number2=number,
             )
             finder.problems.append(refusal(statement.line, column, "subroutine-missing", text, hint))
     return finder.found, finder.problems

@@ -101,7 +101,7 @@ def _unknown(state: State, statement: Statement) -> Diagnostic:
         return refusal(statement.line, column, "m-disabled", text, hint)
     habit, hint = other_controls.meaning_here(name) or (
         "",
-        ("Assign an output to the code in the machine file."),
+        ("In the machine file, assign an output to this M code."),
     )
     text = Message("{name} is not a valid code on this machine. {habit}", name=name, habit=habit).rstrip()
     return refusal(statement.line, column, "m-unknown", text, hint)

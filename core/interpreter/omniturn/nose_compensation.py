@@ -339,7 +339,9 @@ def check_under_nose(state: State, statement: Statement) -> None:
         raise statement.refuse(
             1,
             "comp-with",
-            Message("Plane switching is not allowed while G{state} is active.", state=on),
+            Message(
+                ("Plane switching with (~PLXC) or (~PLZC) is not allowed while G{state} is active."), state=on
+            ),
             ("Write G40 before this line."),
         )
     if statement.calls:

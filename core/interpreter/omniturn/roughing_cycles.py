@@ -155,10 +155,13 @@ def box_moves(state: State, statement: Statement) -> list[Move]:
     depth = abs(x - state.x) - left
     if depth <= 0:
         text = Message(
-            "With {text}, no material remains to be cut in the box.", text=statement.words["U"].text
+            "With {text}, no material remains for the box cycle to cut.", text=statement.words["U"].text
         )
         raise statement.refuse(
-            "U", "cycle-nothing", text, ("U must be less than the distance from the start point to X.")
+            "U",
+            "cycle-nothing",
+            text,
+            ("U must be less than the distance in X from the start point to the programmed X."),
         )
     count = ceil(depth / cut - _WHOLE)
     check_count(statement, "I", count, "passes")

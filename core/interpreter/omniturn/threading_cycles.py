@@ -264,7 +264,10 @@ def _warn(state: State, statement: Statement, thread: Thread) -> None:
     run_up = _run_up(thread)
     if run_up < needed:
         text = Message(
-            "The run-up is {run_up}, but the Z axis needs {needed} to reach the speed for the lead.",
+            (
+                "The acceleration distance is {run_up}, but the Z axis needs {needed} to reach "
+                "the threading feed rate."
+            ),
             run_up=state.modal.length_text(max(run_up, 0.0)),
             needed=state.modal.length_text(needed),
         )

@@ -239,7 +239,10 @@ class StateRebuild:
                 walk.holds_moves,
                 Message("Line {line} uses nose compensation or is part of a corner.", line=line),
             ),
-            (walk.checkpoint.modal.mill, Message("Plane switching is active at line {line}.", line=line)),
+            (
+                walk.checkpoint.modal.mill,
+                Message(("Plane switching with (~PLXC) or (~PLZC) is active at line {line}."), line=line),
+            ),
             (
                 not known and self._asked,
                 (

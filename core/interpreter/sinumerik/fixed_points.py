@@ -101,7 +101,7 @@ def _missing(statement: Statement, axis: str, number: int, known: int) -> Progra
 def _tell_value(state: State, statement: Statement, word: Word, end: float) -> None:
     """Who writes X150 may expect to arrive there."""
     text = Message(
-        "{word} has no effect with G75: the axis goes to machine position {end} mm.",
+        "{word} has no effect with G75: the axis moves to machine position {end} mm.",
         word=word.text,
         end=f"{end:g}",
     )

@@ -153,7 +153,10 @@ def _orient(state: State, statement: Statement, word: Word) -> SpindleOrient:
     if form is Form.IC:
         if at is None:
             text = Message(
-                "{word} is relative to a spindle angle, but the spindle is not positioned at any angle.",
+                (
+                    "{word} is relative to a spindle angle, but the spindle has not been "
+                    "positioned at an angle."
+                ),
                 word=word.text,
             )
             raise statement.refuse(

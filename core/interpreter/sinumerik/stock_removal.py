@@ -174,7 +174,7 @@ class _Plan:
         if area.deepest <= 0:
             raise cycle.wrong(
                 "NPP",
-                "{name} does not leave any material to cut",
+                "{name} specifies a contour with no material to cut",
                 ("Check the direction of the contour."),
                 WRONG_CONTOUR,
             )
@@ -209,7 +209,7 @@ class _Plan:
             hint = "End the contour at a point where the tool can leave it."
             raise self._cycle.wrong(
                 "NPP",
-                ("{name} specifies a contour that blocks the tool path to the contour ends"),
+                ("{name} specifies a contour that the tool cannot approach or leave with enough clearance"),
                 hint,
                 61607,
             ) from None

@@ -284,13 +284,17 @@ class Flow:
         if end <= start or (start <= here < end):
             text = Message(
                 (
-                    "the program section to repeat contains the {steering} block or does not end "
-                    "before that block."
+                    "the program section to be repeated contains the {steering} block or does not "
+                    "end before that block."
                 ),
                 steering=jump.steering,
             )
             raise _steering_fault(
-                line, jump, NESTING, text, ("Put the whole section to repeat before or after this block.")
+                line,
+                jump,
+                NESTING,
+                text,
+                ("Put the whole section to be repeated before or after this block."),
             )
         passes = 1
         if jump.passes is not None:

@@ -99,7 +99,7 @@ def _speed(cycle: Cycle, name: str, default: float) -> float:
         )
     if value > most:
         text = Message(
-            "{call}: {name} is {value} rpm, but the maximum for C is {maximum} rpm, so C taps at that speed.",
+            "{call}: {name} is {value} rpm, but C taps at its maximum speed, {maximum} rpm.",
             call=cycle.line.call,
             name=name,
             value=f"{value:g}",
@@ -154,7 +154,9 @@ def compensating(cycle: Cycle) -> Iterator[Block]:
     back, rest = cycle.whole("SDR", 0, 0, 5), cycle.whole("SDAC", 3 if sign > 0 else 4, 3, 5)
     if back not in {0, 3, 4} or (back and (back == 3) is (sign > 0)):
         raise cycle.wrong(
-            "SDR", "{name} does not reverse the tap", ("Enter 0; otherwise, enter 4 after M3 or 3 after M4.")
+            "SDR",
+            ("{name} does not reverse the spindle for the tap"),
+            ("Enter 0, or enter 4 after M3 or 3 after M4."),
         )
     lead = abs(lead_of_tap(cycle))
     if not lead and not by_feed:

@@ -23,7 +23,9 @@ def thread_chain(cycle: Cycle) -> Iterator[Block]:
     for k, (a, b) in enumerate(pairwise(places), 2):
         if along * (b[1] - a[1]) < _SAME:
             raise cycle.wrong(
-                f"PO{k}", "{name} does not continue along Z", ("PO1 to PO4 lie one behind the other.")
+                f"PO{k}",
+                ("{name} does not continue in the same Z direction"),
+                ("PO1 to PO4 lie one behind the other."),
             )
     depths = depths_of(cycle, equal_chip=kind in {3, 4})
     shifts, (first, starts) = shifts_of(cycle, depths), starts_of(cycle)

@@ -82,7 +82,9 @@ def read_thread(cycle: Cycle) -> Thread:
     out = -1.0 if kind in {2, 4} else 1.0
     z0, z1 = cycle.needed("SPL"), cycle.needed("FPL")
     if abs(z1 - z0) < 1e-6:
-        raise cycle.wrong("FPL", ("{name} is the same as the start of the thread"), "Correct SPL or FPL.")
+        raise cycle.wrong(
+            "FPL", ("{name} is the same position as the start of the thread"), "Correct SPL or FPL."
+        )
     along = 1.0 if z1 > z0 else -1.0
     x0 = cycle.over_zero("DM1") / 2.0
     x1 = cycle.over_zero("DM2") / 2.0

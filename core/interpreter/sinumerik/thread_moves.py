@@ -185,10 +185,10 @@ def _continues(state: State, statement: Statement, travel: AxisTravel, lead: flo
     way_x, way_z = travel.x - travel.x0, travel.z - travel.z0
     if way_z * (first.z - first.z0) <= 0.0:
         text = "this thread runs in the opposite Z direction to the previous thread."
-        raise _refused(statement, "thread-chain", text, "End the chain with G0.")
+        raise _refused(statement, "thread-chain", text, "End the thread chain with G0.")
     if last is not first and not last.continues:
         text = "the previous block moved out of the thread and ended the thread chain."
-        raise _refused(statement, "thread-chain", text, "End the chain with G0.")
+        raise _refused(statement, "thread-chain", text, "End the thread chain with G0.")
     leads_out = abs(way_x) >= _STEEP * abs(way_z) and abs(lead - state.end_lead) < _SAME and not last.growth
     return not leads_out or state.motion is not Motion.THREAD
 

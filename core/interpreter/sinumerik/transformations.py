@@ -76,7 +76,7 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
         )
         raise statement.refuse(word, NOT_THERE, text, ("Select a machine file that has a C axis."))
     if modal.spindle:
-        text = Message("{word}: the spindle is turning, but it must be locked as C.", word=word.text)
+        text = Message("{word}: the spindle is turning, but it must be locked as the C axis.", word=word.text)
         raise statement.refuse(word, "transformation", text, ("Write M5 or SPOS=0 before this block."))
     if modal.settable_x:
         text = Message(

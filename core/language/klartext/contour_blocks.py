@@ -78,7 +78,7 @@ def declaration(cursor: Cursor, column: int) -> ContourDeclare:
         raise cursor.expected(Message("Expected '=' after QC{number}", number=number))
     part = _where(cursor)
     if cursor.take(_DEPTH):
-        raise unsupported(cursor.line, column, "A contour with its own depth")
+        raise unsupported(cursor.line, column, "A contour with a separate depth")
     if not cursor.done:
         raise cursor.expected("Unexpected word in DECLARE CONTOUR")
     return ContourDeclare(number, part, column)

@@ -418,8 +418,8 @@ def _parameters() -> tuple[Entry, ...]:
             17,
             ": SYSWRITE ID50 NR22 IDX1 = +0",
             (
-                "Writes to the tool table. On this control, no value in the tool table changes, and "
-                "values that would move an axis are rejected."
+                "Writes to the tool table. This control does not change any value in the tool "
+                "table, and it rejects values that would move an axis."
             ),
             "FN 17: SYSWRITE ID50 NR4 IDX1 = +0.5",
             "DL of tool 1",
@@ -554,7 +554,7 @@ BOOK = CodeBook(
         ("Approach and departure", _approach()),
         ("Labels and programs", _flow()),
         ("Q parameters", _parameters()),
-        ("Texts and free tables", texts()),
+        ("Strings and freely definable tables", texts()),
         ("Tilted planes", _planes()),
         ("Coordinate transformations", transformations()),
         ("Cycles", cycles()),

@@ -62,7 +62,7 @@ _ROUGH = _told(22, "ROUGH-OUT", "Q10=-5 Q11=150 Q12=400 Q18=0 Q19=200 Q208=99999
 _OF_A_CYCLE = {
     21: (
         "PILOT DRILLING",
-        "Drills at the points where tool Q13 plunges in cycle 22.",
+        "Drills at the points where the tool with the number Q13 plunges in cycle 22.",
         "Q10=-5 Q11=150 Q13=1",
         ("Q13=1", "Q13=99", "Q13"),
     ),
@@ -115,7 +115,7 @@ def _formulas() -> tuple[Entry, ...]:
             "Assigns a closed contour to QCn: a separate program (in quotes) or LBL n.",
             f"{_DECLARED}\nCONTOUR DEF P1 = QC1\n{_DATA}\n{_ROUGH}\nCYCL CALL",
             Message("{declared} DEPTH5", declared=_DECLARED),
-            "its own depth",
+            "a separate depth",
             files=_CIRCLE,
         ),
         Entry(

@@ -127,7 +127,10 @@ _OF_A_CYCLE = {
     ),
     241: (
         "SINGLE-LIP D.H.DRLNG",
-        ("Drills deep holes: moves slowly to a start point in the hole, then drills at speed with coolant."),
+        (
+            "Drills deep holes: moves slowly to a start point in the hole, then drills at "
+            "the drilling speed with coolant."
+        ),
         f"{_HOLE} Q211=0 {_HEIGHTS} Q379=5 Q253=750 Q208=1000 Q426=3 Q427=50 Q428=500 Q429=8 Q430=9 Q435=0",
     ),
     251: (
@@ -438,8 +441,9 @@ def m_functions() -> tuple[Entry, ...]:
         code(
             127,
             (
-                "Rotary axes without limits turn to their position values directly: from 350 to 10, "
-                "they turn back through 340 degrees."
+                "Rotary axes without limits turn by the difference between the position "
+                "values, not by the shortest path: from 350 to 10, they turn back through 340 "
+                "degrees."
             ),
         ),
         code(

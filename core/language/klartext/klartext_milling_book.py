@@ -16,8 +16,8 @@ _OF_A_CYCLE = {
     204: (
         "BACK BORING",
         (
-            "Bores from below: with the spindle at angle Q336, the tool goes through the hole, "
-            "offset from the center by Q251."
+            "Back boring: with the spindle at angle Q336, the tool enters the hole offset "
+            "from the center by Q251, then bores from below."
         ),
         "Q200=2 Q249=+5 Q250=20 Q251=3.5 Q252=15 Q253=750 Q254=200 Q255=0 Q203=+0 Q204=50 Q214=1 Q336=+0",
         ("Q214=1", "Q214=0", "Q214"),

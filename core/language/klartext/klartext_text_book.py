@@ -91,8 +91,8 @@ def texts() -> tuple[Entry, ...]:
             "FN 20",
             ": WAIT FOR SYNC",
             (
-                "Waits for the blocks that are read ahead. TurnDesk does not need this wait and "
-                "reports the block."
+                "Stops the look-ahead until all earlier blocks have run. TurnDesk does not "
+                "need this wait and reports the block."
             ),
             "FN 20: WAIT FOR SYNC",
             "FN 20: WAIT FOR I95==0",
@@ -122,7 +122,7 @@ def texts() -> tuple[Entry, ...]:
         Entry(
             "FN 28",
             ': TABREAD Q5 = n/"X,DEPTH"',
-            "Reads cells of a row into Q5, Q6, ...",
+            "Reads cells of a table row into Q5, Q6, ...",
             f'{_OPEN}\nFN 28: TABREAD Q5 = 1/"X,DEPTH"\nL X+Q5 R0 F300',
             f'{_OPEN}\nFN 28: TABREAD Q5 = 7/"X"',
             "row 7",

@@ -202,7 +202,7 @@ def feed(cursor: Cursor) -> Feed | None:
     if fixed is not None:
         return Feed(fixed.group(1).lower(), None, column)
     if _FEED_TIME.match(cursor.upper, cursor.at):
-        raise unsupported(cursor.line, column, "Feed programmed as a time for the move (FT, FMAXT)")
+        raise unsupported(cursor.line, column, "Feed specified by travel time (FT, FMAXT)")
     if match := cursor.take(_FEED_VALUE):
         return Feed("value", cursor.value(match.group()), column, match.group(1))
     if cursor.take(_FEED_WORD):

@@ -165,7 +165,7 @@ def corner(cursor: Cursor, form: str, column: int) -> Corner:
     size = cursor.value(form)
     speed = feed(cursor)
     if not cursor.done:
-        raise cursor.expected(Message("{form} accepts only a size and a feed", form=form))
+        raise cursor.expected(Message("{form} accepts only a radius or length, and a feed rate", form=form))
     return Corner(form, size, speed, column)
 
 

@@ -81,7 +81,7 @@ def _round_blank(cursor: Cursor) -> RoundBlank:
         at, match = cursor.column, cursor.take(_ROUND_WORD)
         if match is None:
             raise cursor.expected(
-                "Unexpected word in BLK FORM CYLINDER", ("Use only R or D, L, DIST, RI or DI.")
+                "Unexpected word in BLK FORM CYLINDER", ("Use only R (or D), L, DIST and RI (or DI).")
             )
         if match.group(1) in words:
             raise doubled(cursor, at, match.group(1))

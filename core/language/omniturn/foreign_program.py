@@ -43,5 +43,5 @@ def recognize(lines: Sequence[str]) -> Diagnostic | None:
     message = Message(
         "This program was written for a {control} control. TurnDesk runs OmniTurn programs.", control=control
     )
-    hint = "Rewrite the program with the codes of this control; each finding below names the code to use."
+    hint = "Rewrite the program with the codes of this control; each message below names the code to use."
     return Diagnostic(1, 0, Severity.WARNING, "other-control-program", message, hint)

@@ -72,7 +72,10 @@ _PATTERNS = (
     ),
     _Pattern(
         re.compile(r"(?=G[78](?![0-9]))"),
-        "LinuxCNC codes G7 and G8 are G72 (diameters) and G73 (radii) on this control.",
+        (
+            "On this control, G72 (diameter programming) and G73 (radius programming) "
+            "replace the LinuxCNC codes G7 and G8."
+        ),
         lambda match: Message("Write {name}.", name="G72" if match.string[match.end() + 1] == "7" else "G73"),
     ),
     _Pattern(
@@ -92,7 +95,7 @@ _PATTERNS = (
     ),
     _Pattern(
         re.compile(r"(?<=G72)(?=.*[UWPQ])"),
-        "On this control, G72 selects diameters; G75 roughs to a contour.",
+        "On this control, G72 selects diameter programming; G75 roughs to a contour.",
         _always(_ROUGHING),
     ),
     _Pattern(

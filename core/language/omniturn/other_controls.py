@@ -49,7 +49,7 @@ _HERE: dict[str, tuple[str, str]] = {
     "G65": ("This control has no macros; M98Pn calls a subroutine.", "Write M98Pn."),
     "G66": ("This control has no macros; M98Pn calls a subroutine.", "Write M98Pn."),
     "G80": (
-        "On this control, a cycle acts only on its own line and needs no cancel code.",
+        "On this control, a cycle is active only on its own line and does not need a cancel code.",
         ("Remove this text from the program."),
     ),
     "G82": ("On this control, G81 drills, G83 drills in pecks and G04 dwells.", "Write G81 or G83."),

@@ -74,7 +74,9 @@ def lex_plane(number: int, text: str) -> PlaneLine:
         word_match = _WORD.match(inside, at)
         if word_match is None:
             shown = inside[at : at + 8].strip()
-            message = Message("'{value}' is not allowed in a plane switching statement.", value=shown)
+            message = Message(
+                ("'{value}' is not allowed in a statement between (~PLXC) or (~PLZC) and (END)."), value=shown
+            )
             raise program_error(number, base + at, "plane-word", message, _HINT)
         word = _word(number, base + at, word_match)
         if word.letter in words:
@@ -93,13 +95,14 @@ def _word(number: int, column: int, match: re.Match[str]) -> Word:
             number,
             column,
             "plane-word",
-            Message("{word} is not allowed in plane switching.", word=word.text),
+            Message("{word} is not allowed between (~PLXC) or (~PLZC) and (END).", word=word.text),
             _HINT,
         )
     value = word.value or 0.0
     if letter == "G" and digits not in {"02", "03"}:
         message = Message(
-            "{word}: the only G codes allowed in plane switching are G02 and G03.", word=word.text
+            ("{word}: between (~PLXC) or (~PLZC) and (END), the only G codes allowed are G02 and G03."),
+            word=word.text,
         )
         raise program_error(number, column, "plane-word", message, _HINT)
     if len(digits) > 16 or abs(value) > (_MOST_FEED if letter == "F" else _MOST):
@@ -151,7 +154,7 @@ def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
                 Message("Add {letter}.", letter=letter),
             )
     if code is not None and "Z" in words:
-        message = "With plane switching active, an arc can move only X and Y."
+        message = "Between (~PLXC) or (~PLZC) and (END), an arc can move only X and Y."
         raise program_error(
             number, words["Z"].column, "word-unused", message, ("Write the Z move on another line.")
         )

@@ -38,14 +38,14 @@ CALLS = (
     ),
     Entry(
         "CASE", "R1 OF 1 GOTOF LABEL DEFAULT GOTOF OTHER", (
-            "Jumps to a label that depends on a value."),
+            "Jumps to one of several labels, depending on a value."),
         "R1=2\nCASE R1 OF 1 GOTOF ONE DEFAULT GOTOF OTHER\nONE: Z5\nOTHER:",
         "CASE 1 GOTOF ONE", "CASE needs OF",
     ),
     Entry("GOTOS", "", "Jumps to the first block.", "R1=1\nIF R1==2 GOTOS", "GOTOS X3", "GOTOS"),
     Entry(
         "SETAL", "(65000)", (
-            "Raises an alarm; the program is rejected if it reaches this block."),
+            "Raises an alarm; a program that reaches this block is rejected."),
         "R1=1\nIF R1==2\nSETAL(65000)\nENDIF", "SETAL(65000)", "65000",
     ),
     *(

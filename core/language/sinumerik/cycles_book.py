@@ -33,26 +33,31 @@ STANDARD_CYCLES = (
     ),
     _entry(
         "CYCLE83",
-        "Drills a deep hole in pecks: the first peck goes to FDEP or by FDPR, and each "
-        "further peck is smaller by DAM. With VARI 1, the drill leaves the hole after "
-        "each peck; with VARI 0, it retracts by _VRT.",
+        (
+                "Drills a deep hole in pecks: the first peck drills to FDEP or by the distance "
+                "FDPR, and each subsequent peck is shorter by DAM. With VARI 1, the drill "
+                "leaves the hole after each peck; with VARI 0, it retracts by _VRT."),
         _HOLE + "CYCLE83(5, 0, 2, -30, , -10, , 2, 0.2, 0, 1, 1)",
         _HOLE + "CYCLE83(5, 0, 2, -30, , -40)", "FDEP",
     ),
     _entry(
         "CYCLE84",
-        "Taps without a compensating chuck: the spindle stops at POSS, then turns with "
-        "Z by PIT (negative for a left-hand thread) or MPIT, at SST rpm into the hole "
-        "and at SST1 rpm out of the hole. With _VARI 1 and 2, the cycle taps in steps "
-        "of _DAM. SDAC is the spindle state after the cycle: 3, 4, or 5 for a stopped "
-        "spindle.",
+        (
+                "Rigid tapping, without a compensating chuck: the spindle stops at POSS and is "
+                "then synchronized with Z at the pitch PIT (negative for a left-hand thread) "
+                "or the pitch of the thread size MPIT. The speed is SST rpm into the hole and "
+                "SST1 rpm out of the hole. With _VARI 1 and 2, the cycle taps in steps of "
+                "_DAM. SDAC is the spindle state after the cycle: 3, 4, or 5 for a stopped "
+                "spindle."),
         "G94 F100 G17\nG0 X0 Z5\nCYCLE84(5, 0, 2, -12, , , 5, , 1, 0, 100, 100)",
         _HOLE + "CYCLE84(5, 0, 2, -12, , , 5, , 1, 0, 100, 100)", "C axis",
     ),
     _entry(
         "CYCLE840",
-        "Taps with a compensating chuck: the tap feeds in by PIT or MPIT, or at F with "
-        "ENC 1; the spindle reverses, and the tap feeds out.",
+        (
+                "Taps with a compensating chuck: the tap feeds in at the pitch PIT or of the "
+                "thread size MPIT, or at F with ENC 1; the spindle reverses, and the tap feeds "
+                "out."),
         _HOLE + "CYCLE840(5, 0, 2, -12, , , 0, 3, 0, , 1)", "G17\nCYCLE840(5, 0, 2, -12, , , 0, 3, 0, , 1)",
         "61102",
     ),
@@ -86,28 +91,31 @@ STANDARD_CYCLES = (
     ),
     _entry(
         "CYCLE92",
-        "Cuts the part off at SPL with the active edge, starting at the diameter SPD: "
-        "first to _DIAG1 at _FF1, then to _DIAG2 at _FF2 and _SS2 rpm. _SV1 is a "
-        "surface speed if its limit _SV2 is given, otherwise rpm; _SDAC is 3 or 4. "
-        "Depths are diameters.",
+        (
+                "Cuts the part off at SPL with the active edge, starting at the diameter SPD: "
+                "first to _DIAG1 at _FF1, then to _DIAG2 at _FF2 and _SS2 rpm. _SV1 is a "
+                "surface speed if its limit _SV2 is specified, otherwise rpm; _SDAC is 3 or 4. "
+                "Depths are diameters."),
         _CUT + "T1 D1\nG0 X50 Z-30\nCYCLE92(40, -30, 10, -1, , 1, 0, 0, 0, 0.1, 0.05, 500)",
         _CUT + "T1 D1\nCYCLE92(40, -30, 60, -1, , 1, 0, 0, 0, 0.1, 0.05, 500)", "_DIAG1",
     ),
     _entry(
         "CYCLE93",
-        "Cuts a groove with square flanks, WIDG wide and DIAG deep, from the point SPD "
-        "(a diameter), SPL. VARI 5 cuts toward minus Z and VARI 1 toward plus Z; VARI "
-        "7 and 3 do the same inside. The tool width is the distance from D to _DN, or "
-        "to D+1.",
+        (
+                "Cuts a groove with square flanks, WIDG wide and DIAG deep, from the point SPD "
+                "(a diameter), SPL. VARI 5 cuts toward minus Z and VARI 1 toward plus Z; VARI "
+                "7 and 3 do the same for inside grooves. The tool width is the distance from "
+                "cutting edge D to cutting edge _DN, or to D+1."),
         _CUT + "T1 D1\nG0 X44 Z-10\nCYCLE93(40, -12, 6, 4, , , , , , , , 0.1, 0.1, 1.5, 0.5, 5)",
         _CUT + "T1 D1\nCYCLE93(40, -12, 6, 4, , , , , , , , 0.1, 0.1, 1.5, 0.5, 5, , 4)", "D4",
     ),
     _entry(
         "CYCLE94",
-        "Cuts an undercut E or F (DIN 509) at the shoulder SPL of the diameter SPD, "
-        "based on the tip quadrant of the tool: 3 is outside with the shoulder toward "
-        "minus Z, 4 is outside with the shoulder toward plus Z, and 2 and 1 are the "
-        "corresponding quadrants inside. VARI 1 to 4 replaces the tip quadrant.",
+        (
+                "Cuts an undercut of form E or F (DIN 509) at diameter SPD and shoulder SPL, "
+                "based on the tip quadrant of the tool: 3 is outside with the shoulder toward "
+                "minus Z, 4 is outside with the shoulder toward plus Z, and 2 and 1 are the "
+                "corresponding quadrants inside. VARI 1 to 4 replaces the tip quadrant."),
         _CUT + 'T1 D1\nG0 X50 Z5\nCYCLE94(40, -12, "E")', _CUT + 'T1 D1\nCYCLE94(40, -12, "G")', "FORM",
     ),
     _entry(
@@ -123,8 +131,10 @@ STANDARD_CYCLES = (
     ),
     _entry(
         "CYCLE96",
-        "Cuts an undercut (DIN 76) at the shoulder SPL, after a coarse thread of size "
-        "DIATH: A and B (short) outside, C and D (short) inside; VARI as in CYCLE94.",
+        (
+                "Cuts a thread undercut (DIN 76) at the shoulder SPL, after a coarse thread of "
+                "size DIATH: forms A and B (short) are outside, forms C and D (short) are "
+                "inside; VARI as in CYCLE94."),
         _CUT + 'T1 D1\nG0 X50 Z5\nCYCLE96(30, -20, "A")', _CUT + 'T1 D1\nCYCLE96(7, -20, "A")', "DIATH",
     ),
     _entry(
@@ -140,11 +150,12 @@ STANDARD_CYCLES = (
     ),
     _entry(
         "CYCLE97",
-        "Cuts a thread from SPL to FPL at the diameters DM1 and DM2, with lead PIT or "
-        "size MPIT: NRC passes to TDEP less FAL, then NID passes without infeed. NUMT "
-        "is the number of starts. VARI 1 and 2 use equal depths, and 3 and 4 equal "
-        "chip cross sections; VARI 2 and 4 cut inside threads. With IANG, the tool "
-        "feeds in along a flank.",
+        (
+                "Cuts a thread from SPL to FPL at the diameters DM1 and DM2, with lead PIT or "
+                "size MPIT: NRC passes to TDEP less FAL, then NID passes without infeed. NUMT "
+                "is the number of starts. VARI 1 and 2 use equal depths of cut, and 3 and 4 "
+                "equal chip cross sections; VARI 2 and 4 cut internal threads. With IANG, the "
+                "tool feeds in along a flank."),
         "S800 M3\nG0 X44 Z6\nCYCLE97(1.5, , 0, -20, 40, 40, 4, 2, 0.92, 0.05, 30, , 4, 1, 3, 1)",
         "S800 M3\nG0 X44 Z6\nCYCLE97( , 7, 0, -20, 40, 40, 4, 2, 0.92, 0, 0, , 4, 1, 3, 1)", "MPIT",
     ),
@@ -158,9 +169,11 @@ STANDARD_CYCLES = (
     ),
     _entry(
         "CYCLE99",
-        "Cuts a thread from SPL, DM1 to FPL, DM2, as in CYCLE97. VARI 300101 and "
-        "300102 use equal depths, outside and inside; 300103 and 300104 use equal chip "
-        "cross sections; 3002.. feeds in along both flanks alternately.",
+        (
+                "Cuts a thread from SPL, DM1 to FPL, DM2, as in CYCLE97. VARI 300101 and "
+                "300102 use equal depths of cut, for external and internal threads; 300103 and "
+                "300104 use equal chip cross sections; 3002.. feeds in along both flanks "
+                "alternately."),
         "S800 M3\nG0 X44 Z6\nCYCLE99(0, 40, -20, 40, 4, 2, 0.92, 0.05, 30, , 4, 1, 1.5, 300103, 1)",
         "S800 M3\nG0 X44 Z6\nCYCLE99(0, 40, -20, 40, 4, 2, 0.92, 0.05, 30, , 4, 1, 1.5, 300109, 1)", "VARI",
     ),

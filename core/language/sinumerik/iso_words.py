@@ -54,7 +54,7 @@ def _corner(match: re.Match[str]) -> tuple[str, str]:
     number = match["number"].rstrip(".")
     word = f"CHR={number}" if match["letter"] == "C" else f"RND={number}"
     return Message(
-        "{match}: on this control, {word} programs the corner.", match=match["word"], word=word
+        "{match}: on this control, the corner is programmed with {word}.", match=match["word"], word=word
     ), Message("Write {name}.", name=word)
 
 

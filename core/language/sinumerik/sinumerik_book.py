@@ -154,7 +154,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "GOTO",
             "label",
-            "Jumps forward, or backward if the label is not found ahead.",
+            "Jumps forward, or backward if the label is not in a later block.",
             "GOTO LATER\nG0 Z5\nLATER:",
             "GOTO NOWHERE",
             "14080",
@@ -241,9 +241,9 @@ def _flow() -> tuple[Entry, ...]:
             "SET",
             "(.., .., ..)",
             (
-                "Sets the values of the elements of an array in order, with the last index first; an "
-                "omitted element retains its value. After DEF, SET may be omitted and only the "
-                "parentheses written."
+                "Sets the values of the elements of an array in order (the last index changes "
+                "fastest); an omitted element retains its value. After DEF, you can omit SET "
+                "and write only the parentheses."
             ),
             "DEF REAL DEPTHS[2,2]\nDEPTHS[0,1]=SET(-3, , -5)\nG0 Z=DEPTHS[1,1]",
             "DEF REAL DEPTHS[2]=(1, 2, 3)",
@@ -301,7 +301,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "STOPRE",
             "",
-            "No further block is prepared until this block is finished.",
+            "Preprocessing stop: no later block is prepared until this block is finished.",
             "STOPRE",
             "STOPRE X3",
             "STOPRE",

@@ -407,7 +407,7 @@ class _Scanner:
         """R[ ]= or an element of an array."""
         name, at = match[1], match.start()
         if name in known.NAMES_OUTSIDE or _OF_AN_AXIS.match(self._text, match.end()):
-            why = known.WHY_OUTSIDE.get(name, "this control does not support words for a single axis")
+            why = known.WHY_OUTSIDE.get(name, "this control does not support axis-specific words")
             return self._outside(at, match.end(), name, why)
         try:
             reader = FormulaReader(GRAMMAR, self._text, self._text.index("[", at))

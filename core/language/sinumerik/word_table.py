@@ -52,7 +52,8 @@ class Entry(NamedTuple):
 
 
 _BLANK = (
-    "the proof uses the stock that is set by --stock or on the PART page, or that is assumed from the moves"
+    "TurnDesk proves the program with the stock that is set by --stock or on the "
+    "PART page, or that is assumed from the moves"
 )
 _BUFFERED = "the control reads the whole program before the program starts"
 _EXACT_PATH = "the programmed path is followed exactly and corners are never rounded"
@@ -78,7 +79,7 @@ FUNCTIONS: Mapping[str, Entry] = {
         MOTION,
         (
             "Cuts a thread of constant lead: K along Z, I along X; SF= is the start angle. "
-            "Further thread blocks may follow."
+            "More thread blocks can follow."
         ),
         "S400 M3|G0 X18 Z8|G33 Z-20 K2|G0 X24",
     ),
@@ -93,8 +94,8 @@ FUNCTIONS: Mapping[str, Entry] = {
     "G331": Entry(
         MOTION,
         (
-            "Taps into the hole: the spindle runs as the C axis and turns with Z at the lead K "
-            "(a negative K cuts a left-hand thread)."
+            "Rigid tapping into the hole: the spindle runs as the C axis, synchronized "
+            "with Z at the lead K (a negative K cuts a left-hand thread)."
         ),
         "SPOS=0|S100|G331 Z-10 K1|G332 Z10 K1",
     ),
@@ -229,9 +230,10 @@ FUNCTIONS: Mapping[str, Entry] = {
     "TRANSMIT": Entry(
         TRANSFORMATION,
         (
-            "X and Y moves mill the face of the part, and C turns the part under the tool. With "
-            "DIAMON, X is a diameter, but Y is not. Arcs and radius compensation are programmed "
-            "in the plane G17. TRANS and ROT start from zero."
+            "Mills the face of the part: X and Y are programmed across the face, and C "
+            "turns the part under the tool. With DIAMON, X is a diameter, but Y is not. "
+            "Arcs and radius compensation are programmed in the plane G17. TRANS and ROT "
+            "start from zero."
         ),
         "T1 D1|G0 X40 Z2|DIAMOF|G17|TRANSMIT|G1 X15 Y0 F200|G3 X0 Y15 I-15 J0|G0 Z5|TRAFOOF|G18",
     ),
@@ -249,7 +251,9 @@ FUNCTIONS: Mapping[str, Entry] = {
     "CPRECOF": Entry(PRECISION, "Accepted.", "CPRECOF"),
     "CPRECON": Entry(PRECISION, "Accepted.", "CPRECON", idle=_EXACT_PATH),
     "G74": Entry(
-        BLOCKWISE, "Moves the axes that are programmed with 0 to home at rapid: X1=0 Z1=0.", "G74 X1=0 Z1=0"
+        BLOCKWISE,
+        ("Moves axes to home at rapid; program each of these axes with the value 0: X1=0 Z1=0."),
+        "G74 X1=0 Z1=0",
     ),
     "G75": Entry(
         BLOCKWISE,
@@ -341,7 +345,10 @@ WORDS: Mapping[str, Entry] = {
     ),
     "ANG": Entry(
         "line",
-        ("Angle of a line, measured from Z toward X and given with one end coordinate."),
+        (
+            "Angle of a line, measured from Z toward X; program the angle with one "
+            "coordinate of the end point."
+        ),
         "G1 X40 ANG=150 F200",
     ),
     "CHF": Entry("corner", "Chamfer with a given length.", "G1 X40 CHF=2 F200|Z-10"),

@@ -529,7 +529,7 @@ DRIVER = Driver(
             parts=(
                 TableReference(
                     "board.axis.…",
-                    "How an axis, the last word of the heading, is connected to the board.",
+                    "Connection of one axis to the board; the last word of the heading is the axis name.",
                     _AXIS,
                 ),
                 TableReference(

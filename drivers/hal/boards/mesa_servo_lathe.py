@@ -31,8 +31,8 @@ def mesa_servo_lathe(lathe: Lathe) -> HalFile:
             "first time with the belt off, because an axis with the wrong loop sign runs away"
         ),
         (
-            "full_speed: enter the axis speed at 10 V. Increase p from 5 until the axis hums, "
-            "then halve it. Set ff2 last, using the scope"
+            "full_speed: enter the axis speed at 10 V. Increase p from 5 until the axis "
+            "hums, then halve p. Set ff2 last, using the scope"
         ),
         (
             "drift: adjust the balance of the drive at 0 V until the axis stays at rest "
