@@ -123,7 +123,7 @@ class SetpointQueue(PieceQueue):
         self._check_joint(
             self.demand_at(start),
             (pieces[0].p, pieces[0].v),
-            ("at the splice point between queued and new setpoints"),
+            ("the splice point between queued and new setpoints"),
         )
         self._check_run(segments)
         self.replace(start, pieces)
@@ -195,7 +195,7 @@ class SetpointQueue(PieceQueue):
                 if abs(after - before) > tolerance:
                     raise DriverError(
                         Message(
-                            "{name}: {place}, setpoints jump in {what} from {before} to {after}",
+                            "{name}: at {place}, the {what} of the setpoints jumps from {before} to {after}",
                             name=name,
                             place=where,
                             what=what,

@@ -25,19 +25,20 @@ def add_parser(subparsers: SubParsers) -> None:
     change = actions.add_parser(
         "set",
         help="set offsets or tool shapes, such as T3 x=1.25 wear_x=-.0005 quadrant=3, T3 "
-        "kind=turning insert=CNMG432, or D4 x=-.0005 (a radius, as stored)",
+        "kind=turning insert=CNMG432, or D4 x=-.0005 (X of D is stored as a radius value)",
     )
     change.add_argument("offset", metavar="T3|D4|G54|TOOL20|PRESET3")
     change.add_argument(
         "values",
         metavar="KEY=VALUE",
         nargs="+",
-        help="lengths in inches; expressions such as x=.5-.002 are allowed; T: x z nose_radius "
-        "wear_x wear_z quadrant remark master, and the tool shape: kind hand insert holder "
-        "width diameter point stick_out length pitch flutes entry rear profile (kind=none "
-        "removes the shape); D: x z r; G54 to G59 in mm and degrees: x z c; on a mill, in "
-        "mm, degrees and minutes, TOOL: name L R R2 DL DR DR2 cut t-angle time2 stop, "
-        "PRESET: x y z a b c rot doc",
+        help="lengths are in inches unless another unit is listed; expressions such as x=.5-.002 "
+        "are allowed. Keys of T: x z nose_radius wear_x wear_z quadrant remark master. Keys "
+        "of the tool shape of T: kind hand insert holder width diameter point stick_out "
+        "length pitch flutes entry rear profile (kind=none removes the shape). Keys of D: x "
+        "z r. Keys of G54 to G59, in mm and degrees: x z c. Keys on a mill, in mm, degrees "
+        "and minutes: for TOOL, name L R R2 DL DR DR2 cut t-angle time2 stop; for PRESET, x "
+        "y z a b c rot doc",
     )
     add_consent_options(change)
     clear = actions.add_parser(
@@ -53,7 +54,9 @@ def add_parser(subparsers: SubParsers) -> None:
     for action, why in ((change, "entered"), (clear, "cleared"), (undo, "undo")):
         add_as_option(action)
         action.add_argument(
-            "--why", default=why, help=Message("reason, saved in the history (default: {why})", why=why)
+            "--why",
+            default=why,
+            help=Message("reason for the change, saved in the history (default: {why})", why=why),
         )
 
 

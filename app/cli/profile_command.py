@@ -87,10 +87,10 @@ def _add_drawing_options(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.0,
         metavar="Z",
-        help=("Z coordinate of the location that --zero specifies, if not 0"),
+        help=("Z value of the location that --zero selects (default: 0)"),
     )
     parser.add_argument(
-        "--side", choices=("outside", "bore"), default="outside", help="side of the part to cut"
+        "--side", choices=("outside", "bore"), default="outside", help="surface of the part to cut"
     )
     parser.add_argument(
         "--gap",

@@ -118,8 +118,8 @@ def _for_workers(args: argparse.Namespace) -> bool:
     if "-" in args.files and (many or len(args.files) > 1):
         raise CommandError(
             (
-                "- reads a single program from stdin and proves it on this computer; do not combine "
-                "- with other files, folders or --jobs"
+                "the file name - means one program from stdin, which is proved on this computer; do "
+                "not combine - with other files, folders or --jobs"
             ),
             "stdin-alone",
         )

@@ -59,7 +59,11 @@ def run(args: argparse.Namespace) -> int:
     path = Path(args.file)
     if not args.headless:
         raise CommandError(
-            Message("add --headless, or open the screen with: turndesk --program {path}", path=path),
+            Message(
+                "to run without the screen, add --headless; to open the screen, run: turndesk "
+                "--program {path}",
+                path=path,
+            ),
             "needs-headless",
         )
     around = circumstances(args)

@@ -94,7 +94,7 @@ def _add_line(parser: argparse.ArgumentParser) -> None:
         "--wrap",
         choices=("%", ""),
         metavar="SIGN",
-        help="line that marks the start and the end of a program: %%, or '' for no such line",
+        help="marker line before and after a program: %%, or '' for no marker line",
     )
     parser.add_argument(
         "--dc-codes",

@@ -44,7 +44,9 @@ def add_parser(subparsers: SubParsers) -> None:
         action="store_true",
         help="take over the name of this control from a computer that no longer exists",
     )
-    compare = actions.add_parser("compare", help="show line by line what a version would change")
+    compare = actions.add_parser(
+        "compare", help="show line by line how a version from another control would change the program"
+    )
     take = actions.add_parser("take", help="copy a version from another control into the program folder")
     keep = actions.add_parser("keep", help="use the local version instead of the changes made elsewhere")
     for action in (compare, take, keep):
@@ -323,7 +325,7 @@ def _of(version: SharedVersion) -> dict[str, object]:
 _STATES = {
     "same": "the newest",
     "newer": "newer elsewhere",
-    "both": "changed here and elsewhere",
+    "both": "changed on this control and elsewhere",
     "new": "not here",
 }
 

@@ -31,7 +31,8 @@ def add_parser(subparsers: SubParsers) -> None:
         type=int,
         default=0,
         metavar="N",
-        help="number of shifts to go back (default: the current shift, or the last one that ended)",
+        help="number of shifts to go back (default: the current shift or, between shifts, the "
+        "last shift that ended)",
     )
     parser.add_argument(
         "--from", dest="since", metavar="TIME", help='start time in local time, such as "2026-11-23 06:00"'
@@ -112,7 +113,7 @@ def _text(found: ShiftFigures) -> str:
         )
     lines += [
         Message(
-            "{reason}: {times} times, {seconds}",
+            "{reason}: stopped {times} times, {seconds} in total",
             reason=each.reason,
             times=each.times,
             seconds=duration(each.seconds),

@@ -113,7 +113,7 @@ def _unusable(why: str) -> Diagnostic:
         0,
         Severity.WARNING,
         NO_STOCK,
-        Message("The specified stock cannot be used, so an assumed stock is used: {why}.", why=why),
+        Message("The specified stock cannot be used ({why}). An assumed stock is used instead.", why=why),
         "Enter the stock again on the PART page.",
     )
 

@@ -137,7 +137,9 @@ def _remembered(
                 Event(
                     0.0,
                     "cleared",
-                    Message("{left}; started again from the command line", left=journal.left.words),
+                    Message(
+                        "{left}; the job was started again from the command line", left=journal.left.words
+                    ),
                 )
             )
         yield journal, journal.note

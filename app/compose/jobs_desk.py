@@ -61,7 +61,7 @@ def _proved(
     path = desk.program_folders.find(program)
     if path is None:
         raise ValueError(
-            tr(Message("{name} IS NOT IN THE PROGRAM LIST. F1, F6: CHECK THE LIST", name=program))
+            tr(Message("{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST", name=program))
         )
     job = steps.make_job(steps.read(path), False)
     setting = of_part.setting(job, watch)[0] if machine.kind == "lathe" else PartSetting()

@@ -110,7 +110,11 @@ def _ask_office(machine: Machine, answers: Answers) -> None:
             answers.rows.append(Row("status_page", f"{page.bind}:{page.port}", "fault", str(error)))
             answers.trouble.append(str(error))
         else:
-            who = "access requires the token" if page.token else ("access is allowed only from this computer")
+            who = (
+                "the status page can be opened only with its token"
+                if page.token
+                else ("the status page can be opened only from this computer")
+            )
             answers.rows.append(Row("status_page", f"{page.bind}:{page.port}", "ok", who))
     if told is not None and told.mqtt:
         try:

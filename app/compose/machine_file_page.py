@@ -74,7 +74,7 @@ def references() -> Iterator[TableReference]:
     )
     yield TableReference("tooling", "How the tools are mounted. The table is optional.", plain["tooling"])
     yield TableReference(
-        "checks", ("Part checks during the proof of a program. The table is optional."), plain["checks"]
+        "checks", ("Checks of the part while a program is proved. The table is optional."), plain["checks"]
     )
     yield TableReference(
         "interlocks",
@@ -156,13 +156,14 @@ def _signals() -> Iterator[TableReference]:
     )
     yield TableReference(
         "m_codes.…",
-        "An M code that switches an output; the last word of the heading is the number of the code, without "
-        "a leading zero. Codes that the language uses itself are rejected.",
+        "An M code that switches an output; the last word of the heading is the number of "
+        "the code, without a leading zero. M codes that are part of the programming language "
+        "are rejected.",
         machine_tables.M_CODE,
     )
     yield TableReference(
-        "m_codes.… with the key ignored",
-        "An M code of another machine that does nothing on this machine.",
+        "m_codes.… with ignored = true",
+        "An M code from another machine; this machine ignores the code.",
         machine_tables.M_IGNORED,
     )
 

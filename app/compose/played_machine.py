@@ -130,8 +130,8 @@ def play_peers(
     bus = can.bus
     if not bus.own_process:
         raise DriverError(
-            "interface virtual works only within one process, which simulates the drives itself; "
-            "use udp_multicast"
+            "the CAN interface virtual works only within a single process that also simulates "
+            "the drives; use udp_multicast"
         )
     clock, zero, epoch = StepClock(), time.monotonic(), time.time()
     peers = make(machine, clock)

@@ -39,7 +39,7 @@ class AccessReset:
         if not self.access.people.on:
             return tr("NO ACCESS LEVELS TO RESET")
         if snapshot.state is not State.ESTOP:
-            return tr("PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET LEVELS")
+            return tr("PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS")
         return ""
 
     def begin(self) -> None:

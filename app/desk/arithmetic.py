@@ -122,7 +122,11 @@ def _tokens(entry: str) -> list[tuple[str, int]]:
         match = _TOKEN.match(entry, at)
         if not match:
             bad = entry[at:].lstrip()[0]
-            hint = "use a decimal point" if bad == "," else ("use only numbers and + - * / ( )")
+            hint = (
+                "use a decimal point instead of a comma"
+                if bad == ","
+                else ("use only numbers and + - * / ( )")
+            )
             raise EntryError(
                 Message("{bad} in {entry} is not a number; {hint}", bad=bad, entry=entry, hint=hint)
             )

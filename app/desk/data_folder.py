@@ -31,7 +31,8 @@ def check_data_folder() -> None:
         what = "is" if there == folder else Message("is inside {present}, which is", present=there)
         raise DataFolderError(
             Message(
-                "TURNDESK_HOME: {folder} {what} a file, not a folder; set it to a folder or unset it",
+                "TURNDESK_HOME: {folder} {what} a file, not a folder; set the variable to a folder "
+                "or unset the variable",
                 folder=folder,
                 what=what,
             ),

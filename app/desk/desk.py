@@ -361,7 +361,7 @@ class Desk:
         if refusal := self.first_move_refusal(snapshot):
             standing = Message("{no_start}: {refusal}", no_start=prompt_line.NO_START, refusal=refusal)
         elif self.first_move is not None and self.first_move.checking and snapshot.state is State.IDLE:
-            standing = tr("CHECKING THE FIRST MOVE AGAINST THE PART")
+            standing = tr("CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART")
         if snapshot.state is State.WAIT:
             standing = how_it_ends(snapshot, self.set_input is not None) or standing
         return join_messages(" · ", filter(None, (self._due(snapshot, standing), standing)))
@@ -400,7 +400,7 @@ class Desk:
         part, told = loaded.part, self._part_told
         self._part_told = part
         if part is not None and part is not told and part.warned and snapshot.state in UNDER_WAY:
-            self.say(tr(Message("CAUTION: {what}. PAUSE: FEED HOLD", what=part.warned[0])))
+            self.say(tr(Message("CAUTION: {what}. PAUSE KEY: FEED HOLD", what=part.warned[0])))
 
     # --- program -------------------------------------------------------------------------------------
 
@@ -472,7 +472,7 @@ class Desk:
         """Turn Block Delete over. It is part of the job that was proved, so the program is loaded anew."""
         loaded = self.session.now
         if loaded.path is None:
-            self.say("CHOOSE A PROGRAM BEFORE SWITCHING BLOCK DELETE")
+            self.say("CHOOSE A PROGRAM (F2) BEFORE SWITCHING BLOCK DELETE")
         elif self.snapshot().state in UNDER_WAY:
             self.say("SWITCH BLOCK DELETE ONLY BETWEEN CYCLES")
         else:

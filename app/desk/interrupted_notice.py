@@ -74,7 +74,7 @@ def instead(found: InterruptedJob, name: str) -> str:
     """The question before another program takes the place of an interrupted one."""
     words = tr(
         "T{tool} MAY BE IN THE PART ({program}, LINE {line}). PRESS Y TO CANCEL THE "
-        "INTERRUPTED JOB AND LOAD {name}, N TO KEEP IT"
+        "INTERRUPTED JOB AND LOAD {name}, N TO KEEP THE INTERRUPTED JOB"
     )
     return tr(Message(words, tool=found.tool, program=found.program, line=found.line, name=name))
 

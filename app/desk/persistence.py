@@ -11,7 +11,7 @@ from core.store.people import People, PersonRow
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow, RunRow
 
-NOTHING_KEPT = "nothing is saved here; start turndesk with a writable folder (TURNDESK_HOME)"
+NOTHING_KEPT = "no data is being saved; start turndesk with a writable folder (TURNDESK_HOME)"
 
 
 @dataclass(slots=True)

@@ -178,7 +178,7 @@ class ProgramRenewal:
         """While there is still time to take a change back."""
         why = self.renewing.trouble()
         if why and snapshot.state in UNDER_WAY:
-            self.warn(tr(Message("NEXT PART WILL NOT START WITH THE CHANGED OFFSETS: {why}", why=why)))
+            self.warn(tr(Message("AFTER THIS OFFSET CHANGE, THE NEXT PART WILL NOT START: {why}", why=why)))
 
     def _outdated(self, snapshot: Snapshot) -> bool:
         """The job before has left another unit than this program was proved with, and it names none."""

@@ -27,7 +27,7 @@ def standard_input(what: str) -> bytes:
     for other in _taken:
         raise CommandError(
             Message(
-                "- (stdin) is already used for the {other}; name a file for the {what}",
+                '"-" (stdin) is already used for the {other}; specify a file for the {what}',
                 other=other,
                 what=what,
             ),
@@ -35,7 +35,7 @@ def standard_input(what: str) -> bytes:
         )
     if sys.stdin is None:
         raise CommandError(
-            Message("stdin is closed, so the {what} cannot be read from it; name a file", what=what),
+            Message("stdin is closed, so the {what} cannot be read from it; specify a file", what=what),
             "stdin-closed",
         )
     _taken[what] = sys.stdin.buffer.read(MOST_BYTES + 1)

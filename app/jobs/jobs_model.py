@@ -28,8 +28,8 @@ from core.store.job_queue import NOTE_LONGEST, JobRow
 from core.store.program_settings import notes_key
 from core.store.store_errors import StoreError
 
-NONE_YET = "NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, F10: ADD FROM LIST"
-NO_PROGRAM = "F1, F2: LOAD A PROGRAM   F1, F6, F10: ADD JOB FROM THE LIST"
+NONE_YET = "NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, THEN F10: ADD JOB"
+NO_PROGRAM = "F1, THEN F2: LOAD PROGRAM   F1, F6, THEN F10: ADD JOB"
 _WIDE = 46  # letters of a cell
 
 
@@ -116,7 +116,7 @@ class JobsModel:
 
     def _state(self, job: JobRow) -> str:
         if job.done:
-            return tr("JOB DONE, STILL LOADED") if self.watch.on_desk(job) else tr("DONE")
+            return tr("JOB DONE, PROGRAM STILL LOADED") if self.watch.on_desk(job) else tr("DONE")
         return tr("IN PROGRESS") if self.watch.on_desk(job) else self.watch.state_words(job)
 
     def setup(self) -> Sheet:
@@ -290,7 +290,7 @@ class JobsModel:
         self,
         operation: Callable[[sqlite3.Connection], object],
         done: Callable[[], None] = lambda: None,
-        change: str = "jobs: finished jobs cleared",
+        change: str = "finished jobs removed from the job queue",
     ) -> None:
         self.desk.clear()
         self.watch.parts.book.write(Act.JOBS, operation, done, self.watch.parts.refuse, change)
@@ -333,13 +333,13 @@ class JobsModel:
             self._write(
                 lambda c: job_queue.add(c, program, wanted),
                 partial(self._mark, last),
-                Message("job {program}: {expected} parts", program=program, expected=wanted),
+                Message("job {program} added: {expected} parts", program=program, expected=wanted),
             )
         elif job is not None:
             self._write(
                 lambda c: job_queue.change(c, job.id, wanted, job.note),
                 change=Message(
-                    "job {program}: {expected} → {expected2} parts",
+                    "job {program}: quantity changed: {expected} → {expected2} parts",
                     program=job.program,
                     expected=job.wanted,
                     expected2=wanted,

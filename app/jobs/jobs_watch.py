@@ -88,7 +88,7 @@ class JobsWatch:
         path = self.desk.program_folders.find(job.program)
         if path is None:
             self.desk.say(
-                tr(Message("{name} IS NOT IN THE PROGRAM LIST. F1, F6: CHECK THE LIST", name=job.program))
+                tr(Message("{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST", name=job.program))
             )
             return
         loads = self.desk.session.loads
@@ -154,7 +154,9 @@ class JobsWatch:
         if made.sheet.errors:
             return tr("THE PROGRAM HAS ERRORS")
         lacking = missing(made, self.lives, job.left)
-        return tr(Message("{count} ITEMS NOT READY", count=lacking)) if lacking else tr("TOOLS COMPLETE")
+        return (
+            tr(Message("{count} SETUP ITEMS NOT READY", count=lacking)) if lacking else tr("ALL TOOLS READY")
+        )
 
     def notice(self, snapshot: Snapshot) -> NoticeRow | None:
         """On the Automatic page, between cycles: the job is done, and which comes next."""

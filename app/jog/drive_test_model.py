@@ -226,7 +226,7 @@ class DriveTests:
         low, high = drive_test_path.reach(ramps)
         return tr(
             Message(
-                "{axis} FROM {position} TO {present} AND BACK, {seconds} S",
+                "{axis} FROM {position} TO {present} AND BACK IN {seconds} S",
                 axis=axis,
                 position=units.way(here),
                 present=units.way(here + (high if sign > 0 else low)),
@@ -356,7 +356,7 @@ class DriveTests:
         if why:
             return why
         if self.hold.held is not None:
-            return tr("KEEP HOLDING THE KEY UNTIL THE AXIS IS BACK")
+            return tr("KEEP HOLDING THE KEY UNTIL THE AXIS HAS RETURNED")
         if self.found is None:
             return tr("PRESS AN ARROW TO SHOW THE TRAVEL. HOLD IT TO RUN THE TEST")
         return tr("PRESS ARROW: SHOW TRAVEL   HOLD ARROW: RUN TEST   F5: VALUES")

@@ -38,7 +38,7 @@ class DriveTestPad(JogCross):
 
     def draw(self, painter: Painter) -> None:
         self.controls.clear()
-        self.frame(painter, tr("DRIVE TEST  ·  PRESS, THEN HOLD"))
+        self.frame(painter, tr("DRIVE TEST  ·  PRESS ARROW, THEN HOLD IT"))
         asked = self._model.hold.asked
         middle = self.cross(painter, QRectF(self.inside()))
         if asked is not None:

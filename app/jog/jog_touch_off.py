@@ -81,7 +81,9 @@ class TouchOff:
 
     def _within(self, place: float) -> float:
         if not TOOL_FIELDS[self.name].takes(place):
-            raise EntryError(tr(Message("{axis} would be outside the allowed range", axis=word(self.name))))
+            raise EntryError(
+                tr(Message("the {axis} offset would be outside the allowed range", axis=word(self.name)))
+            )
         return place
 
     def save(self, number: int, text: str, history: OffsetHistory, new: NewTool) -> str:

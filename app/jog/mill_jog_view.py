@@ -126,7 +126,7 @@ class MillJogPanel(Panel):
         head = QRectF(room.x(), room.y(), room.width(), 2.2 * u)
         painter.write(head, tr("TIP POSITION"), 1.5, "soft")
         if tilt.frame is not None:
-            painter.write(head, tr("JOG KEY DIRECTION IN MACHINE X Y Z"), 1.5, "soft", at=RIGHT)
+            painter.write(head, tr("JOG KEY DIRECTION IN MACHINE COORDINATES X Y Z"), 1.5, "soft", at=RIGHT)
         high = min(4.4 * u, (room.height() - 2.4 * u) / len(SLIDES))
         for place, name in enumerate(SLIDES):
             row = QRectF(room.x(), head.bottom() + place * high, room.width(), high)
@@ -140,7 +140,7 @@ class MillJogPanel(Panel):
                 words = "   ".join(f"{share + 0.0:+.{_PLACES}f}" for share in direction)
                 painter.write(row, words, 2.2, "text" if tilt.on else "soft", at=RIGHT)
         if self._tip is None:
-            painter.write(room, tr("position unknown until a line has run"), 2.2, "soft", at=CENTRE)
+            painter.write(room, tr("position unknown until a program line has run"), 2.2, "soft", at=CENTRE)
 
 
 def _slides(snapshot: Snapshot) -> tuple[float, float, float]:

@@ -135,7 +135,11 @@ class SetterTouch:
         metric = self.tool.history.mode.metric
         about = signed(touched.error, metric).removeprefix("+")
         cause = tr(
-            Message(("tool setter, direction {direction}, ±{error}"), direction=way_word(way), error=about)
+            Message(
+                ("measured at the tool setter, direction {direction}, ±{error}"),
+                direction=way_word(way),
+                error=about,
+            )
         )
         self.tool.found(TOUCH_X if touched.axis == "X" else TOUCH_Z, value, cause)
 

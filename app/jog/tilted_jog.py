@@ -101,7 +101,7 @@ class TiltedJog:
         self.frame, self.why = (None, found) if isinstance(found, str) else (found, "")
         if self.on and self.frame is None:
             self.on = False
-            why = tr(Message("3D-ROT IS OFF, KEYS JOG IN MACHINE X Y Z: {why}", why=self.why))
+            why = tr(Message("3D-ROT IS OFF. KEYS NOW JOG IN MACHINE X Y Z. {why}", why=self.why))
             self.let_go(why)
             self.say(why)
 

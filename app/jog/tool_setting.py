@@ -277,7 +277,7 @@ class ToolSetting:
 
     def _touched(self, snapshot: Snapshot) -> str:
         if self.touching.moved(snapshot):
-            return tr("AXIS MOVED AFTER THE TOUCH. PRESS ESC AND TOUCH AGAIN")
+            return tr("AXIS MOVED AFTER TOUCH-OFF. PRESS ESC, THEN TOUCH OFF AGAIN")
         why = self.touching.save(self.number, self.text, self.history, self.fields.new)
         if not why:
             self.close()

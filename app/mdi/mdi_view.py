@@ -131,7 +131,7 @@ class HistoryPanel(Panel):
         word = re.match(r"\s*[^\W\d_]*[^\sA-Za-z]*", text[start:]) if column else None
         wide = metrics.horizontalAdvance((word.group() if word else "") or text[start:])
         painter.fill(QRectF(left, row.bottom() - 0.6 * u, wide, 0.35 * u), "alarm")
-        painter.write(row, tr("REFUSED"), 1.5, "alarm", at=RIGHT)
+        painter.write(row, tr("REJECTED"), 1.5, "alarm", at=RIGHT)
 
 
 # --- what is in force ---------------------------------------------------------------------------------

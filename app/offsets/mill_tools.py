@@ -68,8 +68,8 @@ class MillTools(CellTable):
         """What F2 and Esc do here; of the columns of tool life what they mean."""
         if self.name in {"life", USED}:
             return tr(
-                "TIME2: limit in minutes at feed, 0 = no limit        CUR.TIME: minutes cut so far, "
-                "0 for a new tool"
+                "TIME2: tool life limit in minutes at feed, 0 = no limit        CUR.TIME: minutes "
+                "cut so far, 0 for a new tool"
             )
         if self.name == "stops":
             return tr("STOP: no new part starts once TIME2 is reached        Enter: on/off")
@@ -89,7 +89,7 @@ class MillTools(CellTable):
     def here_barred(self) -> str:
         """Return why no length is touched off now; empty when one is."""
         if self.name != "length":
-            return tr("SELECT COLUMN L FIRST. F2: TOUCH OFF THE LENGTH")
+            return tr("SELECT COLUMN L, THEN PRESS F2 TO TOUCH OFF THE LENGTH")
         nose = MillTouch.of(self.desk).nose_height()
         return nose if isinstance(nose, str) else self.barred(self.desk.snapshot())
 

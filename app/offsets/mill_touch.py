@@ -78,7 +78,7 @@ class MillTouch:
             return stands
         machine, angles, slides = stands
         if abs(machine.frame(angles)[2][2] - 1.0) > _UPRIGHT:
-            return tr("TOOL IS TILTED. TURN ROTARY AXES UNTIL SQUARE TO WORKPIECE")
+            return tr("TOOL TILTED. TURN ROTARY AXES TO SET IT SQUARE TO WORKPIECE")
         return machine.place(angles).point(slides)[2]
 
     def _stands(self) -> tuple[Kinematics, dict[str, float], Vector] | str:

@@ -171,7 +171,7 @@ class EffectDisplay:
         if self.open:
             return ""
         if self.effect is None or self.table.desk.session.now.job is None:
-            return tr("LOAD A PROGRAM FIRST. ITS PATH SHOWS THE EFFECT")
+            return tr("LOAD A PROGRAM FIRST TO SEE THE EFFECT ON ITS PATH")
         if self._pair() is None:
             return tr("NO CHANGES YET. TYPE OR CHANGE A VALUE, THEN PRESS F6")
         return ""

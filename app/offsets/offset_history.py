@@ -39,7 +39,7 @@ def refusal(snapshot: Snapshot, *, correction: bool) -> str:
     if snapshot.state in {State.JOG, State.HOME}:
         return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP TO CHANGE OFFSETS")
     if snapshot.state in UNDER_WAY and not correction:
-        return tr("PROGRAM RUNNING. ONLY WEAR AND F9 OFFSETS CAN CHANGE")
+        return tr("PROGRAM RUNNING. CHANGE ONLY WEAR OR SECONDARY OFFSETS (F9)")
     return ""
 
 

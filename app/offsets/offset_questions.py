@@ -213,7 +213,7 @@ class OffsetQuestions:
 def _reason(doubt: Doubt) -> str:
     words = {
         Doubt.TRAVEL: tr("OUTSIDE AXIS TRAVEL"),
-        Doubt.SIDE: tr("OPPOSITE SIDE OF THE PART"),
+        Doubt.SIDE: tr("CUTS ON THE OPPOSITE SIDE OF THE PART"),
         Doubt.LARGE: tr("LARGE CHANGE"),
         Doubt.MASTER: tr("OTHER TOOLS ARE ADJUSTED WITH THIS TOOL"),
     }

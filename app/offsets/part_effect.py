@@ -34,7 +34,9 @@ def _findings(part: OtherPart) -> list[tuple[bool, Diagnostic]]:
 
 def _note(found: Diagnostic, *, gone: bool) -> str:
     if gone:
-        return tr(Message("LINE {line}: {check} NO LONGER REPORTED", line=found.line, check=found.code))
+        return tr(
+            Message("LINE {line}: FINDING {check} NO LONGER REPORTED", line=found.line, check=found.code)
+        )
     return tr(Message("LINE {line}: {what}", line=found.line, what=tr(found.text)))
 
 
@@ -43,7 +45,7 @@ def _row(pair: Pair, mode: Mode) -> Row:
     assert one is not None
     change = pair.difference
     same = change is not None and abs(change) <= SAME
-    told = _NONE if same else tr("FOUND IN ONLY ONE OF THE TWO PARTS")
+    told = _NONE if same else tr("ONLY IN THE OLD OR THE NEW PART")
     if change is not None and not same:
         told = signed(change, mode.metric)
     cells = (_name(one, mode), _figure(pair.here, mode), _figure(pair.there, mode), told)

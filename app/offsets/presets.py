@@ -52,10 +52,10 @@ class Presets(CellTable):
         if self.name in _ROTARY:
             told = tr("F2: set the current axis position to the typed value")
         elif self.name == "rotation":
-            told = tr("F2 at two points of an edge: set ROT so that the edge has the typed angle")
+            told = tr("Press F2 at two points of an edge to set ROT so that the edge has the typed angle")
         active = self.book.preset
-        now = tr(Message("active preset: {preset}", preset=active or tr("0, from the machine file")))
-        return f"{told}        {tr('F3: make active')}        {now}"
+        now = tr(Message("active preset: {preset}", preset=active or tr("0 (from the machine file)")))
+        return f"{told}        {tr('F3: activate preset')}        {now}"
 
     @property
     def row_now(self) -> PresetRow:
@@ -81,7 +81,7 @@ class Presets(CellTable):
         elif self.name == "rotation":
             self._touch_edge()
         else:
-            self.desk.say(tr("SELECT X, Y, Z, A ROTARY AXIS OR ROT FIRST. F2: TOUCH OFF"))
+            self.desk.say(tr("SELECT X, Y, Z, A ROTARY AXIS OR ROT. F2: TOUCH OFF"))
 
     @property
     def _reads(self) -> str:
@@ -163,7 +163,7 @@ class Presets(CellTable):
         elif self.name in {"x", "y", "z", "rotation"}:
             place = MillTouch.of(self.desk).tip(zeros_of(self.row_now))
         else:
-            place = tr("SELECT X, Y, Z, A ROTARY AXIS OR ROT FIRST. F2: TOUCH OFF")
+            place = tr("SELECT X, Y, Z, A ROTARY AXIS OR ROT. F2: TOUCH OFF")
         return place if isinstance(place, str) else self.barred(self.desk.snapshot())
 
     def activate(self) -> None:

@@ -46,7 +46,7 @@ class SecondaryOffsets(OffsetTable):
     kind = Kind.SECONDARY
     own_key = "C"
     clears = "PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, N TO KEEP THEM"
-    why_cleared = "C: all offsets cleared"
+    why_cleared = "all offsets cleared with the C key"
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)

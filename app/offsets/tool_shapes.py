@@ -128,7 +128,7 @@ class ToolShapes(ToolEntry):
         elif key in {"Page up", "Page down"}:
             self.go_to_tool(tool_of(self.number) + (1 if key == "Page down" else -1))
         elif len(key) == 1 and self.takes(key) and self.chosen_from:
-            self.desk.say(tr("USE LEFT/RIGHT TO CHANGE"))
+            self.desk.say(tr("LEFT/RIGHT: CHANGE THIS VALUE"))
         else:
             return super().enter_key(key)
         return True

@@ -20,7 +20,7 @@ class ZeroOffsets(CellTable):
     own_key = "C"
     numbers = ZERO_CODES
     clears = "PRESS Y TO CLEAR G54 TO G59, N TO KEEP THEM"
-    why_cleared = "C: all zero offsets cleared"
+    why_cleared = "all zero offsets cleared with the C key"
 
     @property
     def title(self) -> str:

@@ -140,7 +140,7 @@ class PartSheet:
                 "F6": Key("DELETE", self.forget),
             }
         found = self.finding
-        word = "UNDO" if found is not None and found.silenced else "SILENCE"
+        word = "UNDO" if found is not None and found.silenced else "CHECK OFF"
         silenced = Key(word, self.silence, barred=bool(self._not_silenced() or self._locked()))
         return {"F2": Key("STOCK", self.turn), "F4": silenced}
 

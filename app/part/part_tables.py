@@ -124,7 +124,7 @@ def _question(page: PartSheet) -> str:
 def _stock_notes(page: PartSheet) -> tuple[str, ...]:
     lacks = page.entry.lacks
     if lacks is not None:
-        return (tr(Message("STILL MISSING: ENTER {field}", field=_word(lacks))),)
+        return (tr(Message("STOCK DATA INCOMPLETE: ENTER {field}", field=_word(lacks))),)
     if page.marked_field is StockField.STICK_OUT and not page.holds:
         return (tr("THE STICK-OUT IS USED ONLY IF THE MACHINE FILE HAS A [clamping] SECTION"),)
     part = page.loaded.part

@@ -48,7 +48,7 @@ def kind_words(kind: PointKind) -> str:
 
 def measuring_words() -> str:
     """The prompt line while one measures."""
-    return tr("ARROWS, TAB: MOVE   ENTER: MEASURE FROM HERE   ESC: BACK")
+    return tr("ARROWS, TAB: NEXT POINT   ENTER: MEASURE FROM IT   ESC: BACK")
 
 
 MOST_CROSSED = 300  # chords in sight up to which crossings are looked for

@@ -86,7 +86,7 @@ def rename_program(source: Path, name: str, persistence: Persistence) -> str:
     except StoreError as error:
         raise FileError(
             Message(
-                "PROGRAM RENAMED, BUT ITS VERSIONS REMAIN UNDER {source}: {error}",
+                "PROGRAM RENAMED, BUT ITS VERSIONS REMAIN UNDER THE NAME {source}: {error}",
                 source=source.name,
                 error=error,
             )
@@ -101,7 +101,7 @@ def delete_program(path: Path, persistence: Persistence) -> str:
         path.unlink()
     except StoreError as error:
         raise FileError(
-            Message("PROGRAM NOT DELETED. A VERSION CANNOT BE SAVED FIRST: {error}", error=error)
+            Message("PROGRAM NOT DELETED. ITS CURRENT VERSION CANNOT BE SAVED FIRST: {error}", error=error)
         ) from error
     except OSError as error:
         raise FileError(

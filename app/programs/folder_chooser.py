@@ -104,7 +104,7 @@ def chooser_sheet(chooser: FolderChooser, title: str) -> Sheet:
         )
         for line in chooser.lines
     )
-    where = str(chooser.at) if chooser.at else "PLACES"
+    where = str(chooser.at) if chooser.at else "LOCATIONS"
     return Sheet(
         join_messages("  ·  ", (title, where)),
         ("NAME", "", "FREE" if chooser.at is None else "SIZE"),

@@ -344,7 +344,7 @@ class ImportExport:
         elif carried.findings:
             words = tr(
                 Message(
-                    "PROGRAMS IMPORTED: {count}. NOT ALL ARE FREE OF ERRORS: {value}",
+                    "PROGRAMS IMPORTED: {count}. AT LEAST ONE HAS ERRORS: {value}",
                     count=count,
                     value=carried.findings[0],
                 )

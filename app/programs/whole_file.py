@@ -107,7 +107,9 @@ def settle(folder: Path) -> None:
         folder_to_disk(folder)
     except OSError as error:
         raise FileError(
-            Message("{folder} CANNOT BE SAVED TO THE DISK: {cause}", folder=folder, cause=error.strerror),
+            Message(
+                "FILES IN {folder} CANNOT BE SAVED TO THE DISK: {cause}", folder=folder, cause=error.strerror
+            ),
             "cannot-write",
         ) from error
     all_to_disk()

@@ -133,7 +133,7 @@ class ChartsSection(QualitySection):
     def prompt(self) -> str:
         """What the lines are."""
         return self.missing() or (
-            "ARROWS: FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS"
+            "ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS"
         )
 
 

@@ -296,7 +296,7 @@ class FeaturesSection(QualitySection):
         if row is None:
             self.desk.say(self.missing())
             return
-        asked = tr("STOP MEASURING {name}? READINGS REMAIN. Y: STOP   N: CONTINUE")
+        asked = tr("STOP MEASURING {name}? READINGS STAY STORED. Y: STOP   N: CONTINUE")
         done = partial(self.desk.say, tr(Message("{name} REMOVED", name=row.name)))
         self.desk.ask(
             tr(Message(asked, name=row.name)),

@@ -16,7 +16,7 @@ _PLAIN = re.compile(r"([+-]?(?:\d{1,6}(?:[.,]\d{0,7})?|[.,]\d{1,7}))\s*(mm|in|in
 _UNITS = {"mm": "mm", "in": "in", "inch": "in", '"': "in", "": ""}
 # What an interface of Mitutoyo answers instead of a value.
 _ERRORS = {
-    "911": ("gauge is not connected or is switched off", "no-gauge"),
+    "911": ("the gauge is not connected or is switched off", "no-gauge"),
     "912": ("the gauge sent unreadable data", "unreadable"),
 }
 

@@ -84,7 +84,7 @@ class ReadingsSection(QualitySection):
         rows = tuple(self._row(each) for each in self.data.features)
         question = ""
         if feature is not None:
-            question = tr(Message("{name} OF PART {part}?", name=feature.name, part=self.part))
+            question = tr(Message("MEASURED {name} OF PART {part}?", name=feature.name, part=self.part))
         heads = ("FEATURE", Message("NOMINAL {mode}", mode=mode.name), "PART", "MEASURED", "DEVIATION", "")
         words = self.effect.words() if self.effect.stands else ""
         way = (
@@ -319,11 +319,11 @@ class ReadingsSection(QualitySection):
     def _undo_barred(self) -> str:
         """Why nothing is taken back here; empty when it is."""
         if self._last is None:
-            return tr("NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MENU, F8 OR F9")
+            return tr("NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MAIN MENU, F8/F9")
         kind, _number, reason = self._last
         last = self.desk.book.history(kind, 1)
         if not last or last[0].why != reason:
-            return tr("CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MENU, F8 OR F9")
+            return tr("CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MAIN MENU, F8/F9")
         return refusal(self.desk.snapshot(), correction=True)
 
     # --- file ----------------------------------------------------------------------------------------

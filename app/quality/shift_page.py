@@ -45,7 +45,7 @@ def facts(found: ShiftFigures) -> list[tuple[str, str]]:
     if share is not None:
         words = tr(
             Message(
-                "{share} %: {run} of {planned} in cycle",
+                "{share} %: in cycle for {run} of {planned}",
                 share=fixed(100.0 * share.share, 1),
                 run=duration(share.producing),
                 planned=duration(share.planned),

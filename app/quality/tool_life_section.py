@@ -69,8 +69,8 @@ class ToolLifeSection(QualitySection):
         heads = ("T", "PARTS", "MINUTES", "STOPS", "LEFT", "USED")
         notes = (
             (
-                "Only time at feed counts toward the minutes. 0 removes a limit. STOP: no new "
-                "part starts once the tool life is used up."
+                "Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: "
+                "no new part starts once the tool life is used up."
             ),
         )
         return Sheet("TOOL LIFE", heads, (0.1, 0.13, 0.14, 0.13, 0.17, 0.33), rows, self.marked, question,
@@ -161,4 +161,4 @@ class ToolLifeSection(QualitySection):
 
     def prompt(self) -> str:
         """What can be done here."""
-        return self.watch.book.locked or ("ENTER THE LIMIT. F2: OTHER LIMIT   F4: INSERT CHANGED")
+        return self.watch.book.locked or ("TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT")

@@ -128,7 +128,7 @@ class TrendsSection(QualitySection):
             return tr("no stops yet")
         between = times_between(stops)
         mean = duration(sum(between) / len(between)) if between else NOTHING
-        text = tr("{count} stops, on average {mean} apart; {reason}: {time}")
+        text = tr("{count} stops, on average {mean} apart; longest total: {reason}, {time}")
         return tr(
             Message(
                 text, count=len(stops), mean=mean, reason=tr(rows[0].reason), time=duration(rows[0].seconds)
@@ -152,7 +152,7 @@ class TrendsSection(QualitySection):
         found = self.of_shift()
         if found is None:
             return tr(Message("{first}–{last}: the shift has not started", first=first, last=last))
-        text = tr("{first}–{last}: {share} %, {run} of {planned} in cycle")
+        text = tr("{first}–{last}: {share} %, in cycle for {run} of {planned}")
         return tr(
             Message(
                 text,

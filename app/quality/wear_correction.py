@@ -30,7 +30,7 @@ def proposal(data: PartsData, row: FeatureRow, mode: Mode) -> Proposal:
         name = feature.corrected_by
         raise QualityError(
             Message(
-                "{row}: no part started after the last change of {name} has been measured yet",
+                "{row}: none of the parts started since the last change of {name} has been measured yet",
                 row=row.name,
                 name=name,
             )

@@ -149,7 +149,7 @@ class Analyses:
                     begin, end = frozen.zero + window.begin, frozen.zero + window.end
                     return analysed(kind, frozen.record.between(begin, end), arc, drives, spindle)
                 if live is None or not math.isfinite(live.last):
-                    return Found(kind, tr("NOTHING IS RECORDED ON THIS MACHINE. F9: OPEN A RECORD"))
+                    return Found(kind, tr("NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD"))
                 names = {each.name for each in live.channels if each.unit in {"mm", "deg"}}
                 names |= {"line", "spindle turns", "spindle speed", "spindle command"}
                 record = live.between(live.last - live.lasts, live.last, names)
@@ -465,7 +465,7 @@ def _ball_sheet(title: str, ball: BallBar, found: Found, metric: bool) -> Sheet:
                 angle=formats.fixed(ball.covered, 0),
             )
         ),
-        tr("A dash means that the arc is too short for a result."),
+        tr("A dash means that the arc is too short to calculate the value."),
         tr("The encoder cannot measure backlash between the encoder and the tool."),
     )
     return Sheet(title, ("", ""), (0.52, 0.48), rows, notes=notes, figures=frozenset({1}))

@@ -96,7 +96,11 @@ def last_move(record: Record, drives: Mapping[str, Axis]) -> AxisResponse:
             found = (*spans[-1], letter)
     if found is None:
         raise AnalysisError(
-            tr("no axis moved from rest to rest in this time range; jog one step on the Jog page"), "no-step"
+            tr(
+                "this time range contains no complete move of an axis from rest to rest; jog one "
+                "step on the Jog page"
+            ),
+            "no-step",
         )
     first, last, letter = found
     times = record.times
@@ -206,7 +210,7 @@ def window_rows(found: Moved, units: Units) -> list[tuple[str, str, str]]:
         if reached is not None
         else tr("the limit is not reached in the axis speed range")
     )
-    rows.append((tr("SPEED WHERE LAG EQUALS LIMIT"), "", at))
+    rows.append((tr("SPEED AT WHICH LAG EQUALS LIMIT"), "", at))
     return rows
 
 

@@ -27,7 +27,7 @@ class ScopeFunction(PageFunction):
         scope = self.desk.attached(Scope)
         live = scope.live if scope is not None else None
         if live is None:
-            return (Row((tr("RECORDED"), tr("NOTHING RECORDED ON THIS MACHINE"))),)
+            return (Row((tr("RECORDED"), tr("NO SCOPE DATA RECORDED ON THIS MACHINE"))),)
         return (
             Row((tr("STORED"), tr(Message("THE LAST {minutes} MINUTES", minutes=f"{live.lasts / 60.0:g}")))),
             Row((tr("CHANNELS"), str(len(live.channels)))),

@@ -31,7 +31,7 @@ FROZEN = 60.0  # s that are taken when the curves are frozen, or three windows
 LEVEL_FOR = 1.0  # s after which level lines are looked at again where nothing seems to have happened
 ZOOM = 1.5  # a step of a lane's range
 FORGOTTEN = tr("CURVES ARE LIVE. F2: FREEZE THEM FIRST")
-NO_SAMPLES = tr("NOTHING IS RECORDED ON THIS MACHINE. F9: OPEN A RECORD")
+NO_SAMPLES = tr("NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD")
 
 
 class Side(Enum):
@@ -221,7 +221,7 @@ class Scope:
     def show_record(self, record: Record, name: str, window: tuple[float, float] | None = None) -> None:
         """Look at a record from now on; ``window`` in seconds of its instant 0, else all of it."""
         if not len(record.times):
-            self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME"))
+            self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
             return
         zero = instant_of(record)
         self.frozen, self.name, self._drawn = RecordCurves(record, zero), name, None
@@ -369,7 +369,7 @@ class Scope:
         begin, end = frozen.zero + self.window.begin, frozen.zero + self.window.end
         cut = frozen.record.between(begin, end)
         if not len(cut.times):
-            self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME"))
+            self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
             return None
         told = {**cut.about, INSTANT: f"{frozen.zero - float(cut.times[0]):.6f}"}
         return replace(cut, about=told)

@@ -98,7 +98,7 @@ class ScopeSheets:
         rows = tuple(
             Row((each.path.stem, each.when, each.size_words), self._lit(each.path.name)) for each in files
         )
-        notes = () if files else (tr("No records yet. F2 saves the current view."),)
+        notes = () if files else (tr("No scope records yet. F2 saves the current view."),)
         heads = (tr("NAME"), tr("SAVED ON"), tr("SIZE"))
         return Sheet(tr("RECORDS"), heads, (0.55, 0.3, 0.15), rows, self.at, notes=notes, raw=frozenset({0}))
 
@@ -250,5 +250,5 @@ class ScopeSheets:
         if self.scope.side is Side.CURVES:
             return tr("ENTER: SHOW OR HIDE CURVE   ESC: BACK TO CURVES")
         if self.scope.side is Side.TRIGGER:
-            return tr("ENTER: NEXT CHOICE   LEVEL: TYPE A NUMBER   ESC: BACK")
+            return tr("ENTER: NEXT CHOICE   DIGITS: TYPE LEVEL   ESC: BACK")
         return tr("F2: SAVE THE VIEW   ENTER: OPEN RECORD   ESC: BACK TO CURVES")

@@ -196,8 +196,8 @@ _MACHINE = (
     Signal("spindle load", tr("Spindle load"), Quantity.LOAD, "spindle load"),
     Signal("feed override", tr("Feed override"), Quantity.OVERRIDE, "feed override"),
     Signal("spindle override", tr("Spindle override"), Quantity.OVERRIDE, "spindle override"),
-    Signal("queue", tr("Queue depth"), Quantity.QUEUE, "queue"),
-    Signal("lateness", tr("Lateness"), Quantity.LATENESS, "lateness"),
+    Signal("queue", tr("Setpoint queue depth"), Quantity.QUEUE, "queue"),
+    Signal("lateness", tr("Control cycle delay"), Quantity.LATENESS, "lateness"),
     Signal("line", tr("Line"), Quantity.NUMBER, "line"),
 )
 

@@ -87,7 +87,7 @@ class Notice(Panel):
         u = self.look.u
         foot = QRectF(room.x(), room.bottom() - 2.6 * u, room.width(), 2.6 * u)
         text = Message(
-            "ALSO: {number}", number="  ·  ".join(f"{each.number} {tr(each.text)}" for each in more)
+            "OTHER ALARMS: {number}", number="  ·  ".join(f"{each.number} {tr(each.text)}" for each in more)
         )
         painter.write(foot, text, 1.9, "alarm")
         return room.adjusted(0, 0, 0, -3.0 * u)

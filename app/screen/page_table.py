@@ -182,7 +182,7 @@ PAGES = (
         "app.sharing.sharing_model.SharingModel",
         "X",
         "SHARED",
-        "programs from other TurnDesk controls: newer versions, copied on request",
+        "programs from other TurnDesk controls; newer versions are copied on request",
     ),
     PageEntry(
         ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses", later=_ANALYSIS

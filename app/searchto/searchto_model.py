@@ -230,7 +230,7 @@ class SearchtoModel:
         self._forget()
         self.clear()
         if self._out_by_hand:
-            self.say(tr("RESTART FIRST RETRACTS TOOL ALONG ITS AXIS. OR JOG IT OUT"))
+            self.say(tr("RESTART RETRACTS TOOL ALONG ITS AXIS FIRST. OR JOG TOOL OUT"))
         elif (job := self.session.now.job) is not None:
             self.stage, self._of = SearchtoStage.SEARCHING, job
             self.finder.cut(job)

@@ -22,7 +22,7 @@ from core.shapes.shape_fields import Field, Kind, Value, Values, text
 from core.shapes.shape_setting import Setting
 from core.shapes.sketch import Dim, Sketch, cut, part, sketch
 
-NO_DRAWINGS = "No drawings in the program folder: copy a DXF or SVG file into it with F6, F8."
+NO_DRAWINGS = "No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8."
 CANCELED = "Reading was canceled. Press F6 to read the drawing again."
 _WORDS = {"DUNIT": (*UNITS, OWN), "LAYER": (ALL,)}  # choices of a drawing that are words of ours
 
@@ -67,7 +67,7 @@ PROFILE = Shape(
         Field("CONTOUR", "CONTOUR", Kind.CHOICE),
         Field("AXIS", "AXIS", Kind.CHOICE),
         Field("SIDE", "SIDE", Kind.CHOICE, str(Side.OUTSIDE), (Side.OUTSIDE, Side.INSIDE)),
-        Field("FRONT", "FACE END", Kind.CHOICE, str(Front.RIGHT), tuple(Front)),
+        Field("FRONT", "FACE SIDE IN DRAWING", Kind.CHOICE, str(Front.RIGHT), tuple(Front)),
         Field("ZERO", "Z REFERENCE POINT", Kind.CHOICE, str(Zero.FACE), tuple(Zero)),
         Field("SHIFT", "Z OF REFERENCE POINT", Kind.COORDINATE, 0.0, zero=True),
         Field("MATERIAL", "MATERIAL", Kind.CHOICE, "STEEL", tuple(MATERIALS)),

@@ -362,7 +362,7 @@ class Shapes:
             self._to_trouble(form)
         elif form.instead is not None and form.instead.foreign >= 0 and self.asked is None:
             count = form.instead.count
-            text = tr("F6: REPLACE {count} EDITED LINES FROM LINE {line}   ESC: KEEP")
+            text = tr("F6: REPLACE {count} EDITED LINES STARTING AT LINE {line}   ESC: KEEP")
             self.notice = tr(Message(text, count=count, line=form.instead.first + 1))
             self.asked = self._write
         else:

@@ -87,7 +87,7 @@ class NewestElsewhere:
     def _row(self, number: int, version: SharedVersion) -> VersionRow:
         on = ", ".join(self.sharing.now.who_has(version.id))
         who = (
-            join_messages("  ·  ", (version.desk, tr(Message("ON {desks}", desks=on))))
+            join_messages("  ·  ", (version.desk, tr(Message("AVAILABLE ON {desks}", desks=on))))
             if on
             else version.desk
         )
@@ -172,7 +172,11 @@ class SharingModel:
             notes = [NO_PLACE]
         elif not rows and not notes:
             notes = [NOTHING_YET]
-        waiting = tr(Message("{count} WAITING", count=self.shared.waiting)) if self.shared.waiting else ""
+        waiting = (
+            tr(Message("{count} WAITING TO BE SHARED", count=self.shared.waiting))
+            if self.shared.waiting
+            else ""
+        )
         where = self.sharing.place.name if self.sharing is not None else ""
         title = join_messages("  ·  ", filter(None, (tr("SHARED PROGRAMS"), where, waiting)))
         return Sheet(
@@ -212,7 +216,7 @@ class SharingModel:
             return "UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC"
         if not self._both:
             return "F2: USE SELECTED VERSION (ASKS FIRST)   ESC: AUTOMATIC"
-        return "F2: USE SELECTED VERSION   F3: KEEP LOCAL ONE   ESC: BACK"
+        return "F2: USE SELECTED VERSION   F3: KEEP LOCAL VERSION   ESC: BACK"
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -222,7 +226,7 @@ class SharingModel:
             "F2": Key("USE", self.take, barred=self.version is None or self.program is None),
             "F3": Key("KEEP", self.keep, barred=not self._both),
             "F4": Key("VERSION", self.next_version),
-            "F5": Key("LOOK", self.ask_for_a_look, barred=self.sharing is None),
+            "F5": Key("REFRESH", self.ask_for_a_look, barred=self.sharing is None),
         }
 
     def take(self) -> None:

@@ -68,7 +68,7 @@ class MqttBroker:
         client.on_connect = self._connected
         client.on_disconnect = self._disconnected
         host, port = broker_of(table.mqtt)
-        self._trouble = Trouble(_log, Message("the broker {host}:{port}", host=host, port=port))
+        self._trouble = Trouble(_log, Message("the MQTT broker {host}:{port}", host=host, port=port))
         client.failed = lambda error: self._trouble.say(cause_of(error))
         client.connect_async(host, port, KEEP_ALIVE)
         client.loop_start()

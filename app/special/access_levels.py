@@ -233,7 +233,11 @@ class AccessLevels(SpecialFunction):
         self._change(
             lambda: self._keep(row, pin),
             said,
-            Message("{draft} saved: {level}, new PIN", draft=draft.name, level=draft.level.name),
+            Message(
+                "user {draft} saved with level {level} and a new PIN",
+                draft=draft.name,
+                level=draft.level.name,
+            ),
         )
 
     def _keep(self, row: PersonRow, pin: str) -> None:

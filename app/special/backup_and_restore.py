@@ -124,7 +124,7 @@ class BackupAndRestore(SpecialFunction):
         verdict = self.verdicts.get(place)
         if verdict is None:
             return "CHECKING …"
-        return "NO ACTION: BACKUP IS DAMAGED" if verdict.problem else "RESTORE: BACKUP IS INTACT"
+        return "CANNOT RESTORE: BACKUP DAMAGED" if verdict.problem else "RESTORE (BACKUP IS INTACT)"
 
     def _notes(self) -> tuple[str, ...]:
         """Of the marked backup: what is wrong with it, or what a restore would change."""
@@ -187,7 +187,7 @@ class BackupAndRestore(SpecialFunction):
         if self.desk.snapshot().state in UNDER_WAY:
             self.desk.say(BARRED)
             return
-        asked = tr("Y: RESTORE {name} OVER ALL CURRENT DATA ({what})   N: CANCEL")
+        asked = tr("Y: RESTORE {name} OVER ALL CURRENT DATA (DIFFERENCES: {what})   N: CANCEL")
         self.desk.ask(
             tr(Message(asked, name=place.label, what=_other(verdict))), lambda: self._restore_now(place)
         )

@@ -46,7 +46,7 @@ class InputsOutputs(SpecialFunction):
     """F4 goes from list to list; Return on an output switches it over, after asking."""
 
     name = "INPUTS AND OUTPUTS"
-    use = "live state, manual outputs, lamps"
+    use = "live signals, manual outputs, lamps"
 
     def __init__(self, desk: Desk, machine: Machine) -> None:
         super().__init__(desk)

@@ -153,7 +153,7 @@ class LampsAndSound(SpecialFunction):
             silent = self.sounds.silent ^ {kind}
             self._choose(self.sounds.volume, silent)
         else:
-            self.desk.say("NO SOUND IS AVAILABLE FOR A RUNNING CYCLE, ONLY A LAMP")
+            self.desk.say("A RUNNING CYCLE IS SHOWN ONLY BY A LAMP. IT HAS NO SOUND")
         return True
 
     def _louder(self, by: int) -> None:

@@ -54,7 +54,10 @@ class PartsCounterFunction(FigureFunction):
             question="STOP AT HOW MANY PARTS?",
             text=self.entry.text,
             notes=(
-                "Cycle Repeat is switched off during the last part. Enter 0 to remove the target.",
+                (
+                    "Cycle Repeat turns off during the last part of the target count. Enter 0 for no "
+                    "part target."
+                ),
                 (
                     "Use NO COUNT for dry runs; the cycle is then not counted as a part. A restart "
                     "that skips lines is not counted either."

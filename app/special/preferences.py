@@ -75,7 +75,7 @@ class ScreenPreferences(SpecialFunction):
             self.desk.say("RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION")
             return
         if name == "latched" and not self.desk.one_hand:
-            self.desk.say(tr("PALM BUTTONS LATCH ONLY IN SIMULATION. A REAL SPINDLE COULD START"))
+            self.desk.say(tr("SIMULATION ONLY: LATCHED PALM BUTTONS COULD START A REAL SPINDLE"))
             return
         if name == "first_job":
             self.desk.first_job = FirstJob()

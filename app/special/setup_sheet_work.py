@@ -77,7 +77,7 @@ def page_of(
     made: MadeSheet, program: str, machine: Machine, remarks: Mapping[int, str], notes: Sequence[str]
 ) -> tuple[str, str, str]:
     """Title, date and body of the page."""
-    facts = [(tr("MACHINE"), machine.name), (tr("PROGRAM TEXT (SHA-256)"), text_hash(made.job.source))]
+    facts = [(tr("MACHINE"), machine.name), (tr("PROGRAM CHECKSUM (SHA-256)"), text_hash(made.job.source))]
     body = setup_sheet_html(made.sheet, facts, remarks, notes)
     title = tr(Message("Setup sheet: {program}", program=program))
     return title, datetime.now().strftime("%Y-%m-%d %H:%M"), body

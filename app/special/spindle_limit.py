@@ -25,7 +25,7 @@ class SpindleSpeedLimit(FigureFunction):
     """A limit for this workpiece, chuck or bar: it is gone when the control is started again."""
 
     name = "MAXIMUM SPINDLE SPEED"
-    use = "speed limit until restart"
+    use = "spindle speed limit until restart"
 
     def __init__(self, desk: Desk, spindle: SpindleModel) -> None:
         super().__init__(desk)
@@ -51,7 +51,7 @@ class SpindleSpeedLimit(FigureFunction):
             question="MAXIMUM SPINDLE SPEED?",
             text=self.entry.text,
             notes=(
-                "Programs that command a higher speed run at the limit.",
+                "If a program commands a higher speed, the spindle runs at the limit.",
                 "The limit takes effect at once, even while a program runs.",
             ),
             figures=frozenset({1}),
@@ -64,7 +64,7 @@ class SpindleSpeedLimit(FigureFunction):
     def lift(self) -> None:
         """The machine's own maximum again; asked once, because something may be in the chuck."""
         if not self.desk.snapshot().spindle_limit:
-            self.desk.say("NO LIMIT IS ACTIVE")
+            self.desk.say("NO SPINDLE SPEED LIMIT IS ACTIVE")
         elif not self.desk.refused(Act.SPINDLE_LIMIT):
             self.desk.ask(LIFT, self._lifted)
 
@@ -78,7 +78,7 @@ class SpindleSpeedLimit(FigureFunction):
         told = " → ".join(
             Message("{speed} rpm", speed=f"{each:g}") if each else "none" for each in (before, rpm)
         )
-        self.desk.access.persistence.note_change(Message("spindle limit: {details}", details=told))
+        self.desk.access.persistence.note_change(Message("spindle speed limit: {details}", details=told))
 
     def take(self, text: str) -> bool:
         """The limit, where this spindle can turn at it."""

@@ -66,15 +66,15 @@ RULES: dict[Act, Rule] = {
             "mill's tools; undoing changes to these values"
         ),
         "F8, F9, W",
-        "offsets set, clear D, undo secondary",
+        "offsets set, offsets clear D, offsets undo secondary",
     ),
     Act.COUNTS: Rule(
         Level.OPERATOR, "the part count, and the target count at which production stops", "F10 PARTS COUNTER"
     ),
     Act.INSERTS: Rule(
         Level.OPERATOR,
-        ("replacing an insert or tool, which resets its tool life to zero"),
-        "W; on a mill also F8",
+        ("replacing an insert or a tool, which resets the tool life count to zero"),
+        "key W; on a mill also key F8",
     ),
     Act.READINGS: Rule(Level.OPERATOR, "entering and deleting the measured values of parts", "W"),
     Act.JOBS: Rule(Level.OPERATOR, "jobs in the queue, with their order, part counts and notes", "J", "jobs"),
@@ -90,14 +90,14 @@ RULES: dict[Act, Rule] = {
             "master tool; editing the tools of a mill; undoing or clearing these values"
         ),
         "F8, F5",
-        "offsets set, clear, undo",
+        "offsets set, offsets clear, offsets undo",
     ),
     Act.SHAPES: Rule(Level.SETUP, "the shape of a tool", "F8 twice", "offsets set T3 kind=…"),
     Act.ZEROS: Rule(Level.SETUP, "G54 to G59", "G", "offsets set G54"),
     Act.PRESETS: Rule(
         Level.SETUP,
         "presets of a mill, and the selection of the active preset",
-        "F9 and F5 on a mill",
+        "keys F9 and F5 on a mill",
         "offsets set",
     ),
     Act.PROGRAMS: Rule(
@@ -125,7 +125,9 @@ RULES: dict[Act, Rule] = {
         "W",
     ),
     Act.TRANSFER: Rule(Level.SETUP, "serial port settings", "F10 RS-232"),
-    Act.RECORDS: Rule(Level.SETUP, "deleting a scope record; everyone can save a record", "Q"),
+    Act.RECORDS: Rule(
+        Level.SETUP, "deleting a saved scope record; every access level can save a record", "Q"
+    ),
     Act.SPINDLE_LIMIT: Rule(
         Level.SETUP,
         "removing or raising the spindle speed limit; everyone can lower it",
@@ -147,7 +149,8 @@ RULES: dict[Act, Rule] = {
     ),
     Act.SHARED_PLACE: Rule(
         Level.SERVICE,
-        "setting up the shared program location; taking over the name of a control that no longer exists",
+        "setting up the shared location for programs; giving this control the name of a "
+        "control that no longer exists",
         "",
         "share begin, share publish --claim",
     ),

@@ -45,7 +45,7 @@ AXES: Entries = {
         104,
         "drive rejected command",
         (
-            "the drives received a command that they cannot carry out now",
+            "the drives received a command that they cannot execute in their present state",
             "a drive lost its ready signal",
         ),
         (
@@ -121,11 +121,11 @@ AXES: Entries = {
         "axis hit its limit switch",
         (
             "the axis was moved before it was homed",
-            "the travel in the machine file is too long",
+            "the axis travel in the machine file is too long",
             "a fault in the switch or its cable",
         ),
         (
-            "Press Reset, then Drives On, and home the axis. If the axis is still on the "
+            "Press Reset, then Drives On, and home the axis. If the axis is still on its limit "
             "switch, first move the axis off the switch by hand"
         ),
         tells=True,
@@ -168,8 +168,8 @@ AXES: Entries = {
         "drives ran out of setpoints",
         ("the computer was busy with another task for too long", "interference on the bus"),
         (
-            "Press Reset, then Drives On. Close other programs on this computer, then restart at "
-            "the interrupted line"
+            "Press Reset, then Drives On. Close other programs on this computer, then restart "
+            "the program at the interrupted line"
         ),
     ),
     "standstill": off(
@@ -190,7 +190,10 @@ AXES: Entries = {
         117,
         "encoder not counting during a move",
         (
-            "a fault in the encoder, its cable or its coupling; the axis may have moved anyway",
+            (
+                "a fault in the encoder, its cable or its coupling; the axis may have moved although "
+                "the encoder did not count"
+            ),
             "the axis is jammed, or the tool has hit something",
             "the motor cable is disconnected",
         ),

@@ -85,7 +85,7 @@ WIRES: Entries = {
     "controller-silent": off(
         522,
         "no response from controller",
-        ("a cable fault, or interference on the line", "the controller has locked up"),
+        ("a cable fault, or electrical interference on the controller cable", "the controller has locked up"),
         "Check the cable, then press Reset. If the controller does not respond, switch it off and on",
     ),
     "controller-reset": off(
@@ -177,7 +177,7 @@ WIRES: Entries = {
         "HAL real-time thread stopped",
         (
             "the rtapi_app process has ended; only the boards' watchdogs now control the axes",
-            "the driver of a board is waiting for the board because of a cable or power fault",
+            "an interface board does not respond to its driver because of a cable or power fault",
         ),
         (
             "PRESS E-STOP: the spindle may be turning. Check power and cables of the "

@@ -14,8 +14,11 @@ CONTROL: Entries = {
     "broken-path": off(
         902,
         "planned path is not continuous",
-        ("an internal error in TurnDesk; the faulty section of the path was not executed",),
-        ("Press Reset, then Drives On. Save the program and the log (F10), then restart at another line"),
+        ("an internal error in TurnDesk; the axes did not move along the faulty part of the path",),
+        (
+            "Press Reset, then Drives On. Save the program and the log (F10), then restart the "
+            "program at another line"
+        ),
     ),
     "not-safe": off(
         905,
@@ -59,8 +62,8 @@ CONTROL: Entries = {
             "the screen was locked or the computer was in sleep mode",
         ),
         (
-            "Check the tool. Read on the screen what will restart, then press Cycle Start. "
-            "Measure this part; it is not counted automatically"
+            "Check the tool. Read on the screen which functions will restart, then press Cycle "
+            "Start. Measure this part, because it is not counted automatically"
         ),
         tells=True,
     ),
@@ -107,7 +110,7 @@ PROGRAM: Entries = {
         "program error",
         (
             "this line cannot be run as programmed",
-            "a branch controlled by an input or a counter went to a line that had never run before",
+            "an input or a counter made the program jump to a line that had never run before",
         ),
         "Correct the line in the editor (F3) and load the program again",
         tells=True,

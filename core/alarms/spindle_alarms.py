@@ -116,7 +116,7 @@ SPINDLE: Entries = {
         211,
         "spindle did not switch to C-axis mode",
         (
-            "the spindle index was not found",
+            "the index pulse of the spindle encoder was not found",
             "the spindle drive did not switch to C-axis mode in time",
             ("power was lost during the switch to C-axis mode"),
         ),
@@ -139,11 +139,11 @@ SPINDLE: Entries = {
                 "something prevents the spindle from reaching the commanded angle, or has turned the "
                 "spindle away from that angle"
             ),
-            "the spindle index was not found",
+            "the index pulse of the spindle encoder was not found",
         ),
         (
             "Before moving any axis, check whether a boring bar is still in its hole. Press "
-            "Reset, then test the orientation in MDI"
+            "Reset, then test the spindle orientation in MDI"
         ),
         tells=True,
     ),

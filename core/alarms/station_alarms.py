@@ -8,7 +8,7 @@ STATION: Entries = {
     "held": hold(
         600,
         "feed hold set by TurnDesk",
-        ("the cause is shown in this alarm",),
+        ("the text of this alarm shows the cause",),
         "Correct the cause shown, then press Cycle Start",
         tells=True,
     ),

@@ -63,12 +63,12 @@ def in_words(
     for found in comparison.found:
         yield _deviation(found, made.nose_radius, mm, unit, places)
     within = plain(max(comparison.worst, 0.001) / mm, places)
-    what = "elsewhere, the simulated part" if comparison.found else "the simulated part"
+    what = "the rest of the simulated part" if comparison.found else "the simulated part"
     yield Message("{what} matches the drawing to within {within} {unit}", what=what, within=within, unit=unit)
 
 
 def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int) -> str:
-    what = "of stock remains, measured on" if found.most > 0.0 else "too much is cut, measured on"
+    what = "stock remains" if found.most > 0.0 else "too much stock is cut"
     deep = plain(abs(found.most) / mm, places)
     span = Message(
         "Z {front} to {back}", front=plain(found.front / mm, places), back=plain(found.back / mm, places)
@@ -82,7 +82,7 @@ def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int)
             position=at,
         )
     return Message(
-        ("{depth} {unit} {what} the radius, from {span}"), depth=deep, unit=unit, what=what, span=span
+        ("{what}: {depth} {unit} on the radius, from {span}"), depth=deep, unit=unit, what=what, span=span
     )
 
 

@@ -194,7 +194,7 @@ class CommandHandler:
                 "switch",
                 Message("no more parts may be run: {why}", why=command.why)
                 if command.why
-                else ("more parts may be run"),
+                else ("parts may be run again"),
             )
 
     # --- jog, homing --------------------------------------------------------------------------------------

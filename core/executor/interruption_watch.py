@@ -179,7 +179,7 @@ class InterruptionWatch:
         how = (
             "resume at the interrupted line with SEARCHTO (F6), or press Y"
             if there
-            else ("jog the tool clear of the part, press Y")
+            else ("jog the tool clear of the part, then press Y")
         )
         return Message(
             "line {line} of {program} was interrupted, and {tool} may still be in the part: "

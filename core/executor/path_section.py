@@ -17,7 +17,7 @@ from core.motion.motion_path import Path, PathBuilder
 class Progress(Enum):
     """How far the present path section is."""
 
-    DONE = "no path section is active, or the end of the path section is reached"
+    DONE = "no move is active, or all moves of the path are finished"
     MOVING = "moving"
     BLOCK_END = "the axes are stopped at the end of a block by Single Block"
     STILL = "the axes are stopped because the override is 0"

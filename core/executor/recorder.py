@@ -97,7 +97,7 @@ class Recorder:
         try:
             self._file = new_ring(folder, name, self.ring)
         except RecordError as error:
-            self.trouble = Message("the record is stored in memory only: {error}", error=error)
+            self.trouble = Message("the scope record is stored in memory only: {error}", error=error)
 
     # --- the executor's thread ------------------------------------------------------------------------
 
@@ -187,7 +187,7 @@ class Recorder:
             try:
                 self._file.write(rows, parts)
             except RecordError as error:
-                self.trouble = Message("the record is stored in memory only: {error}", error=error)
+                self.trouble = Message("the scope record is stored in memory only: {error}", error=error)
                 _log.warning("%s", self.trouble)
                 self._file.close()
                 self._file = None
@@ -323,7 +323,7 @@ def rotate(folder: Path) -> None:
     except OSError as error:
         raise RecordError(
             Message(
-                "{folder}: old records cannot be deleted: {cause}",
+                "{folder}: old alarm records cannot be deleted: {cause}",
                 folder=folder,
                 cause=error.strerror or error,
             )

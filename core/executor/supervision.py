@@ -140,7 +140,7 @@ class OutputsWatch:
         if not off:
             return
         if trip.spindle:
-            context.spindle.dropped("DRIVER HOST STOPPED SPINDLE/OUTPUTS")
+            context.spindle.dropped("DRIVER PROCESS SWITCHED OFF SPINDLE AND OUTPUTS")
         context.outputs.fell(outputs)
         self._known_off |= set(outputs)
         who = "NO SIGNAL FROM MACHINE" if trip.found else "NO SIGNAL FROM CONTROL"

@@ -337,7 +337,9 @@ class ThreadRetract(NamedTuple):
         """Why, and what the thread on the part is now."""
         if not self.cutting:
             return Message(
-                "{why} during the pull-out: the thread is cut, but its runout is short", why=self.why
+                "{why} during the pull-out: the thread is cut, but the thread runout is shorter than "
+                "programmed",
+                why=self.why,
             )
         metric = self.block.modal.metric
         at = f"{z - self.block.offset_z:.3f}" if metric else f"{(z - self.block.offset_z) / _INCH:.4f}"

@@ -266,8 +266,8 @@ class TouchOff:
             far = self._length(model.back_off)
             self._over(
                 Message(
-                    "the probe input is still on at a distance of {distance} from the touch point; check the "
-                    "stylus and the cable",
+                    "the probe input is still on after the tool has backed off {distance} from the touch "
+                    "point; check the stylus and the cable",
                     distance=far,
                 )
             )

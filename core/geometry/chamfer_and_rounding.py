@@ -32,7 +32,7 @@ class CornerTooLargeError(CornerError):
 
     def __init__(self, needed: float, *, first: bool) -> None:
         super().__init__(
-            Message("the {choice} is too short", choice="line itself" if first else "next line"),
+            Message("the {choice} is too short", choice="current line" if first else "next line"),
             "line-too-short",
         )
         self.needed = needed

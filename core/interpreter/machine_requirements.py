@@ -43,7 +43,7 @@ _WORDS = {
     SURFACE_THREAD: "threading with constant surface speed; program G97 before the thread",
     C_AXIS: "the C axis",
     ORIENT: "spindle orientation to an angle",
-    PLANE: "milling with plane switching",
+    PLANE: "milling with the plane commands (~PLXC) and (~PLZC)",
     AXES: "axes other than X and Z",
 }
 

@@ -283,7 +283,7 @@ RULES = (
     _below(
         "machine.lease_ms",
         "machine.lookahead_ms",
-        "jog motion is never queued more than machine.lookahead_ms ahead",
+        "jog motion is queued at most machine.lookahead_ms ahead, so machine.lease_ms must not be longer",
         Unit.MILLISECONDS,
     ),
     _below(

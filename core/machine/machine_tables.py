@@ -471,7 +471,10 @@ _OF_THIRD_SLIDE = {
         "`vmax` × 15.9 ms."
     ),
     "in_pos": "Distance from the target within which the axis is in position. Default: 5 × `count`.",
-    "still_window": "Largest error at rest. Default: 1 mm (at least 4 × `in_pos`, at most `fe_window`).",
+    "still_window": (
+        "Largest position error while the axis is at rest. Default: 1 mm (at least 4 × "
+        "`in_pos`, at most `fe_window`)."
+    ),
 }
 THIRD_SLIDE = (
     *(

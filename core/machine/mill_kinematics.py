@@ -132,7 +132,12 @@ class KinematicsReading:
         self.findings += read_table(table, WORKPIECE, TABLE, self._values, tuple(rotary))
         if kind != "mill":
             self.findings.append(
-                Finding(f"[{TABLE}]", "", "only a mill can have this table; set machine.kind", "mill-only")
+                Finding(
+                    f"[{TABLE}]",
+                    "",
+                    'only a mill can have this table; set machine.kind = "mill"',
+                    "mill-only",
+                )
             )
         if not isinstance(table, dict):
             return

@@ -11,7 +11,10 @@ from core.message import Message
 from core.table_schema import Finding, written
 
 # Codes of the language and the outputs they switch.
-NEEDED_OUTPUTS = {"coolant": "M08 and M09 switch this output", "collet": "M12 and M13 switch this output"}
+NEEDED_OUTPUTS = {
+    "coolant": "M08 and M09 need this output to switch the coolant",
+    "collet": ("M12 and M13 need this output to close and open the collet"),
+}
 ESTOP = "estop"
 _NUMBERS = frozenset(str(number) for number in range(1000))
 
@@ -47,7 +50,7 @@ def _needed(reading: Reading) -> Iterator[Finding]:
                 ),
                 "missing",
             )
-    needed = {ESTOP: "TurnDesk monitors this input"}
+    needed = {ESTOP: "TurnDesk needs this input to monitor the E-stop"}
     values = reading.values
     if values.has("interlocks.two_hand_start") and values.flag("interlocks.two_hand_start"):
         needed["start"] = "interlocks.two_hand_start needs the output of the two-hand relay"

@@ -66,7 +66,8 @@ def wrong_wheel(file: FileReading) -> Iterator[Finding]:
     for button, switches in ((AXIS_BUTTON, selectors), (STEP_BUTTON, list(FACTORS))):
         if button in there and (also := [name for name in switches if name in there]):
             why = Message(
-                "{also} already makes this selection; use a button or switches, not both", also=also[0]
+                "{also} already makes this selection; use either the button or the switches, not both",
+                also=also[0],
             )
             yield Finding(f"io.in.{button}", "", why, "broken-rule")
     for name in there:

@@ -140,7 +140,7 @@ class AirChecks:
             yield Found("unmade-cut", text, gone)
         elif move.length >= _AWAY and not near(cutter, part, move.points[-1]):
             if self._out_of_part(move, cutter, fresh=fresh):
-                text = "This move feeds along Z out past the part face, inside the stock diameter."
+                text = "This move feeds along Z out of the part and past its face, inside the stock diameter."
                 yield Found("unmade-cut", text)
             elif near(cutter, part, move.points[0]) and not self._cut_before:  # behind a cut it is a retract
                 self._left_part = move

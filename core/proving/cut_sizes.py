@@ -144,7 +144,7 @@ def _depth(
     largest, usual = _largest(shape), depth_limit(shape)
     if deep > largest and move.rpm:  # a spindle that is switched by hand may stand
         words = Message(
-            "{tool} cuts {depth} deep in one pass, but its limit is {largest}.",
+            "{tool} cuts {depth} deep in one pass, but its maximum depth of cut is {largest}.",
             tool=edge_name(tool),
             depth=text(deep),
             largest=text(largest),

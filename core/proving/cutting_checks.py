@@ -184,7 +184,7 @@ class CuttingChecks:
             text = "This move cuts with no tool active, so no tool length or radius applies."
             hint = "Write TOOL CALL before this move." if self.dialect is Dialect.KLARTEXT else hint
         elif self._tool_off:
-            after = Message("the T0 on line {tool_off}", tool_off=self._tool_off)
+            after = Message("the tool cancel (T0) on line {tool_off}", tool_off=self._tool_off)
             text = Message(
                 "This cutting move follows {after}, so its coordinates are relative to machine home.",
                 after=after,
@@ -202,8 +202,8 @@ class CuttingChecks:
             )
         elif block.x != block.x0 or block.z < block.z0:
             text = (
-                "This move feeds with the collet open, but it does not move straight away from the "
-                "spindle as in a bar pull."
+                "This move feeds with the collet open, but not in a straight line away from the "
+                "spindle, as a bar pull does."
             )
             self._report(
                 block, Severity.WARNING, "collet-open", text, ("Close the collet with M12 before this move.")

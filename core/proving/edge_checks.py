@@ -95,7 +95,7 @@ class EdgeChecks:
         yield from _without_limit(move, shape, tool)
         if self._solid > _ENTERS and met.width > _ENTERS:
             words = Message(
-                "{tool} feeds {solid} into solid material.",
+                "{tool} feeds {solid} along Z into solid material.",
                 tool=edge_name(tool),
                 solid=move.modal.length_text(self._solid),
             )
@@ -252,7 +252,7 @@ def _off_axis(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
     off = min(abs(r) for _, r in move.points)
     if shape.kind in _DRILLS and move.rpm and off > _OFF_AXIS:
         words = Message(
-            "{tool} cuts at a distance of {off} from the spindle centerline.",
+            "{tool} is {off} off the spindle centerline when it cuts.",
             tool=edge_name(tool),
             off=move.modal.length_text(off),
         )
@@ -341,7 +341,8 @@ def _wrong_side(
         faces = behind <= _FACED and not _stands_behind(part, met, forward, abs(end[1]), cutter.side)
         if behind > 2.0 * shape.nose_radius + _BEHIND and met.depth > _BEHIND and not faces:
             words = Message(
-                "{tool} cuts in at {steep}°, but the trailing edge of its insert clears only {clears}°.",
+                "{tool} cuts into the part at {steep}°, but the trailing edge of its insert clears "
+                "only {clears}°.",
                 tool=edge_name(tool),
                 steep=f"{steep:.0f}",
                 clears=f"{clears:.0f}",

@@ -120,10 +120,10 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A tool feeds into the part while neither the tool nor the spindle turns.",
         (
-            "A drill, reamer, mill, turning tool or parting blade cuts more than .001 in "
-            "of material while no live tool is on and the spindle is stopped, or clamped "
-            "as the C axis after it has turned. Not checked if the machine file has no M "
-            "code for a live tool."
+            "With no live tool on, a drill, reamer, mill, turning tool or parting blade cuts "
+            "more than .001 in of material while the spindle is stopped, or while it is clamped "
+            "as the C axis after it has turned. Not checked if the machine file has no M code "
+            "for a live tool."
         ),
         "Start the spindle or the live tool before this move.",
     ),
@@ -131,15 +131,15 @@ CHECKS: Mapping[str, Check] = {
         _WARNING,
         "The spindle turns so fast that the stock may whip.",
         (
-            "The speed is more than half the first critical speed of the protruding stock, "
-            "calculated as a brass bar clamped at one end."
+            "The spindle speed is more than half the first critical speed of the protruding "
+            "stock. The critical speed is calculated for a brass bar clamped at one end."
         ),
         "Lower S, limit the speed under G96, reduce the overhang of the part, or support it.",
     ),
     "larger-than-stock": Check(
         _ERROR,
         "The part is larger than its stock, so a contour is cut in air outside the bar.",
-        "A feed move along Z of .1 in or more next to the stock stays at least .08 in outside the stock.",
+        "A feed move of .1 in or more along Z, next to the stock, stays at least .08 in outside the stock.",
         "Check the stock size, and check whether X is a radius or a diameter.",
         (STOCK,),
     ),
@@ -154,12 +154,12 @@ CHECKS: Mapping[str, Check] = {
     ),
     "unmade-cut": Check(
         _ERROR,
-        ("A cutting move feeds away from the part, and nothing is cut where a cut seems to be intended."),
+        ("A cutting move feeds away from the part, so a cut that seems to be intended is not made."),
         (
-            "A feed move goes away from the part, or out past the part face; no feed move "
-            "between two rapids, or no feed move of a live tool, comes near material; the "
-            "tool moves in and out alongside the part in rapid without a cut; a tool that "
-            "reaches the part never feeds; or a drill feeds into an existing hole."
+            "A feed move goes away from the part or out past the part face; or no feed move "
+            "between two rapids, or no feed move of a live tool, comes near material; or the "
+            "tool moves in and out alongside the part in rapid without a cut; or a tool that "
+            "reaches the part makes no feed moves; or a drill feeds into an existing hole."
         ),
         "Look for a missing minus sign (Z.5 for Z-.5) or a missing decimal point (X4 for X.4).",
     ),
@@ -180,7 +180,7 @@ CHECKS: Mapping[str, Check] = {
         "The tool rubs along the finished surface.",
         (
             "A turning tool with a defined shape returns in rapid along Z, by .1 in or more, at "
-            "the radius it has turned."
+            "the radius that it has just turned."
         ),
         "Move X away from the part before you move Z.",
     ),
@@ -277,8 +277,8 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "The bar is cut far past the part-off.",
         (
-            "A feed move along Z ends past the part-off position nearest the chuck, on the "
-            "bar side, by more than .5 in and by more than the part length."
+            "A feed move along Z ends on the bar side of the part-off position nearest the "
+            "chuck, past this position by more than .5 in and by more than the part length."
         ),
         "Look for a missing decimal point (Z-3 for Z-.3).",
     ),
@@ -327,8 +327,9 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A parting or grooving blade turns along Z.",
         (
-            "The blade turns along Z by more than its width, at a depth of more than .01 in "
-            "(parting) or .8 of its width (grooving, per Ingersoll)."
+            "The blade turns along Z by more than its width. The depth of cut is more than .01 "
+            "in for a parting blade, or more than .8 of the blade width for a grooving blade "
+            "(Ingersoll's limit)."
         ),
         "Check the tool number; widen a groove with adjacent plunges.",
     ),
@@ -336,8 +337,8 @@ CHECKS: Mapping[str, Check] = {
         _WARNING,
         "The feed per revolution is too high for the cutting edge.",
         (
-            "The feed is more than .8 of the nose radius, .12 of the width of a grooving tool, "
-            "or .04 of the diameter of a drill (.1 of a reamer)."
+            "The feed per revolution is more than .8 of the nose radius, .12 of the width of a "
+            "grooving tool, or .04 of the diameter of a drill (.1 of a reamer)."
         ),
         "Lower F, or look for a missing decimal point (F.03 for F.003).",
     ),
@@ -345,8 +346,9 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "The feed per revolution is far too high for the cutting edge.",
         (
-            "The feed is more than twice the nose radius of an insert and more than .006 in, or "
-            "more than five times the chip-load limit of a drill, reamer or blade."
+            "The feed per revolution is more than twice the nose radius of an insert and more "
+            "than .006 in, or it is more than five times the chip-load limit of a drill, reamer "
+            "or blade."
         ),
         "Lower F; look for a missing decimal point, or for millimeters in an inch program.",
     ),
@@ -357,8 +359,9 @@ CHECKS: Mapping[str, Check] = {
             "lead, or ends while the axis decelerates."
         ),
         (
-            "The distance from the start of the pass to the material is less than v²/2a of the Z "
-            "axis, or the pass stops in material and v²/2a is more than one lead."
+            "The distance from the start of the pass to the material is less than the "
+            "acceleration distance v²/2a of the Z axis, or the pass stops in material and v²/2a "
+            "is more than one lead."
         ),
         (
             "Start farther from the material, lower S, end in a groove, or pull out while "
@@ -402,12 +405,12 @@ CHECKS: Mapping[str, Check] = {
     ),
     "tap-reversal": Check(
         _ERROR,
-        "A tap is pulled out of its thread instead of being turned out.",
+        "A tap is pulled out of its thread instead of being backed out.",
         (
-            "The tap is retracted in rapid, with the spindle stopped or not reversed, or "
-            "at a different feed than it was fed in; or the tap travels more than .5 in "
-            "before the spindle stops. Not checked if the comment says that the holder "
-            "reverses automatically."
+            "The tap is retracted at rapid, with the spindle stopped, with the spindle not "
+            "reversed, or at a feed that differs from the feed into the hole; or the tap travels "
+            "more than .5 in before the spindle stops. Not checked if the comment says that the "
+            "holder reverses automatically."
         ),
         "Reverse the spindle at the bottom of the hole, and feed out at the pitch.",
         (TOOL,),
@@ -428,9 +431,9 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A cutting move is programmed with the collet open.",
         (
-            "A cutting move is programmed after M13. This is only a warning if a feed move "
-            "does not go straight away from the spindle as in a bar pull, or if the next "
-            "cycle would start with the collet open."
+            "A cutting move is programmed after M13. This is only a warning if the move is a "
+            "feed move in any direction other than straight out from the spindle (as in a bar "
+            "pull), or if the next cycle would start with the collet open."
         ),
         "Close the collet with M12.",
     ),
@@ -438,8 +441,9 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A milling move is programmed while the live tool is off.",
         (
-            "A cutting move is programmed with plane switching active, but no live tool is "
-            "running. If the spindle is locked as the C axis, this is only a warning."
+            "A cutting move of face milling, or of milling around the part, is programmed with "
+            "no live tool running. A cutting move with the spindle locked as the C axis and no "
+            "live tool running is only a warning."
         ),
         "Turn on the live tool with its M code from the machine file.",
     ),
@@ -492,7 +496,7 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
             "TurnDesk proves both branches of input-dependent calls, block delete and "
             "loops, within its limits."
         ),
-        "Check the call, or prove again with the inputs that lead to the unreached lines.",
+        "Check the call, or prove the program again with the inputs that lead to the lines not reached.",
     ),
 }
 """What is found without the stock: beside tool, collet, spindle, inputs and ways through the program."""

@@ -259,8 +259,7 @@ class PartMaking:
         assumed = [each.words for _, each in sorted(self._tools.assumed.items())]
         if stock is None and self._tools.uses:
             assumed.append(
-                "no stock is assumed, because feed moves cut in front of Z0, and the stock "
-                "face cannot be there"
+                "no stock could be assumed: feed moves cut in front of Z0, so the stock face cannot be at Z0"
             )
         for line, n, text in self._tools.nothing_cut(stock):
             self.findings.nothing_cut(line, n, text)
@@ -284,7 +283,7 @@ class PartMaking:
 def _cut_standing(lines: Mapping[int, int]) -> list[str]:
     return [
         Message(
-            "cuts by {tool} with the spindle stopped, starting at line {line}",
+            "cuts by {tool} from line {line} on, while the spindle is stopped",
             tool=edge_name(tool),
             line=line,
         )

@@ -124,7 +124,7 @@ def uncalled(reading: ReadProgram) -> Iterator[Diagnostic]:
     for number, at in sorted(program.structure.subroutines.items()):
         if number not in reached:
             text = Message("Subroutine {number} is never called, so it was not proved.", number=number)
-            hint = Message("Call the subroutine with M98P{number}, or remove it.", number=number)
+            hint = Message("Call the subroutine with M98P{number}, or remove the subroutine.", number=number)
             yield Diagnostic(
                 at + 1, 0, Severity.NOTE, "unreached-branch", text, hint, check="unreached-branch"
             )
@@ -178,7 +178,7 @@ class Choice:
         """As an operator reads it."""
         name = "7" if self.terminal == "TB2-9" else self.terminal
         return Message(
-            "input {number} {state} at line {line}",
+            "input {number} is {state} at line {line}",
             number=name,
             state="on" if self.on else "off",
             line=self.line,
@@ -201,9 +201,9 @@ class _BranchPass:
 def _with(choices: Sequence[Choice], message: str) -> str:
     """A finding and its way: the last two of its inputs, which are what an operator looks at."""
     if len(choices) == 1:
-        return Message("With {input}: {message}", input=choices[0].words, message=message)
+        return Message("If {input}: {message}", input=choices[0].words, message=message)
     return Message(
-        "With {input} and {second}: {message}",
+        "If {input} and {second}: {message}",
         input=choices[-2].words,
         second=choices[-1].words,
         message=message,

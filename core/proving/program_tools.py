@@ -152,7 +152,7 @@ class ProgramTools:
                     move.n,
                     (
                         Message(
-                            "{number} never feeds, because all its moves are rapids.",
+                            "{number} makes no feed moves; all its moves are rapids.",
                             number=edge_name(use.number),
                         )
                     ),

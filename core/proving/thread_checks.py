@@ -275,22 +275,18 @@ class ThreadChecks:
             return  # a spindle that is switched by hand
         if move.quick:
             yield Found(
-                "tap-reversal", Message("{tool} is pulled out of its thread in rapid.", tool=edge_name(tool))
+                "tap-reversal", Message("{tool} retracts from the thread at rapid.", tool=edge_name(tool))
             )
         elif fed.rpm * move.rpm > 0.0:
-            words = "while the spindle still turns in the tapping direction"
+            words = "the spindle still turns in the tapping direction"
             yield Found(
                 "tap-reversal",
-                Message("{tool} is pulled out of its thread {words}.", tool=edge_name(tool), words=words),
+                Message("{tool} retracts from the thread, but {words}.", tool=edge_name(tool), words=words),
             )
         elif not move.rpm:
             yield Found(
                 "tap-reversal",
-                (
-                    Message(
-                        "{tool} is pulled out of its thread with the spindle stopped.", tool=edge_name(tool)
-                    )
-                ),
+                (Message("{tool} retracts from the thread with the spindle stopped.", tool=edge_name(tool))),
             )
         else:
             yield from self._reversed(move, fed, tool)

@@ -36,14 +36,14 @@ def _phrases(
             ("{without}: tool holder, edge length and hand of the tool not defined"), without=_names(without)
         )
     if short := [n for n in used if n in shapes and shapes[n].kind in _DEEP and not shapes[n].length]:
-        yield Message("{short}: maximum tool depth (no flute length defined)", short=_names(short))
+        yield Message("{short}: maximum tool depth (unknown: no flute length defined)", short=_names(short))
     if clamping is None or not clamping.diameter:
         yield (
             "collisions with the chuck and jaws, and stock whip (these checks require a "
             "diameter in [clamping] and a stick-out)"
         )
     if clamping is None or not clamping.max_rpm:
-        yield "maximum chuck speed (no max_rpm in [clamping])"
+        yield "maximum chuck speed (unknown: no max_rpm in [clamping])"
     if gang and (beside := sorted(gang.keys() - shapes.keys())):
         yield (
             Message(

@@ -84,7 +84,8 @@ def charts_of(values: Sequence[float], size: int) -> ChartPair:
     if size not in SAMPLE_SIZES:
         raise QualityError(
             Message(
-                "a control chart is not possible for a sample of {size}; use 1 to {sample_sizes} parts",
+                "a control chart is not possible for samples of {size}; use samples of 1 to "
+                "{sample_sizes} parts",
                 size=size,
                 sample_sizes=SAMPLE_SIZES[-1],
             ),

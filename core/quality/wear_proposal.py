@@ -91,7 +91,7 @@ def propose(
             feature,
             len(newest),
             mean,
-            ("the correction would be less than the smallest step, so no correction is needed"),
+            ("the correction would be less than the smallest offset step, so no correction is needed"),
         )
     at_offset = change / 2.0 if feature.axis == "x" else change
     if abs(at_offset) > WEAR_MOST:

@@ -97,7 +97,10 @@ def checked_record(record: Record) -> Record:
     """Return a record from a file, with infinite values as unknown. Raises UnsoundError."""
     if not 0.0 <= record.started <= _LATEST:
         raise UnsoundError(
-            Message(("the start time, {started} s after 1970, is not valid"), started=f"{record.started:g}")
+            Message(
+                ("the start time of the record, {started} s after 1970, is not valid"),
+                started=f"{record.started:g}",
+            )
         )
     if not 0.0 <= record.rate < np.inf:
         raise UnsoundError(

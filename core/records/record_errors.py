@@ -30,9 +30,10 @@ def damage(path: Path, error: Exception) -> RecordError:
     """Return the error for a file whose content is not as it was written."""
     if isinstance(error, UnsoundError):
         return RecordError(
-            Message("{path} is damaged ({error}); open another record", path=path, error=error), "damaged"
+            Message("{path} is damaged ({error}); open another scope record", path=path, error=error),
+            "damaged",
         )
-    return RecordError(Message("{path} is damaged; open another record", path=path), "damaged")
+    return RecordError(Message("{path} is damaged; open another scope record", path=path), "damaged")
 
 
 def why(path: Path, error: OSError) -> RecordError:

@@ -153,7 +153,7 @@ def _record(told: dict[str, object], column: Callable[[str], object]) -> Record:
         columns[channel.name] = np.where(found == _UNKNOWN, np.nan, found) if channel.logic else found
     started, rate = told["started"], told["rate"]
     if not isinstance(started, int | float) or not isinstance(rate, int | float):
-        raise UnsoundError("the start time is missing")
+        raise UnsoundError("the start time of the record is missing")
     words = {str(name): str(text) for name, text in about.items()}
     return Record(made, times, columns, float(started), float(rate), words)
 

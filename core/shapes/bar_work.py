@@ -70,7 +70,7 @@ LOOP = Shape(
     ),
     (
         Field("COUNT", "PARTS", Kind.COUNT, None, most=100_000),
-        Field("LONG", "BAR PER PART, WITH CUT-OFF", Kind.LENGTH),
+        Field("LONG", "BAR LENGTH PER PART + CUT-OFF", Kind.LENGTH),
         Field("FEEDS", "FEED THE BAR", Kind.CHOICE, EACH, (EACH, ONCE)),
         Field("STOP", "TOOL USED AS STOP", Kind.TOOL, lambda _v, s: float(next_tool(s)), most=32),
         Field("STOCK", "FACING ALLOWANCE", Kind.LENGTH, size(0.025, 0.6), zero=True),

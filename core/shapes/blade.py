@@ -34,7 +34,7 @@ def side_of(filled: Filled) -> float:
 
 
 BLADE_FIELD = Field("WIDE", "BLADE WIDTH", Kind.LENGTH, _width, marked=True)
-CORNER_FIELD = Field("CORNER", "CORNER TOUCHED OFF", Kind.CHOICE, _corner, (LEFT, RIGHT))
+CORNER_FIELD = Field("CORNER", "CORNER USED FOR TOUCH-OFF", Kind.CHOICE, _corner, (LEFT, RIGHT))
 
 
 class Blade:

@@ -326,24 +326,24 @@ def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal(
             "SIDE",
             (
-                "CYCLE93 does not support a tool at negative X: enter 0 as the D number of the "
-                "other blade corner."
+                "CYCLE93 does not support a tool at negative X: use G1 by entering 0 as the D number "
+                "of the other blade corner."
             ),
         )
     if filled.n("EDGE"):
         yield Refusal(
             "EDGE",
             (
-                "CYCLE93 cannot break these edges: enter 0, or enter 0 as the D number of the "
-                "other blade corner."
+                "CYCLE93 cannot chamfer these edges: enter 0 for the chamfer, or use G1 by entering "
+                "0 as the D number of the other blade corner."
             ),
         )
     if any(_slants(filled)):
         yield Refusal(
             "FANGLE",
             (
-                "CYCLE93 can cut only square walls here: enter 0, or enter 0 as the D number "
-                "of the other blade corner."
+                "CYCLE93 can cut only square walls here: enter 0 for the slope, or use G1 by "
+                "entering 0 as the D number of the other blade corner."
             ),
         )
 

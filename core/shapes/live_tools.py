@@ -337,7 +337,10 @@ def _live_checks(checks: Checks) -> Checks:
         if not setting.shop.third_axis:
             yield Refusal("T", ("This machine has no third axis that holds and turns the part."))
         elif setting.shop.third_axis.startswith("Y") and filled.shape.name != CROSS.name:
-            words = "The third axis of this machine is named Y, but this plane needs a separate Y axis"
+            words = (
+                "The third axis of this machine is named Y, but the plane of this shape needs a "
+                "separate Y axis"
+            )
             yield Refusal("T", Message("{words}: mill this shape on another machine.", words=words))
         elif not setting.shop.live_output:
             words = "This machine has no output that drives a live tool"

@@ -114,7 +114,7 @@ ROUGH = Shape(
 )
 THREADING = Shape(
     "THREAD G33",
-    "tool, lead-in, passes with constant chip cross-section, pull-out",
+    "calls the tool, leads in, cuts passes with a constant chip cross-section, and pulls out",
     (
         _TOOL,
         _SPEED,
@@ -132,7 +132,7 @@ BAR_FEED = Shape(
     (
         Field("COUNT", "PARTS", Kind.COUNT, 10.0, most=100_000),
         _TOOL,
-        Field("LONG", "BAR PER PART, WITH CUT-OFF", Kind.LENGTH, size(1.0, 25.0)),
+        Field("LONG", "BAR LENGTH PER PART + CUT-OFF", Kind.LENGTH, size(1.0, 25.0)),
         Field("SUB", "PART SUBROUTINE NUMBER", Kind.COUNT, lambda _v, s: float(s.free_sub), most=9999),
     ),
     _loop,

@@ -40,7 +40,7 @@ def shown(values: Mapping[str, str]) -> str:
     return (
         named
         if is_local(values) or values.get("sslmode") in _VERIFIED
-        else Message("{named} (TLS not verified)", named=named)
+        else Message("{named} (TLS certificate not verified)", named=named)
     )
 
 

@@ -75,7 +75,7 @@ class SharedDatabase:
     """
 
     def __init__(self, conninfo: str) -> None:
-        self.name, self._conninfo = database_at("specified in [sharing] postgresql"), conninfo
+        self.name, self._conninfo = database_at("([sharing] postgresql in the machine file)"), conninfo
         with suppress(SharingError):  # told by whoever asks the database
             self.name = database_at(shown(with_tls(parsed(conninfo))))
 

@@ -460,7 +460,7 @@ def named(name: str, key: row_sums.Key) -> str:
         return Message("{others} {text}", others=_OTHERS[name], text=" ".join(str(key).split()))
     if table.letter != "T" or not isinstance(key, int):
         return f"{table.letter}{key}"
-    return Message("{key}'s shape", key=edge_name(key)) if table.row is ShapeRow else edge_name(key)
+    return Message("the tool shape of {key}", key=edge_name(key)) if table.row is ShapeRow else edge_name(key)
 
 
 _OTHERS = {

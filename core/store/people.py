@@ -76,7 +76,7 @@ def keep_person(connection: sqlite3.Connection, row: PersonRow) -> None:
 def remove_person(connection: sqlite3.Connection, name: str) -> None:
     """He works here no more. Raises StoreError where nobody of the highest level would stay among others."""
     if not connection.execute("DELETE FROM people WHERE name = ?", (name,)).rowcount:
-        raise StoreError(Message("{name} is not in the list of people", name=name), "unknown-person")
+        raise StoreError(Message("{name} is not in the list of users", name=name), "unknown-person")
     _demand_service(connection)
 
 
@@ -106,8 +106,8 @@ def _demand_service(connection: sqlite3.Connection) -> None:
     if levels and max(levels) < 3:
         raise StoreError(
             (
-                "the list of people must contain one person with SERVICE level who can enter "
-                "the others; enter this person first"
+                "the list of users must contain one user with SERVICE level who can enter the "
+                "others; enter this user first"
             ),
             "last-service-person",
         )

@@ -127,7 +127,7 @@ class CanEncoder:
             raise DriverError(
                 Message(
                     "{name}: the encoder count wraps around after {range} rev, but the spindle may turn "
-                    "{between} rev between two responses; use an encoder that counts at least "
+                    "{between} rev between two responses; use an encoder whose count covers at least "
                     "{between2} rev",
                     name=config.name,
                     range=f"{self._range / counts:.3g}",

@@ -214,8 +214,8 @@ def _heartbeat(file: FileReading) -> Iterator[Finding]:
 
 
 _C_WITHOUT = (
-    ", or set counts_per_rev of the spindle drive, which also serves as the C axis with "
-    'canopen mode = "pvt" and without axis.C.own_drive'
+    "; the spindle drive can also serve as the C axis: set its counts_per_rev, set "
+    '[canopen] mode = "pvt" and omit axis.C.own_drive'
 )
 
 
@@ -237,7 +237,10 @@ def _drives(file: FileReading) -> Iterator[Finding]:
             yield Finding(
                 method,
                 "",
-                ("this entry is missing; enter the drive's homing method, 1 or 2 for a limit switch"),
+                (
+                    "this entry is missing; enter the number of the drive's homing method (1 or 2 for "
+                    "homing on a limit switch)"
+                ),
             )
     if values.says("spindle.driver", "cia402") and SPINDLE not in nodes:
         yield Finding(
@@ -268,7 +271,8 @@ def _outside(file: FileReading) -> Iterator[Finding]:
                 path,
                 "",
                 Message(
-                    "the travel exceeds a drive's counting range of {maximum} counts at {count} per count",
+                    "the travel exceeds the counting range of a drive, {maximum} counts (resolution: "
+                    "{count} per count)",
                     maximum=_MOST,
                     count=f"{count:g}",
                 ),
@@ -328,9 +332,7 @@ def _wrong_terminal(file: FileReading, text: str, *, output: bool, analog: bool)
         return (
             ""
             if right
-            else (
-                "only the digital inputs of a drive can be used; specify object 60FD.0 and a bit from 0 to 31"
-            )
+            else ("a drive can provide only digital inputs; specify object 60FD.0 and a bit from 0 to 31")
         )
     wanted = _ANALOG if analog else _OUTPUT if output else INPUT
     most = _WORDS if analog else _BYTES

@@ -57,8 +57,8 @@ class Module401:
                 has = ", ".join(f"{self.sizes[index]} {what}" for index, what in _KINDS)
                 raise DriverError(
                     Message(
-                        "{name}: the module has {has}, so {index}.{sub} does not exist; check the module's "
-                        "terminals in the machine file",
+                        "{name}: the module has {has}, so object {index}.{sub} does not exist; check the "
+                        "module's terminals in the machine file",
                         name=self.config.name,
                         has=has,
                         index=f"{where.index:04X}",
@@ -189,8 +189,8 @@ class CanopenIO:
             if drive is not None and not drive.tells_inputs:
                 raise DriverError(
                     Message(
-                        "{node}: the drive does not report digital inputs; assign its terminals in the "
-                        "machine file to an I/O module",
+                        "{node}: the drive does not report digital inputs; in the machine file, assign the "
+                        "inputs to an I/O module",
                         node=where.node,
                     )
                 )

@@ -117,5 +117,6 @@ class CyclicFollower(Follower):
         stand = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
         if stand and now - self._asked > _BEGIN:
             self.trouble = self.trouble or Fault(
-                Message("{stand}: the drive does not interpolate", stand=", ".join(stand)), "queue-dry"
+                Message("{stand}: the drive did not start interpolated motion", stand=", ".join(stand)),
+                "queue-dry",
             )

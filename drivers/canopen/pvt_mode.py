@@ -79,9 +79,9 @@ _PREFILL = 2  # records of rest before the queues are let go
 
 
 class _Phase(Enum):
-    REST = "the drives' queues are empty"
+    REST = "the position queues of the drives are empty"
     PLAYING = "they play"
-    ENDING = "the last point is in the drives' queues"
+    ENDING = "the last path point has been sent to the drives"
 
 
 class PvtFollower(Follower):

@@ -29,7 +29,7 @@ class Step(Enum):
     """How far the change-over is."""
 
     FREE = "the drive is running as the spindle drive"
-    REST = "waiting until the axis queues are empty"
+    REST = "waiting until the axis drives have executed their queued motion"
     INDEX = "searching for the encoder index"
     HERE = "setting the current position in the spindle drive"
     POWER = "changing the spindle drive to position mode"
@@ -153,7 +153,10 @@ class SpindleC:
             self._drive.mode = IP
             if self._axis.records is None:
                 raise DriverError(
-                    Message("C: {title} does not have a position queue", title=self._drive.profile.title),
+                    Message(
+                        "C axis not available: {title} does not have a position queue",
+                        title=self._drive.profile.title,
+                    ),
                     "c-coupling",
                 )
             self._axis.records.clear()

@@ -69,7 +69,7 @@ _ERRORS = {
     33: "the end point is not on the arc's circle",
     39: "a value is out of range: the output or input does not exist, or a thread has no lead",
     41: "the spindle does not turn",
-    43: "lead × spindle speed exceeds 0.9 × $112 of the Z axis",
+    43: "lead × spindle speed is more than 0.9 × the maximum speed of the Z axis ($112)",
     45: "a limit switch is pressed",
     46: "the controller must be homed first",
     50: "E-stop is active",

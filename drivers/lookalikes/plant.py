@@ -47,7 +47,10 @@ def check_limits(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
             )
         if axis.name == "C" and not axis.own_drive and fastest > 0.0 and abs(rpm) > _STANDS:
             raise DriverError(
-                Message("C: the spindle is turning at {rpm} rpm; no setpoints were queued", rpm=f"{rpm:.0f}"),
+                Message(
+                    "C axis: the spindle is turning at {rpm} rpm, so no setpoints were queued",
+                    rpm=f"{rpm:.0f}",
+                ),
                 "drive-limits",
             )
         if axis.travel is None or not servo.homed:

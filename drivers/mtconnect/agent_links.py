@@ -100,7 +100,7 @@ class AgentLink:
         if self.waits_since is not None and now - self.waits_since > DOOR:
             raise GoneError("all connections are in use, and this agent does not send PING")
         if self._heard is not None and now - self._heard > 2.0 * self._heartbeat + _GRACE:
-            raise LostError(Message("no PING for {now} s", now=f"{now - self._heard:.0f}"))
+            raise LostError(Message("no PING from the agent for {now} s", now=f"{now - self._heard:.0f}"))
 
 
 # --- The socket at which agents come in.

@@ -133,7 +133,7 @@ def chosen(
         names = ", ".join(lacking)
         raise DriverError(
             Message(
-                "the pendant {device} does not have the button or wheel that the machine file "
+                "the pendant {device} does not have the button or handwheel that the machine file "
                 "assigns to {names}",
                 device=device,
                 names=names,

@@ -193,15 +193,14 @@ DRIVER = Driver(
             parts=(
                 TableReference(
                     "[sim.faults]",
-                    "A fault of the simulated machine; the heading, in two pairs of brackets, may occur any "
-                    "number of times.",
+                    "A fault of the simulated machine. Write the heading in double brackets; it may "
+                    "occur any number of times.",
                     _FAULT,
                 ),
                 TableReference(
                     "[sim.tips]",
-                    "A tool tip of the simulated machine, for trying a tool setter; the heading may "
-                    "occur any "
-                    "number of times.",
+                    "A tool tip of the simulated machine, for trying a tool setter. The heading may "
+                    "occur any number of times.",
                     _TIP,
                 ),
             ),

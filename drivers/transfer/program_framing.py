@@ -258,7 +258,7 @@ class Incoming:
         if self.phase is Phase.WAITING:
             came = (
                 Message(
-                    ("{count} characters were received, but {wrap} was not received"),
+                    ("{count} characters were received, but not the start character {wrap}"),
                     count=self.count,
                     wrap=wrap,
                 )
@@ -278,8 +278,8 @@ class Incoming:
         return IncompleteError(
             Message(
                 (
-                    "the last {wrap} is missing after {lines} lines: the program is incomplete and "
-                    "was not saved; send the program again"
+                    "the end character {wrap} is missing after {lines} lines: the program is incomplete "
+                    "and was not saved; send the program again"
                 ),
                 wrap=wrap,
                 lines=self.lines,

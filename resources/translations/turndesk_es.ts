@@ -15,8 +15,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>(~{name}) rotates the C axis, but the C axis is not locked.</source>
-      <translation>(~{name}) gira el eje C, pero el eje C no está bloqueado.</translation>
+      <source>(~{name}) rotates the C axis, but the spindle is not locked as the C axis.</source>
+      <translation>(~{name}) gira el eje C, pero el husillo no está bloqueado como eje C.</translation>
     </message>
     <message>
       <location filename="" />
@@ -150,8 +150,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Allows leads of up to 1 in, or up to 2 in with F2. Write G35 alone on a line, followed by G92 with the current point.</source>
-      <translation>Permite pasos de hasta 1 in, o de hasta 2 in con F2. Escriba G35 sola en una línea, seguida de G92 con el punto actual.</translation>
+      <source>Allows leads of up to 1 in, or up to 2 in with F2. Write G35 alone on a line, and G92 with the current point on the next line.</source>
+      <translation>Permite pasos de hasta 1 in, o de hasta 2 in con F2. Escriba G35 sola en una línea, y G92 con el punto actual en la línea siguiente.</translation>
     </message>
     <message>
       <location filename="" />
@@ -230,8 +230,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Arc center along X relative to the start point, given as a radius; I=AC( ) is absolute. With G33, the lead along X.</source>
-      <translation>Centro del arco a lo largo de X respecto al punto de inicio, dado como radio; I=AC( ) es absoluto. Con G33, el paso a lo largo de X.</translation>
+      <source>Arc center along X relative to the start point, as a radius value and not a diameter; I=AC( ) is absolute. With G33, the lead along X.</source>
+      <translation>Centro del arco a lo largo de X respecto al punto de inicio, como valor de radio y no de diámetro; I=AC( ) es absoluto. Con G33, el paso a lo largo de X.</translation>
     </message>
     <message>
       <location filename="" />
@@ -375,12 +375,12 @@
     </message>
     <message>
       <location filename="" />
-      <source>CORNER TOUCHED OFF: LEFT</source>
+      <source>CORNER USED FOR TOUCH-OFF: LEFT</source>
       <translation>IZQUIERDA</translation>
     </message>
     <message>
       <location filename="" />
-      <source>CORNER TOUCHED OFF: RIGHT</source>
+      <source>CORNER USED FOR TOUCH-OFF: RIGHT</source>
       <translation>DERECHA</translation>
     </message>
     <message>
@@ -457,11 +457,6 @@
       <location filename="" />
       <source>Chamfers the corner between two straight lines.</source>
       <translation>Achaflana la esquina entre dos rectas.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Changes to a replacement tool when tool life is used up. This control does not change the tool; it shows a message.</source>
-      <translation>Cambia a una herramienta gemela al agotarse la vida útil. Este control no cambia la herramienta; muestra un mensaje.</translation>
     </message>
     <message>
       <location filename="" />
@@ -565,11 +560,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>Correct {letter}.</source>
-      <translation>Corrija {letter}.</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>Cosine of an angle in degrees.</source>
       <translation>Coseno de un ángulo en grados.</translation>
     </message>
@@ -610,8 +600,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Cuts a thread undercut (DIN 76) at the shoulder SPL, after a coarse thread of size DIATH: forms A and B (short) are outside, forms C and D (short) are inside; VARI as in CYCLE94.</source>
-      <translation>Talla una garganta de rosca (DIN 76) en el hombro SPL, tras una rosca gruesa de medida DIATH: las formas A y B (corta) son por fuera, las formas C y D (corta) por dentro; VARI como en CYCLE94.</translation>
+      <source>Cuts a thread undercut (DIN 76) at the shoulder SPL, after a coarse thread of size DIATH: forms A and B (short) are outside, forms C and D (short) are inside; VARI has the same meaning as in CYCLE94.</source>
+      <translation>Talla una garganta de rosca (DIN 76) en el hombro SPL, tras una rosca gruesa de medida DIATH: las formas A y B (corta) son por fuera, las formas C y D (corta) por dentro; VARI significa lo mismo que en CYCLE94.</translation>
     </message>
     <message>
       <location filename="" />
@@ -810,8 +800,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Ends G35 at the point where G35 started. Write G36 alone on a line, followed by G92.</source>
-      <translation>Termina G35 en el punto donde empezó G35. Escriba G36 sola en una línea, seguida de G92.</translation>
+      <source>Ends G35; the axes must be at the point where G35 started. Write G36 alone on a line, and G92 on the next line.</source>
+      <translation>Termina G35; los ejes deben estar en el punto donde empezó G35. Escriba G36 sola en una línea, y G92 en la línea siguiente.</translation>
     </message>
     <message>
       <location filename="" />
@@ -960,12 +950,12 @@
     </message>
     <message>
       <location filename="" />
-      <source>FACE END: LEFT</source>
+      <source>FACE SIDE IN DRAWING: LEFT</source>
       <translation>IZQUIERDA</translation>
     </message>
     <message>
       <location filename="" />
-      <source>FACE END: RIGHT</source>
+      <source>FACE SIDE IN DRAWING: RIGHT</source>
       <translation>DERECHA</translation>
     </message>
     <message>
@@ -1035,8 +1025,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Feed per revolution, or feed per tooth with FZ (CUT of the tool table), based on the programmed S.</source>
-      <translation>Avance por vuelta, o avance por diente con FZ (CUT de la tabla de herramientas), según la S programada.</translation>
+      <source>Feed per revolution, or feed per tooth with FZ (the number of teeth is CUT in the tool table), based on the programmed S.</source>
+      <translation>Avance por vuelta, o avance por diente con FZ (el número de dientes es CUT en la tabla de herramientas), según la S programada.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1515,6 +1505,21 @@
     </message>
     <message>
       <location filename="" />
+      <source>Marks the start of a subprogram or of a section to be repeated; LBL 0 ends a subprogram.</source>
+      <translation>Marca el inicio de un subprograma o de una parte que se repite; LBL 0 termina un subprograma.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Marks the start of subroutine n; subroutines are written after the end of the program.</source>
+      <translation>Marca el inicio de la subrutina n; las subrutinas se escriben después del fin del programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Marks the start of the program and sets its unit, millimeters or inches.</source>
+      <translation>Marca el inicio del programa y fija su unidad, milímetros o pulgadas.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Maximum rpm under G96.</source>
       <translation>Rpm máximas con G96.</translation>
     </message>
@@ -1727,6 +1732,16 @@
       <location filename="" />
       <source>Offset suppression</source>
       <translation>Supresión de decalajes</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>On the original control, changes to a replacement tool when tool life is used up. This control does not change the tool; it shows a message.</source>
+      <translation>En el control original, cambia a una herramienta gemela al agotarse la vida útil. Este control no cambia la herramienta; muestra un mensaje.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>On the original control, writes to the tool table. This control does not change any value in the tool table, and it rejects values that would move an axis.</source>
+      <translation>En el control original, escribe en la tabla de herramientas. Este control no cambia ningún valor de la tabla y rechaza los valores que moverían un eje.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2140,8 +2155,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Row of NUM holes with TRANSMIT from X SPCA, Y SPCO at the angle STA1; the first hole is FDIS from this point, and the spacing is DBH.</source>
-      <translation>Fila de NUM agujeros con TRANSMIT desde X SPCA, Y SPCO en el ángulo STA1; el primer agujero está a FDIS de ese punto, y la separación es DBH.</translation>
+      <source>Row of NUM holes with TRANSMIT: the row starts at the point X SPCA, Y SPCO and runs at the angle STA1. The first hole is FDIS from this point, and the spacing is DBH.</source>
+      <translation>Fila de NUM agujeros con TRANSMIT: la fila empieza en el punto X SPCA, Y SPCO y sigue el ángulo STA1. El primer agujero está a FDIS de ese punto, y la separación es DBH.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2605,21 +2620,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>Starts a subprogram or a section to be repeated; LBL 0 ends a subprogram.</source>
-      <translation>Empieza un subprograma o una parte que se repite; LBL 0 termina un subprograma.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Starts subroutine n; subroutines are written after the end of the program.</source>
-      <translation>Empieza la subrutina n; las subrutinas se escriben después del fin del programa.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Starts the program, in millimeters or in inches.</source>
-      <translation>Empieza el programa, en milímetros o en pulgadas.</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>Stock allowance on the contour for G41 and G42, with TRANSMIT.</source>
       <translation>Sobremedida en el contorno para G41 y G42, con TRANSMIT.</translation>
     </message>
@@ -2780,8 +2780,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Taps with a compensating chuck: the tap feeds in at the pitch PIT or of the thread size MPIT, or at F with ENC 1; the spindle reverses, and the tap feeds out.</source>
-      <translation>Rosca con mandril compensador: el macho entra según el paso PIT o el de la medida de rosca MPIT, o a F con ENC 1; el husillo invierte el giro y el macho sale.</translation>
+      <source>Taps with a compensating chuck: the tap feeds in at the pitch PIT, at the pitch of the thread size MPIT, or at F with ENC 1; the spindle reverses, and the tap feeds out.</source>
+      <translation>Rosca con mandril compensador: el macho entra según el paso PIT, según el paso de la medida de rosca MPIT, o a F con ENC 1; el husillo invierte el giro y el macho sale.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3435,13 +3435,13 @@
     </message>
     <message>
       <location filename="" />
-      <source>Write {letter} without a number.</source>
-      <translation>Escriba {letter} sin número.</translation>
+      <source>Write {letter} with a number greater than 0.</source>
+      <translation>Escriba {letter} con un número mayor que 0.</translation>
     </message>
     <message>
       <location filename="" />
-      <source>Writes to the tool table. This control does not change any value in the tool table, and it rejects values that would move an axis.</source>
-      <translation>Escribe en la tabla de herramientas. Este control no cambia ningún valor de la tabla y rechaza los valores que moverían un eje.</translation>
+      <source>Write {letter} without a number.</source>
+      <translation>Escriba {letter} sin número.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3590,6 +3590,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>cannot be used in MDI, because it needs a G92 on the next line and MDI runs only one line</source>
+      <translation>no se puede usar en MDI, porque necesita un G92 en la línea siguiente y MDI ejecuta sólo una línea</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>cannot be used in MDI, because plane switching needs more than one line</source>
       <translation>no se puede usar en MDI, porque un cambio de plano necesita más de una línea</translation>
     </message>
@@ -3605,6 +3610,26 @@
     </message>
     <message>
       <location filename="" />
+      <source>cannot define a subroutine in MDI; subroutines are possible only in a program</source>
+      <translation>no puede definir una subrutina en MDI; las subrutinas sólo son posibles en un programa</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>cannot end a contour in MDI, because no contour was started</source>
+      <translation>no puede terminar un contorno en MDI, porque no se empezó ninguno</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>cannot end a loop in MDI, because no loop was started</source>
+      <translation>no puede terminar un bucle en MDI, porque no se empezó ninguno</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>cannot end a subroutine in MDI, because no subroutine was started</source>
+      <translation>no puede terminar una subrutina en MDI, porque no se empezó ninguna</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>cannot end nose compensation in MDI, because nose compensation needs more than one line</source>
       <translation>no puede terminar la compensación de punta en MDI, porque la compensación necesita más de una línea</translation>
     </message>
@@ -3612,11 +3637,6 @@
       <location filename="" />
       <source>cannot start a loop in MDI; a loop needs more than one line, with LF at the end</source>
       <translation>no puede empezar un bucle en MDI; un bucle necesita más de una línea, con LF al final</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>cannot start a subroutine in MDI; subroutines are possible only in a program</source>
-      <translation>no puede empezar una subrutina en MDI; las subrutinas sólo son posibles en un programa</translation>
     </message>
     <message>
       <location filename="" />
@@ -3712,21 +3732,6 @@
       <location filename="" />
       <source>ends</source>
       <translation>termina a</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>ends a contour, but no contour was started</source>
-      <translation>termina un contorno, pero no se empezó ninguno</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>ends a loop, but no loop was started</source>
-      <translation>termina un bucle, pero no se empezó ninguno</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>ends a subroutine, but no subroutine was started</source>
-      <translation>termina una subrutina, pero no se empezó ninguna</translation>
     </message>
     <message>
       <location filename="" />
@@ -3862,11 +3867,6 @@
       <location filename="" />
       <source>motion</source>
       <translation>movimiento</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>needs a G92 on the next line, but MDI runs only one line</source>
-      <translation>necesita un G92 en la línea siguiente, pero MDI ejecuta sólo una línea</translation>
     </message>
     <message>
       <location filename="" />
@@ -4475,8 +4475,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>{word} rotates the spindle, but the spindle is not locked.</source>
-      <translation>{word} gira el husillo, pero el husillo no está bloqueado.</translation>
+      <source>{word} rotates the C axis, but the spindle is not locked as the C axis.</source>
+      <translation>{word} gira el eje C, pero el husillo no está bloqueado como eje C.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4635,8 +4635,8 @@
     </message>
     <message>
       <location filename="app/compose/desk_part.py" />
-      <source>The specified stock cannot be used, so an assumed stock is used: {why}.</source>
-      <translation>El material en bruto indicado no se puede usar y se emplea uno supuesto: {why}.</translation>
+      <source>The specified stock cannot be used ({why}). An assumed stock is used instead.</source>
+      <translation>El material en bruto indicado no se puede usar ({why}). En su lugar se emplea uno supuesto.</translation>
     </message>
     <message>
       <location filename="app/compose/gauge_wire.py" />
@@ -4850,7 +4850,7 @@
     </message>
     <message>
       <location filename="app/desk/access.py" />
-      <source>wrong PIN for {row}; wrong PINs in a row: {count}</source>
+      <source>wrong PIN for {row}; consecutive wrong PINs: {count}</source>
       <translation>PIN erróneo de {row}; PIN erróneos seguidos: {count}</translation>
     </message>
     <message>
@@ -4905,8 +4905,8 @@
     </message>
     <message>
       <location filename="app/desk/access_reset.py" />
-      <source>PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET LEVELS</source>
-      <translation>PULSE ANTES EL PARO DE EMERGENCIA. DÉJELO PULSADO 10 MIN PARA BORRAR NIVELES</translation>
+      <source>PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS</source>
+      <translation>PULSE ANTES EL PARO DE EMERGENCIA. DÉJELO PULSADO 10 MIN PARA BORRAR LOS NIVELES DE ACCESO</translation>
     </message>
     <message>
       <location filename="app/desk/access_reset.py" />
@@ -4955,8 +4955,8 @@
     </message>
     <message>
       <location filename="app/desk/arithmetic.py" />
-      <source>use a decimal point</source>
-      <translation>use el punto decimal</translation>
+      <source>use a decimal point instead of a comma</source>
+      <translation>use el punto decimal en lugar de la coma</translation>
     </message>
     <message>
       <location filename="app/desk/arithmetic.py" />
@@ -4995,8 +4995,8 @@
     </message>
     <message>
       <location filename="app/desk/data_folder.py" />
-      <source>TURNDESK_HOME: {folder} {what} a file, not a folder; set it to a folder or unset it</source>
-      <translation>TURNDESK_HOME: {folder} {what} un archivo, no una carpeta; indique una carpeta o anule la variable</translation>
+      <source>TURNDESK_HOME: {folder} {what} a file, not a folder; set the variable to a folder or unset the variable</source>
+      <translation>TURNDESK_HOME: {folder} {what} un archivo, no una carpeta; indique una carpeta en la variable o anule la variable</translation>
     </message>
     <message>
       <location filename="app/desk/data_folder.py" />
@@ -5015,18 +5015,18 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>CAUTION: {what}. PAUSE: FEED HOLD</source>
-      <translation>CUIDADO: {what}. PAUSA: RETENCIÓN DE AVANCE</translation>
+      <source>CAUTION: {what}. PAUSE KEY: FEED HOLD</source>
+      <translation>CUIDADO: {what}. TECLA PAUSA: RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>CHECKING THE FIRST MOVE AGAINST THE PART</source>
-      <translation>COMPROBANDO EL PRIMER MOVIMIENTO CON LA PIEZA</translation>
+      <source>CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART</source>
+      <translation>COMPROBANDO SI EL PRIMER MOVIMIENTO CHOCA CON LA PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>CHOOSE A PROGRAM BEFORE SWITCHING BLOCK DELETE</source>
-      <translation>ELIJA UN PROGRAMA ANTES DE CAMBIAR EL SALTO DE BLOQUE</translation>
+      <source>CHOOSE A PROGRAM (F2) BEFORE SWITCHING BLOCK DELETE</source>
+      <translation>ELIJA UN PROGRAMA (F2) ANTES DE CAMBIAR EL SALTO DE BLOQUE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5200,13 +5200,13 @@
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
-      <source>P, LOAD STOCK, CYCLE START. MEASURE PART. F9: CORRECT WEAR</source>
-      <translation>P, PONGA MATERIAL, ARRANQUE DE CICLO. MIDA LA PIEZA. F9: CORREGIR DESGASTE</translation>
+      <source>P: COUNT ON. LOAD STOCK, CYCLE START. MEASURE PART. F9: CORRECT WEAR</source>
+      <translation>P: CONTAR. PONGA MATERIAL, ARRANQUE DE CICLO. MIDA LA PIEZA. F9: CORREGIR DESGASTE</translation>
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
-      <source>PROGRAM IS PROVED AUTOMATICALLY. B (PART): ERRORS, WARNINGS</source>
-      <translation>EL PROGRAMA SE COMPRUEBA SOLO. B (PIEZA): ERRORES Y AVISOS</translation>
+      <source>PROGRAM IS PROVED AUTOMATICALLY. B (PART): SHOW ERRORS, WARNINGS</source>
+      <translation>EL PROGRAMA SE COMPRUEBA SOLO. B (PIEZA): VER ERRORES Y AVISOS</translation>
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
@@ -5220,8 +5220,8 @@
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
-      <source>TOOLS NOT SET: F8. TO TOUCH OFF: F1, F5, THEN T, X AND Z</source>
-      <translation>HERRAMIENTAS SIN CORRECTOR: F8. PARA TOCAR: F1, F5, LUEGO T, X Y Z</translation>
+      <source>TOOLS NOT SET? PRESS F8. TO TOUCH OFF: F1, F5, THEN T, X, Z</source>
+      <translation>¿HERRAMIENTAS SIN CORRECTOR? PULSE F8. PARA TOCAR: F1, F5, LUEGO T, X, Z</translation>
     </message>
     <message>
       <location filename="app/desk/formats.py" />
@@ -5285,8 +5285,8 @@
     </message>
     <message>
       <location filename="app/desk/interrupted_notice.py" />
-      <source>T{tool} MAY BE IN THE PART ({program}, LINE {line}). PRESS Y TO CANCEL THE INTERRUPTED JOB AND LOAD {name}, N TO KEEP IT</source>
-      <translation>T{tool} PUEDE ESTAR DENTRO DE LA PIEZA ({program}, LÍNEA {line}). PULSE Y PARA CANCELAR EL TRABAJO INTERRUMPIDO Y CARGAR {name}, N PARA CONSERVARLO</translation>
+      <source>T{tool} MAY BE IN THE PART ({program}, LINE {line}). PRESS Y TO CANCEL THE INTERRUPTED JOB AND LOAD {name}, N TO KEEP THE INTERRUPTED JOB</source>
+      <translation>T{tool} PUEDE ESTAR DENTRO DE LA PIEZA ({program}, LÍNEA {line}). PULSE Y PARA CANCELAR EL TRABAJO INTERRUMPIDO Y CARGAR {name}, N PARA CONSERVAR EL TRABAJO INTERRUMPIDO</translation>
     </message>
     <message>
       <location filename="app/desk/machine_file_changes.py" />
@@ -5600,8 +5600,8 @@
     </message>
     <message>
       <location filename="app/desk/persistence.py" />
-      <source>nothing is saved here; start turndesk with a writable folder (TURNDESK_HOME)</source>
-      <translation>aquí no se guarda nada; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
+      <source>no data is being saved; start turndesk with a writable folder (TURNDESK_HOME)</source>
+      <translation>no se está guardando ningún dato; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
     </message>
     <message>
       <location filename="app/desk/prepared_line.py" />
@@ -5670,8 +5670,8 @@
     </message>
     <message>
       <location filename="app/desk/program_renewal.py" />
-      <source>NEXT PART WILL NOT START WITH THE CHANGED OFFSETS: {why}</source>
-      <translation>LA PRÓXIMA PIEZA NO ARRANCARÁ CON LOS CORRECTORES CAMBIADOS: {why}</translation>
+      <source>AFTER THIS OFFSET CHANGE, THE NEXT PART WILL NOT START: {why}</source>
+      <translation>CON ESTE CAMBIO DE CORRECTORES, LA PRÓXIMA PIEZA NO ARRANCARÁ: {why}</translation>
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
@@ -6120,12 +6120,12 @@
     </message>
     <message>
       <location filename="app/desk/standard_input.py" />
-      <source>- (stdin) is already used for the {other}; name a file for the {what}</source>
+      <source>"-" (stdin) is already used for the {other}; specify a file for the {what}</source>
       <translation>- (stdin) ya se usa para «{other}»; indique un archivo para «{what}»</translation>
     </message>
     <message>
       <location filename="app/desk/standard_input.py" />
-      <source>stdin is closed, so the {what} cannot be read from it; name a file</source>
+      <source>stdin is closed, so the {what} cannot be read from it; specify a file</source>
       <translation>stdin está cerrado y «{what}» no se puede leer de ahí; indique un archivo</translation>
     </message>
     <message>
@@ -6240,11 +6240,6 @@
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
-      <source>FEED HOLD (PAUSE), THEN R: ABORT THE PROGRAM</source>
-      <translation>RETENCIÓN DE AVANCE (PAUSA), LUEGO R: CANCELAR EL PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/waiting.py" />
       <source>FEED HOLD BEHIND THE TAP</source>
       <translation>RETENCIÓN DE AVANCE TRAS EL MACHO</translation>
     </message>
@@ -6275,6 +6270,11 @@
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
+      <source>PAUSE (FEED HOLD), THEN R: ABORT THE PROGRAM</source>
+      <translation>PAUSA (RETENCIÓN DE AVANCE), LUEGO R: CANCELAR EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/waiting.py" />
       <source>PROGRAM DWELL (G04): CONTINUES AUTOMATICALLY</source>
       <translation>PAUSA DEL PROGRAMA (G04): CONTINÚA AUTOMÁTICAMENTE</translation>
     </message>
@@ -6295,8 +6295,8 @@
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
-      <source>SPINDLE OVERRIDE IS AT 0: TURN IT UP (.)</source>
-      <translation>EL AJUSTE DEL HUSILLO ESTÁ EN 0: SÚBALO (.)</translation>
+      <source>SPINDLE OVERRIDE IS AT 0. TO RAISE IT, PRESS THE DOT KEY (.)</source>
+      <translation>EL AJUSTE DEL HUSILLO ESTÁ EN 0. PARA SUBIRLO, PULSE LA TECLA PUNTO (.)</translation>
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
@@ -6335,8 +6335,8 @@
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
-      <source>TURN SPINDLE SWITCH OFF, BACK TO AUTO (A), THEN CYCLE START</source>
-      <translation>PONGA EL INTERRUPTOR DEL HUSILLO EN OFF, LUEGO EN AUTO (A), Y ARRANQUE DE CICLO</translation>
+      <source>TURN SPINDLE SWITCH OFF, THEN TO AUTO (A). PRESS CYCLE START</source>
+      <translation>PONGA EL INTERRUPTOR DEL HUSILLO EN OFF Y LUEGO EN AUTO (A). PULSE ARRANQUE DE CICLO</translation>
     </message>
     <message>
       <location filename="app/editor/code_help_view.py" />
@@ -6535,8 +6535,8 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>VERSION {} IS IN THE EDITOR. SAVE IT OR UNDO TO DISCARD IT</source>
-      <translation>VERSIÓN {} EN EL EDITOR. GUÁRDELA, O DESHAGA PARA DESCARTARLA</translation>
+      <source>VERSION {} IS IN THE EDITOR. SAVE IT, OR DISCARD IT WITH UNDO</source>
+      <translation>VERSIÓN {} EN EL EDITOR. GUÁRDELA, O DESCÁRTELA CON DESHACER</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
@@ -6920,8 +6920,8 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>F1, F2: LOAD A PROGRAM   F1, F6, F10: ADD JOB FROM THE LIST</source>
-      <translation>F1, F2: CARGAR UN PROGRAMA   F1, F6, F10: AÑADIR TRABAJO DE LA LISTA</translation>
+      <source>F1, THEN F2: LOAD PROGRAM   F1, F6, THEN F10: ADD JOB</source>
+      <translation>F1, LUEGO F2: CARGAR PROGRAMA   F1, F6, LUEGO F10: AÑADIR TRABAJO</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -6935,8 +6935,8 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>JOB DONE, STILL LOADED</source>
-      <translation>TRABAJO HECHO, AÚN CARGADO</translation>
+      <source>JOB DONE, PROGRAM STILL LOADED</source>
+      <translation>TRABAJO HECHO, PROGRAMA AÚN CARGADO</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -6960,8 +6960,8 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, F10: ADD FROM LIST</source>
-      <translation>SIN TRABAJOS. F3: AÑADIR PROGRAMA CARGADO   F1, F6, F10: AÑADIR DE LA LISTA</translation>
+      <source>NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, THEN F10: ADD JOB</source>
+      <translation>SIN TRABAJOS. F3: AÑADIR PROGRAMA CARGADO   F1, F6, LUEGO F10: AÑADIR TRABAJO</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -7035,6 +7035,16 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
+      <source>finished jobs removed from the job queue</source>
+      <translation>trabajos terminados quitados de la cola de trabajos</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
+      <source>job {program} added: {expected} parts</source>
+      <translation>trabajo {program} añadido: {expected} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_model.py" />
       <source>job {program} removed</source>
       <translation>trabajo {program} quitado</translation>
     </message>
@@ -7045,23 +7055,13 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>job {program}: {expected} parts</source>
-      <translation>trabajo {program}: {expected} piezas</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_model.py" />
-      <source>job {program}: {expected} → {expected2} parts</source>
-      <translation>trabajo {program}: {expected} → {expected2} piezas</translation>
+      <source>job {program}: quantity changed: {expected} → {expected2} parts</source>
+      <translation>trabajo {program}: cantidad cambiada: {expected} → {expected2} piezas</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
       <source>job {program}: {text}</source>
       <translation>trabajo {program}: {text}</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_model.py" />
-      <source>jobs: finished jobs cleared</source>
-      <translation>trabajos: terminados quitados</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -7072,6 +7072,11 @@
       <location filename="app/jobs/jobs_model.py" />
       <source>{program}: {made} OF {wanted} MADE. Y: REMOVE FROM QUEUE   N: KEEP</source>
       <translation>{program}: {made} DE {wanted} HECHAS. Y: QUITAR DE LA COLA   N: CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/jobs/jobs_watch.py" />
+      <source>ALL TOOLS READY</source>
+      <translation>TODAS LAS HERRAMIENTAS LISTAS</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_watch.py" />
@@ -7100,23 +7105,18 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_watch.py" />
-      <source>TOOLS COMPLETE</source>
-      <translation>HERRAMIENTAS COMPLETAS</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_watch.py" />
       <source>job {program} started</source>
       <translation>trabajo {program} empezado</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_watch.py" />
-      <source>{count} ITEMS NOT READY</source>
-      <translation>{count} PUNTOS NO LISTOS</translation>
+      <source>{count} SETUP ITEMS NOT READY</source>
+      <translation>{count} PUNTOS DE PREPARACIÓN SIN TERMINAR</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_watch.py" />
-      <source>{name} IS NOT IN THE PROGRAM LIST. F1, F6: CHECK THE LIST</source>
-      <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, F6: REVISE LA LISTA</translation>
+      <source>{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST</source>
+      <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, LUEGO F6: REVISE LA LISTA</translation>
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
@@ -7145,7 +7145,7 @@
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
-      <source>KEEP HOLDING THE KEY UNTIL THE AXIS IS BACK</source>
+      <source>KEEP HOLDING THE KEY UNTIL THE AXIS HAS RETURNED</source>
       <translation>MANTENGA LA TECLA HASTA QUE EL EJE HAYA VUELTO</translation>
     </message>
     <message>
@@ -7250,8 +7250,8 @@
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
-      <source>{axis} FROM {position} TO {present} AND BACK, {seconds} S</source>
-      <translation>{axis} DE {position} A {present} Y VUELTA, {seconds} S</translation>
+      <source>{axis} FROM {position} TO {present} AND BACK IN {seconds} S</source>
+      <translation>{axis} DE {position} A {present} Y VUELTA EN {seconds} S</translation>
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
@@ -7275,8 +7275,8 @@
     </message>
     <message>
       <location filename="app/jog/drive_test_view.py" />
-      <source>DRIVE TEST  ·  PRESS, THEN HOLD</source>
-      <translation>PRUEBA  ·  PULSAR, LUEGO MANTENER</translation>
+      <source>DRIVE TEST  ·  PRESS ARROW, THEN HOLD IT</source>
+      <translation>PRUEBA  ·  PULSAR FLECHA, LUEGO MANTENERLA</translation>
     </message>
     <message>
       <location filename="app/jog/drive_test_view.py" />
@@ -7800,6 +7800,11 @@
     </message>
     <message>
       <location filename="app/jog/jog_touch_off.py" />
+      <source>the {axis} offset would be outside the allowed range</source>
+      <translation>el corrector {axis} quedaría fuera del rango permitido</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_touch_off.py" />
       <source>touch-off Z</source>
       <translation>toque Z</translation>
     </message>
@@ -7817,11 +7822,6 @@
       <location filename="app/jog/jog_touch_off.py" />
       <source>{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST</source>
       <translation>{axis} NO TIENE REFERENCIA Y SU POSICIÓN NO SE CONOCE. REFERÉNCIELO ANTES</translation>
-    </message>
-    <message>
-      <location filename="app/jog/jog_touch_off.py" />
-      <source>{axis} would be outside the allowed range</source>
-      <translation>{axis} quedaría fuera del rango permitido</translation>
     </message>
     <message>
       <location filename="app/jog/jog_view.py" />
@@ -7850,8 +7850,8 @@
     </message>
     <message>
       <location filename="app/jog/mill_jog_view.py" />
-      <source>JOG KEY DIRECTION IN MACHINE X Y Z</source>
-      <translation>DIRECCIÓN DE LA TECLA DE JOG EN X Y Z DE MÁQUINA</translation>
+      <source>JOG KEY DIRECTION IN MACHINE COORDINATES X Y Z</source>
+      <translation>DIRECCIÓN DE LA TECLA DE JOG EN COORDENADAS DE MÁQUINA X Y Z</translation>
     </message>
     <message>
       <location filename="app/jog/mill_jog_view.py" />
@@ -7885,8 +7885,8 @@
     </message>
     <message>
       <location filename="app/jog/mill_jog_view.py" />
-      <source>position unknown until a line has run</source>
-      <translation>posición desconocida hasta ejecutar una línea</translation>
+      <source>position unknown until a program line has run</source>
+      <translation>posición desconocida hasta ejecutar una línea de programa</translation>
     </message>
     <message>
       <location filename="app/jog/mill_jog_view.py" />
@@ -7965,8 +7965,8 @@
     </message>
     <message>
       <location filename="app/jog/setter_touch.py" />
-      <source>tool setter, direction {direction}, ±{error}</source>
-      <translation>palpador, dirección {direction}, ±{error}</translation>
+      <source>measured at the tool setter, direction {direction}, ±{error}</source>
+      <translation>medido en el palpador, dirección {direction}, ±{error}</translation>
     </message>
     <message>
       <location filename="app/jog/skim_cut.py" />
@@ -8030,8 +8030,8 @@
     </message>
     <message>
       <location filename="app/jog/tilted_jog.py" />
-      <source>3D-ROT IS OFF, KEYS JOG IN MACHINE X Y Z: {why}</source>
-      <translation>3D-ROT DESACTIVADO, LAS TECLAS MUEVEN EN X Y Z DE MÁQUINA: {why}</translation>
+      <source>3D-ROT IS OFF. KEYS NOW JOG IN MACHINE X Y Z. {why}</source>
+      <translation>3D-ROT DESACTIVADO. LAS TECLAS AHORA MUEVEN EN X Y Z DE MÁQUINA. {why}</translation>
     </message>
     <message>
       <location filename="app/jog/tilted_jog.py" />
@@ -8050,7 +8050,7 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
-      <source>AXIS MOVED AFTER THE TOUCH. PRESS ESC AND TOUCH AGAIN</source>
+      <source>AXIS MOVED AFTER TOUCH-OFF. PRESS ESC, THEN TOUCH OFF AGAIN</source>
       <translation>EL EJE SE MOVIÓ TRAS EL TOQUE. PULSE ESC Y TOQUE OTRA VEZ</translation>
     </message>
     <message>
@@ -8225,11 +8225,6 @@
     </message>
     <message>
       <location filename="app/mdi/mdi_view.py" />
-      <source>REFUSED</source>
-      <translation>RECHAZADO</translation>
-    </message>
-    <message>
-      <location filename="app/mdi/mdi_view.py" />
       <source>RESET</source>
       <translation>RESET</translation>
     </message>
@@ -8310,8 +8305,8 @@
     </message>
     <message>
       <location filename="app/offsets/mill_tools.py" />
-      <source>SELECT COLUMN L FIRST. F2: TOUCH OFF THE LENGTH</source>
-      <translation>ELIJA ANTES LA COLUMNA L. F2: PALPAR LA LONGITUD</translation>
+      <source>SELECT COLUMN L, THEN PRESS F2 TO TOUCH OFF THE LENGTH</source>
+      <translation>ELIJA LA COLUMNA L Y PULSE F2 PARA PALPAR LA LONGITUD</translation>
     </message>
     <message>
       <location filename="app/offsets/mill_tools.py" />
@@ -8320,8 +8315,8 @@
     </message>
     <message>
       <location filename="app/offsets/mill_tools.py" />
-      <source>TIME2: limit in minutes at feed, 0 = no limit        CUR.TIME: minutes cut so far, 0 for a new tool</source>
-      <translation>TIME2: límite en minutos en avance, 0 = sin límite        CUR.TIME: minutos cortados, 0 en una herramienta nueva</translation>
+      <source>TIME2: tool life limit in minutes at feed, 0 = no limit        CUR.TIME: minutes cut so far, 0 for a new tool</source>
+      <translation>TIME2: límite de vida en minutos en avance, 0 = sin límite        CUR.TIME: minutos cortados, 0 en una herramienta nueva</translation>
     </message>
     <message>
       <location filename="app/offsets/mill_tools.py" />
@@ -8355,7 +8350,7 @@
     </message>
     <message>
       <location filename="app/offsets/mill_touch.py" />
-      <source>TOOL IS TILTED. TURN ROTARY AXES UNTIL SQUARE TO WORKPIECE</source>
+      <source>TOOL TILTED. TURN ROTARY AXES TO SET IT SQUARE TO WORKPIECE</source>
       <translation>HERRAMIENTA INCLINADA. GIRE LOS EJES ROTATIVOS HASTA PONERLA A ESCUADRA</translation>
     </message>
     <message>
@@ -8395,8 +8390,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
-      <source>LOAD A PROGRAM FIRST. ITS PATH SHOWS THE EFFECT</source>
-      <translation>CARGUE ANTES UN PROGRAMA. SU TRAYECTORIA MUESTRA EL EFECTO</translation>
+      <source>LOAD A PROGRAM FIRST TO SEE THE EFFECT ON ITS PATH</source>
+      <translation>CARGUE ANTES UN PROGRAMA PARA VER EL EFECTO EN SU TRAYECTORIA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
@@ -8475,8 +8470,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
-      <source>PROGRAM RUNNING. ONLY WEAR AND F9 OFFSETS CAN CHANGE</source>
-      <translation>PROGRAMA EN MARCHA. SOLO PUEDEN CAMBIAR EL DESGASTE Y LOS CORRECTORES DE F9</translation>
+      <source>PROGRAM RUNNING. CHANGE ONLY WEAR OR SECONDARY OFFSETS (F9)</source>
+      <translation>PROGRAMA EN MARCHA. CAMBIE SOLO DESGASTE O CORRECTORES SECUNDARIOS (F9)</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
@@ -8510,6 +8505,11 @@
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
+      <source>CUTS ON THE OPPOSITE SIDE OF THE PART</source>
+      <translation>CORTA EN EL LADO OPUESTO DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_questions.py" />
       <source>LARGE CHANGE</source>
       <translation>CAMBIO GRANDE</translation>
     </message>
@@ -8532,11 +8532,6 @@
       <location filename="app/offsets/offset_questions.py" />
       <source>OFFSETS CHANGED BEFORE YOU ANSWERED. ENTER THE VALUE AGAIN</source>
       <translation>LOS CORRECTORES CAMBIARON ANTES DE SU RESPUESTA. INTRODUZCA EL VALOR OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_questions.py" />
-      <source>OPPOSITE SIDE OF THE PART</source>
-      <translation>LADO OPUESTO DE LA PIEZA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_questions.py" />
@@ -8850,13 +8845,8 @@
     </message>
     <message>
       <location filename="app/offsets/part_effect.py" />
-      <source>FOUND IN ONLY ONE OF THE TWO PARTS</source>
-      <translation>SOLO EN UNA DE LAS DOS PIEZAS</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/part_effect.py" />
-      <source>LINE {line}: {check} NO LONGER REPORTED</source>
-      <translation>LÍNEA {line}: YA NO SE INFORMA {check}</translation>
+      <source>LINE {line}: FINDING {check} NO LONGER REPORTED</source>
+      <translation>LÍNEA {line}: YA NO SE INFORMA EL HALLAZGO {check}</translation>
     </message>
     <message>
       <location filename="app/offsets/part_effect.py" />
@@ -8865,18 +8855,18 @@
     </message>
     <message>
       <location filename="app/offsets/part_effect.py" />
+      <source>ONLY IN THE OLD OR THE NEW PART</source>
+      <translation>SOLO EN LA PIEZA ANTERIOR O LA NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
       <source>SHOULDER</source>
       <translation>HOMBRO</translation>
     </message>
     <message>
       <location filename="app/offsets/presets.py" />
-      <source>0, from the machine file</source>
-      <translation>0, del archivo de máquina</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/presets.py" />
-      <source>F2 at two points of an edge: set ROT so that the edge has the typed angle</source>
-      <translation>F2 en dos puntos de una arista: fijar ROT para que la arista tenga el ángulo escrito</translation>
+      <source>0 (from the machine file)</source>
+      <translation>0 (del archivo de máquina)</translation>
     </message>
     <message>
       <location filename="app/offsets/presets.py" />
@@ -8890,8 +8880,8 @@
     </message>
     <message>
       <location filename="app/offsets/presets.py" />
-      <source>F3: make active</source>
-      <translation>F3: activar</translation>
+      <source>F3: activate preset</source>
+      <translation>F3: activar preset</translation>
     </message>
     <message>
       <location filename="app/offsets/presets.py" />
@@ -8915,8 +8905,13 @@
     </message>
     <message>
       <location filename="app/offsets/presets.py" />
-      <source>SELECT X, Y, Z, A ROTARY AXIS OR ROT FIRST. F2: TOUCH OFF</source>
-      <translation>ELIJA ANTES X, Y, Z, UN EJE ROTATIVO O ROT. F2: PALPAR</translation>
+      <source>Press F2 at two points of an edge to set ROT so that the edge has the typed angle</source>
+      <translation>Pulse F2 en dos puntos de una arista para fijar ROT de modo que la arista tenga el ángulo escrito</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/presets.py" />
+      <source>SELECT X, Y, Z, A ROTARY AXIS OR ROT. F2: TOUCH OFF</source>
+      <translation>ELIJA X, Y, Z, UN EJE ROTATIVO O ROT. F2: PALPAR</translation>
     </message>
     <message>
       <location filename="app/offsets/presets.py" />
@@ -8937,11 +8932,6 @@
       <location filename="app/offsets/secondary_offsets.py" />
       <source>C CLEARS ALL OFFSETS ONLY AT THE PROMPT Offset Number? PRESS ESC FIRST</source>
       <translation>C BORRA TODOS LOS CORRECTORES SOLO EN LA PREGUNTA ¿Número de corrector? PULSE ANTES ESC</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/secondary_offsets.py" />
-      <source>C: all offsets cleared</source>
-      <translation>C: todos los correctores a cero</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets.py" />
@@ -9007,6 +8997,11 @@
       <location filename="app/offsets/secondary_offsets.py" />
       <source>Z CORRECTION?</source>
       <translation>¿CORRECCIÓN Z?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/secondary_offsets.py" />
+      <source>all offsets cleared with the C key</source>
+      <translation>todos los correctores puestos a cero con la tecla C</translation>
     </message>
     <message>
       <location filename="app/offsets/secondary_offsets_view.py" />
@@ -9100,8 +9095,8 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
-      <source>X AND Z ARE RELATIVE TO THE MASTER. F3: EDIT VALUES FROM HOME</source>
-      <translation>X Y Z SON RELATIVAS A LA MAESTRA. F3: EDITAR VALORES DESDE LA REFERENCIA</translation>
+      <source>X AND Z RELATIVE TO MASTER ARE READ-ONLY. F3: EDIT FROM HOME</source>
+      <translation>X Y Z RELATIVAS A LA MAESTRA NO SE EDITAN. F3: EDITAR DESDE LA REFERENCIA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
@@ -9117,6 +9112,11 @@
       <location filename="app/offsets/tool_shapes.py" />
       <source>LEFT/RIGHT: CHANGE    ENTER: ACCEPT</source>
       <translation>IZQUIERDA/DERECHA: CAMBIAR    ENTER: ACEPTAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_shapes.py" />
+      <source>LEFT/RIGHT: CHANGE THIS VALUE</source>
+      <translation>IZQUIERDA/DERECHA: CAMBIAR ESTE VALOR</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_shapes.py" />
@@ -9147,11 +9147,6 @@
       <location filename="app/offsets/tool_shapes.py" />
       <source>T{number}: NO TOOL SHAPE DEFINED</source>
       <translation>T{number}: FORMA SIN DEFINIR</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/tool_shapes.py" />
-      <source>USE LEFT/RIGHT TO CHANGE</source>
-      <translation>USE IZQUIERDA/DERECHA PARA CAMBIAR</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_shapes.py" />
@@ -9190,11 +9185,6 @@
     </message>
     <message>
       <location filename="app/offsets/zero_offsets.py" />
-      <source>C: all zero offsets cleared</source>
-      <translation>C: todos los decalajes de origen borrados</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/zero_offsets.py" />
       <source>F2: set the current position to the typed value        C: clear G54 to G59        Esc: exit</source>
       <translation>F2: fijar la posición actual al valor escrito        C: borrar G54 a G59        Esc: salir</translation>
     </message>
@@ -9227,6 +9217,16 @@
       <location filename="app/offsets/zero_offsets.py" />
       <source>Z, MM?</source>
       <translation>¿Z, MM?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/zero_offsets.py" />
+      <source>all zero offsets cleared with the C key</source>
+      <translation>todos los decalajes de origen borrados con la tecla C</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>CHECK OFF</source>
+      <translation>DESACT.</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -9272,11 +9272,6 @@
       <location filename="app/part/part_sheet.py" />
       <source>SELECT THE FINDING WHOSE CHECK YOU WANT TO TURN OFF</source>
       <translation>SELECCIONE EL HALLAZGO CUYA COMPROBACIÓN QUIERE DESACTIVAR</translation>
-    </message>
-    <message>
-      <location filename="app/part/part_sheet.py" />
-      <source>SILENCE</source>
-      <translation>SILENC.</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -9430,13 +9425,13 @@
     </message>
     <message>
       <location filename="app/part/part_tables.py" />
-      <source>STILL MISSING: ENTER {field}</source>
-      <translation>FALTA UN DATO: INTRODUZCA {field}</translation>
+      <source>STOCK  ·  {name}</source>
+      <translation>MATERIAL EN BRUTO  ·  {name}</translation>
     </message>
     <message>
       <location filename="app/part/part_tables.py" />
-      <source>STOCK  ·  {name}</source>
-      <translation>MATERIAL EN BRUTO  ·  {name}</translation>
+      <source>STOCK DATA INCOMPLETE: ENTER {field}</source>
+      <translation>DATOS DE MATERIAL INCOMPLETOS: INTRODUZCA {field}</translation>
     </message>
     <message>
       <location filename="app/part/part_tables.py" />
@@ -9485,8 +9480,8 @@
     </message>
     <message>
       <location filename="app/path/measuring.py" />
-      <source>ARROWS, TAB: MOVE   ENTER: MEASURE FROM HERE   ESC: BACK</source>
-      <translation>FLECHAS, TAB: MOVER   ENTER: MEDIR DESDE AQUÍ   ESC: VOLVER</translation>
+      <source>ARROWS, TAB: NEXT POINT   ENTER: MEASURE FROM IT   ESC: BACK</source>
+      <translation>FLECHAS, TAB: OTRO PUNTO   ENTER: MEDIR DESDE ÉL   ESC: VOLVER</translation>
     </message>
     <message>
       <location filename="app/path/measuring.py" />
@@ -9645,13 +9640,13 @@
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
-      <source>PROGRAM NOT DELETED. A VERSION CANNOT BE SAVED FIRST: {error}</source>
-      <translation>PROGRAMA NO BORRADO. NO SE PUEDE GUARDAR ANTES UNA VERSIÓN: {error}</translation>
+      <source>PROGRAM NOT DELETED. ITS CURRENT VERSION CANNOT BE SAVED FIRST: {error}</source>
+      <translation>PROGRAMA NO BORRADO. NO SE PUEDE GUARDAR ANTES SU VERSIÓN ACTUAL: {error}</translation>
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
-      <source>PROGRAM RENAMED, BUT ITS VERSIONS REMAIN UNDER {source}: {error}</source>
-      <translation>PROGRAMA RENOMBRADO, PERO SUS VERSIONES SIGUEN EN {source}: {error}</translation>
+      <source>PROGRAM RENAMED, BUT ITS VERSIONS REMAIN UNDER THE NAME {source}: {error}</source>
+      <translation>PROGRAMA RENOMBRADO, PERO SUS VERSIONES SIGUEN CON EL NOMBRE {source}: {error}</translation>
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
@@ -9755,13 +9750,13 @@
     </message>
     <message>
       <location filename="app/programs/folder_chooser.py" />
-      <source>NAME</source>
-      <translation>NOMBRE</translation>
+      <source>LOCATIONS</source>
+      <translation>UBICACIONES</translation>
     </message>
     <message>
       <location filename="app/programs/folder_chooser.py" />
-      <source>PLACES</source>
-      <translation>LUGARES</translation>
+      <source>NAME</source>
+      <translation>NOMBRE</translation>
     </message>
     <message>
       <location filename="app/programs/folder_chooser.py" />
@@ -9840,8 +9835,8 @@
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
-      <source>PROGRAMS IMPORTED: {count}. NOT ALL ARE FREE OF ERRORS: {value}</source>
-      <translation>PROGRAMAS IMPORTADOS: {count}. NO TODOS ESTÁN SIN ERRORES: {value}</translation>
+      <source>PROGRAMS IMPORTED: {count}. AT LEAST ONE HAS ERRORS: {value}</source>
+      <translation>PROGRAMAS IMPORTADOS: {count}. AL MENOS UNO TIENE ERRORES: {value}</translation>
     </message>
     <message>
       <location filename="app/programs/import_export.py" />
@@ -10090,6 +10085,11 @@
     </message>
     <message>
       <location filename="app/programs/whole_file.py" />
+      <source>FILES IN {folder} CANNOT BE SAVED TO THE DISK: {cause}</source>
+      <translation>LOS ARCHIVOS DE {folder} NO SE PUEDEN GUARDAR EN EL DISCO: {cause}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/whole_file.py" />
       <source>NOT SAVED: TEXT HAS CHARACTERS A PROGRAM FILE CANNOT STORE</source>
       <translation>NO SE GUARDÓ: EL TEXTO TIENE CARACTERES NO VÁLIDOS EN UN PROGRAMA</translation>
     </message>
@@ -10100,18 +10100,13 @@
     </message>
     <message>
       <location filename="app/programs/whole_file.py" />
-      <source>{folder} CANNOT BE SAVED TO THE DISK: {cause}</source>
-      <translation>{folder} NO SE PUEDE GUARDAR EN EL DISCO: {cause}</translation>
-    </message>
-    <message>
-      <location filename="app/programs/whole_file.py" />
       <source>{target} CANNOT BE WRITTEN: {cause}</source>
       <translation>NO SE PUEDE ESCRIBIR {target}: {cause}</translation>
     </message>
     <message>
       <location filename="app/quality/charts_section.py" />
-      <source>ARROWS: FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS</source>
-      <translation>FLECHAS: CARACTERÍSTICA. A TRAZOS: LÍMITES DE CONTROL, PUNTOS: TOLERANCIA, CÍRCULOS: REGLAS INCUMPLIDAS</translation>
+      <source>ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS</source>
+      <translation>FLECHAS: ELEGIR CARACTERÍSTICA. A TRAZOS: LÍMITES DE CONTROL, PUNTOS: TOLERANCIA, CÍRCULOS: REGLAS INCUMPLIDAS</translation>
     </message>
     <message>
       <location filename="app/quality/charts_section.py" />
@@ -10320,8 +10315,8 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
-      <source>STOP MEASURING {name}? READINGS REMAIN. Y: STOP   N: CONTINUE</source>
-      <translation>¿DEJAR DE MEDIR {name}? SUS LECTURAS QUEDAN. Y: DEJAR   N: SEGUIR</translation>
+      <source>STOP MEASURING {name}? READINGS STAY STORED. Y: STOP   N: CONTINUE</source>
+      <translation>¿DEJAR DE MEDIR {name}? LAS LECTURAS QUEDAN GUARDADAS. Y: DEJAR   N: SEGUIR</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -10400,7 +10395,7 @@
     </message>
     <message>
       <location filename="app/quality/gauge_line.py" />
-      <source>gauge is not connected or is switched off</source>
+      <source>the gauge is not connected or is switched off</source>
       <translation>el calibrador no está conectado o está apagado</translation>
     </message>
     <message>
@@ -10470,8 +10465,8 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MENU, F8 OR F9</source>
-      <translation>NO SE PUEDE DESHACER: HAY UN CAMBIO POSTERIOR. HISTORIAL: MENÚ, F8 O F9</translation>
+      <source>CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MAIN MENU, F8/F9</source>
+      <translation>NO SE PUEDE DESHACER: HAY UN CAMBIO POSTERIOR. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -10520,8 +10515,13 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
-      <source>NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MENU, F8 OR F9</source>
-      <translation>SIN CORRECCIONES EN ESTA PÁGINA. HISTORIAL: MENÚ, F8 O F9</translation>
+      <source>MEASURED {name} OF PART {part}?</source>
+      <translation>¿{name} MEDIDO EN LA PIEZA {part}?</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
+      <source>NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MAIN MENU, F8/F9</source>
+      <translation>SIN CORRECCIONES EN ESTA PÁGINA. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -10587,11 +10587,6 @@
       <location filename="app/quality/readings_section.py" />
       <source>program {program}, part {part}: {feature} measured as {taken} mm</source>
       <translation>programa {program}, pieza {part}: {feature} medido, {taken} mm</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>{name} OF PART {part}?</source>
-      <translation>¿{name} DE LA PIEZA {part}?</translation>
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
@@ -10895,18 +10890,13 @@
     </message>
     <message>
       <location filename="app/quality/shift_page.py" />
-      <source>{share} %: {run} of {planned} in cycle</source>
-      <translation>{share} %: {run} de {planned} en ciclo</translation>
+      <source>{share} %: in cycle for {run} of {planned}</source>
+      <translation>{share} %: en ciclo {run} de {planned}</translation>
     </message>
     <message>
       <location filename="app/quality/shift_page.py" />
       <source>{unit} mm</source>
       <translation>{unit} mm</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>ENTER THE LIMIT. F2: OTHER LIMIT   F4: INSERT CHANGED</source>
-      <translation>ESCRIBA EL LÍMITE. F2: OTRO LÍMITE   F4: PLAQUITA CAMBIADA</translation>
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
@@ -10930,8 +10920,8 @@
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
-      <source>Only time at feed counts toward the minutes. 0 removes a limit. STOP: no new part starts once the tool life is used up.</source>
-      <translation>Solo el tiempo en avance cuenta para los minutos. 0 quita el límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
+      <source>Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: no new part starts once the tool life is used up.</source>
+      <translation>Solo el tiempo en avance cuenta para los minutos de vida. Escriba 0 para no tener límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
@@ -10947,6 +10937,11 @@
       <location filename="app/quality/tool_life_section.py" />
       <source>TOOL LIFE</source>
       <translation>VIDA ÚTIL DE HERRAMIENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT</source>
+      <translation>ESCRIBA EL LÍMITE DE VIDA. F2: OTRO LÍMITE   F4: PLAQUITA NUEVA</translation>
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
@@ -11155,8 +11150,8 @@
     </message>
     <message>
       <location filename="app/quality/trends_section.py" />
-      <source>{count} stops, on average {mean} apart; {reason}: {time}</source>
-      <translation>{count} paros, {mean} entre ellos de media; {reason}: {time}</translation>
+      <source>{count} stops, on average {mean} apart; longest total: {reason}, {time}</source>
+      <translation>{count} paros, {mean} entre ellos de media; mayor total: {reason}, {time}</translation>
     </message>
     <message>
       <location filename="app/quality/trends_section.py" />
@@ -11165,8 +11160,8 @@
     </message>
     <message>
       <location filename="app/quality/trends_section.py" />
-      <source>{first}–{last}: {share} %, {run} of {planned} in cycle</source>
-      <translation>{first}–{last}: {share} %, {run} de {planned} en ciclo</translation>
+      <source>{first}–{last}: {share} %, in cycle for {run} of {planned}</source>
+      <translation>{first}–{last}: {share} %, en ciclo {run} de {planned}</translation>
     </message>
     <message>
       <location filename="app/quality/wear_correction.py" />
@@ -11180,13 +11175,13 @@
     </message>
     <message>
       <location filename="app/quality/wear_correction.py" />
-      <source>{row}: no part started after the last change of {name} has been measured yet</source>
-      <translation>{row}: aún no se ha medido ninguna pieza empezada tras el último cambio de {name}</translation>
+      <source>{row}: none of the parts started since the last change of {name} has been measured yet</source>
+      <translation>{row}: aún no se ha medido ninguna de las piezas empezadas desde el último cambio de {name}</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
-      <source>A dash means that the arc is too short for a result.</source>
-      <translation>Una raya indica que el arco es demasiado corto para un resultado.</translation>
+      <source>A dash means that the arc is too short to calculate the value.</source>
+      <translation>Una raya indica que el arco es demasiado corto para calcular el valor.</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
@@ -11250,8 +11245,8 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
-      <source>NOTHING IS RECORDED ON THIS MACHINE. F9: OPEN A RECORD</source>
-      <translation>EN ESTA MÁQUINA NO SE REGISTRA NADA. F9: ABRIR UN REGISTRO</translation>
+      <source>NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD</source>
+      <translation>SIN DATOS DEL OSCILOSCOPIO EN ESTA MÁQUINA. F9: ABRIR UN REGISTRO</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
@@ -11490,7 +11485,7 @@
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
-      <source>SPEED WHERE LAG EQUALS LIMIT</source>
+      <source>SPEED AT WHICH LAG EQUALS LIMIT</source>
       <translation>VELOCIDAD CON RETRASO = LÍMITE</translation>
     </message>
     <message>
@@ -11505,11 +11500,6 @@
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
-      <source>no axis moved from rest to rest in this time range; jog one step on the Jog page</source>
-      <translation>ningún eje se movió de reposo a reposo en este intervalo; mueva un paso en la página Manual</translation>
-    </message>
-    <message>
-      <location filename="app/scope/axis_response.py" />
       <source>no trip</source>
       <translation>sin disparo</translation>
     </message>
@@ -11517,6 +11507,11 @@
       <location filename="app/scope/axis_response.py" />
       <source>the limit is not reached in the axis speed range</source>
       <translation>el límite no se alcanza en el rango de velocidad del eje</translation>
+    </message>
+    <message>
+      <location filename="app/scope/axis_response.py" />
+      <source>this time range contains no complete move of an axis from rest to rest; jog one step on the Jog page</source>
+      <translation>en este intervalo no hay ningún movimiento completo de un eje de reposo a reposo; mueva un paso en la página Manual</translation>
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
@@ -11620,8 +11615,8 @@
     </message>
     <message>
       <location filename="app/scope/scope_function.py" />
-      <source>NOTHING RECORDED ON THIS MACHINE</source>
-      <translation>NADA REGISTRADO EN ESTA MÁQUINA</translation>
+      <source>NO SCOPE DATA RECORDED ON THIS MACHINE</source>
+      <translation>SIN DATOS DEL OSCILOSCOPIO EN ESTA MÁQUINA</translation>
     </message>
     <message>
       <location filename="app/scope/scope_function.py" />
@@ -11665,8 +11660,8 @@
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
-      <source>THE RECORD CONTAINS NO SAMPLES FOR THIS TIME</source>
-      <translation>EL REGISTRO NO CONTIENE MUESTRAS PARA ESTE TIEMPO</translation>
+      <source>THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE</source>
+      <translation>EL REGISTRO NO CONTIENE MUESTRAS DE ESTE INTERVALO</translation>
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
@@ -11710,8 +11705,8 @@
     </message>
     <message>
       <location filename="app/scope/scope_sheets.py" />
-      <source>ENTER: NEXT CHOICE   LEVEL: TYPE A NUMBER   ESC: BACK</source>
-      <translation>ENTER: OPCIÓN SIGUIENTE   NIVEL: ESCRIBA UN NÚMERO   ESC: VOLVER</translation>
+      <source>ENTER: NEXT CHOICE   DIGITS: TYPE LEVEL   ESC: BACK</source>
+      <translation>ENTER: OPCIÓN SIGUIENTE   CIFRAS: ESCRIBIR NIVEL   ESC: VOLVER</translation>
     </message>
     <message>
       <location filename="app/scope/scope_sheets.py" />
@@ -11740,8 +11735,8 @@
     </message>
     <message>
       <location filename="app/scope/scope_sheets.py" />
-      <source>No records yet. F2 saves the current view.</source>
-      <translation>Aún no hay registros. F2 guarda la vista actual.</translation>
+      <source>No scope records yet. F2 saves the current view.</source>
+      <translation>Aún no hay registros del osciloscopio. F2 guarda la vista actual.</translation>
     </message>
     <message>
       <location filename="app/scope/scope_sheets.py" />
@@ -11900,6 +11895,11 @@
     </message>
     <message>
       <location filename="app/scope/signals.py" />
+      <source>Control cycle delay</source>
+      <translation>Retraso del control</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
       <source>Feed override</source>
       <translation>Sobremando de avance</translation>
     </message>
@@ -11912,11 +11912,6 @@
       <location filename="app/scope/signals.py" />
       <source>LATENESS</source>
       <translation>RETRASO</translation>
-    </message>
-    <message>
-      <location filename="app/scope/signals.py" />
-      <source>Lateness</source>
-      <translation>Retraso del control</translation>
     </message>
     <message>
       <location filename="app/scope/signals.py" />
@@ -11940,11 +11935,6 @@
     </message>
     <message>
       <location filename="app/scope/signals.py" />
-      <source>Queue depth</source>
-      <translation>Cola de consignas</translation>
-    </message>
-    <message>
-      <location filename="app/scope/signals.py" />
       <source>SPINDLE REVOLUTIONS</source>
       <translation>VUELTAS DEL HUSILLO</translation>
     </message>
@@ -11952,6 +11942,11 @@
       <location filename="app/scope/signals.py" />
       <source>SPINDLE RIPPLE</source>
       <translation>RIZADO DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>Setpoint queue depth</source>
+      <translation>Cola de consignas</translation>
     </message>
     <message>
       <location filename="app/scope/signals.py" />
@@ -12145,11 +12140,6 @@
     </message>
     <message>
       <location filename="app/screen/alarm_panels.py" />
-      <source>ALSO: {number}</source>
-      <translation>TAMBIÉN: {number}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/alarm_panels.py" />
       <source>CAUSES, MOST LIKELY FIRST</source>
       <translation>CAUSAS, LA MÁS PROBABLE PRIMERO</translation>
     </message>
@@ -12157,6 +12147,11 @@
       <location filename="app/screen/alarm_panels.py" />
       <source>No alarms or stops yet.</source>
       <translation>Todavía no hay alarmas ni paros.</translation>
+    </message>
+    <message>
+      <location filename="app/screen/alarm_panels.py" />
+      <source>OTHER ALARMS: {number}</source>
+      <translation>OTRAS ALARMAS: {number}</translation>
     </message>
     <message>
       <location filename="app/screen/alarm_panels.py" />
@@ -12335,8 +12330,8 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
-      <source>programs from other TurnDesk controls: newer versions, copied on request</source>
-      <translation>programas de otros controles TurnDesk: versiones nuevas, se copian si se pide</translation>
+      <source>programs from other TurnDesk controls; newer versions are copied on request</source>
+      <translation>programas de otros controles TurnDesk; las versiones nuevas se copian si se pide</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -12575,7 +12570,7 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
-      <source>RESTART FIRST RETRACTS TOOL ALONG ITS AXIS. OR JOG IT OUT</source>
+      <source>RESTART RETRACTS TOOL ALONG ITS AXIS FIRST. OR JOG TOOL OUT</source>
       <translation>EL REARRANQUE RETIRA ANTES LA HERRAMIENTA POR SU EJE. O SÁQUELA EN JOG</translation>
     </message>
     <message>
@@ -12910,8 +12905,8 @@
     </message>
     <message>
       <location filename="app/shapes/drawing_form.py" />
-      <source>FACE END</source>
-      <translation>LADO DE LA CARA</translation>
+      <source>FACE SIDE IN DRAWING</source>
+      <translation>LADO DE LA CARA EN EL DIBUJO</translation>
     </message>
     <message>
       <location filename="app/shapes/drawing_form.py" />
@@ -12955,8 +12950,8 @@
     </message>
     <message>
       <location filename="app/shapes/drawing_form.py" />
-      <source>No drawings in the program folder: copy a DXF or SVG file into it with F6, F8.</source>
-      <translation>No hay dibujos en la carpeta de programas: copie en ella un archivo DXF o SVG con F6, F8.</translation>
+      <source>No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8.</source>
+      <translation>No hay dibujos en la carpeta de programas: copie en ella un archivo DXF o SVG con F6 y luego F8.</translation>
     </message>
     <message>
       <location filename="app/shapes/drawing_form.py" />
@@ -13090,8 +13085,8 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
-      <source>F6: REPLACE {count} EDITED LINES FROM LINE {line}   ESC: KEEP</source>
-      <translation>F6: SUSTITUIR {count} LÍNEAS EDITADAS DESDE LA LÍNEA {line}   ESC: CONSERVAR</translation>
+      <source>F6: REPLACE {count} EDITED LINES STARTING AT LINE {line}   ESC: KEEP</source>
+      <translation>F6: SUSTITUIR {count} LÍNEAS EDITADAS A PARTIR DE LA LÍNEA {line}   ESC: CONSERVAR</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
@@ -13230,6 +13225,11 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
+      <source>AVAILABLE ON {desks}</source>
+      <translation>DISPONIBLE EN {desks}</translation>
+    </message>
+    <message>
+      <location filename="app/sharing/sharing_model.py" />
       <source>CHANGED HERE AND ON ANOTHER CONTROL</source>
       <translation>CAMBIADO AQUÍ Y EN OTRO CONTROL</translation>
     </message>
@@ -13245,7 +13245,7 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
-      <source>F2: USE SELECTED VERSION   F3: KEEP LOCAL ONE   ESC: BACK</source>
+      <source>F2: USE SELECTED VERSION   F3: KEEP LOCAL VERSION   ESC: BACK</source>
       <translation>F2: USAR LA VERSIÓN ELEGIDA   F3: CONSERVAR LA LOCAL   ESC: VOLVER</translation>
     </message>
     <message>
@@ -13257,11 +13257,6 @@
       <location filename="app/sharing/sharing_model.py" />
       <source>KEEP</source>
       <translation>CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/sharing/sharing_model.py" />
-      <source>LOOK</source>
-      <translation>BUSCAR</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -13292,11 +13287,6 @@
       <location filename="app/sharing/sharing_model.py" />
       <source>NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER</source>
       <translation>AÚN NO SE COMPARTE NADA. LA PRÓXIMA ACTUALIZACIÓN COMPARTE LA CARPETA DE PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/sharing/sharing_model.py" />
-      <source>ON {desks}</source>
-      <translation>EN {desks}</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -13340,8 +13330,8 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
-      <source>{count} WAITING</source>
-      <translation>{count} EN ESPERA</translation>
+      <source>{count} WAITING TO BE SHARED</source>
+      <translation>{count} POR COMPARTIR</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -13375,8 +13365,8 @@
     </message>
     <message>
       <location filename="app/shopfloor/mqtt_broker.py" />
-      <source>the broker {host}:{port}</source>
-      <translation>el broker {host}:{port}</translation>
+      <source>the MQTT broker {host}:{port}</source>
+      <translation>el broker MQTT {host}:{port}</translation>
     </message>
     <message>
       <location filename="app/shopfloor/network_causes.py" />
@@ -13575,13 +13565,13 @@
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
-      <source>{draft} already exists; press F4 to change the PIN</source>
-      <translation>{draft} ya existe; pulse F4 para cambiar el PIN</translation>
+      <source>user {draft} saved with level {level} and a new PIN</source>
+      <translation>usuario {draft} guardado con nivel {level} y PIN nuevo</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
-      <source>{draft} saved: {level}, new PIN</source>
-      <translation>{draft} guardado: {level}, PIN nuevo</translation>
+      <source>{draft} already exists; press F4 to change the PIN</source>
+      <translation>{draft} ya existe; pulse F4 para cambiar el PIN</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
@@ -13620,6 +13610,11 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
+      <source>CANNOT RESTORE: BACKUP DAMAGED</source>
+      <translation>NO RESTAURA: RESPALDO DAÑADO</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
       <source>DAILY BACKUPS</source>
       <translation>COPIAS DIARIAS</translation>
     </message>
@@ -13635,18 +13630,13 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
-      <source>NO ACTION: BACKUP IS DAMAGED</source>
-      <translation>NINGUNA: EL RESPALDO ESTÁ DAÑADO</translation>
-    </message>
-    <message>
-      <location filename="app/special/backup_and_restore.py" />
       <source>PROGRAM RUNNING. WAIT UNTIL IT ENDS, THEN RESTORE</source>
       <translation>PROGRAMA EN MARCHA. ESPERE A QUE TERMINE Y LUEGO RESTAURE</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
-      <source>RESTORE: BACKUP IS INTACT</source>
-      <translation>RESTAURAR: RESPALDO ÍNTEGRO</translation>
+      <source>RESTORE (BACKUP IS INTACT)</source>
+      <translation>RESTAURAR (RESPALDO ÍNTEGRO)</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -13670,8 +13660,8 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
-      <source>Y: RESTORE {name} OVER ALL CURRENT DATA ({what})   N: CANCEL</source>
-      <translation>Y: RESTAURAR {name} SOBRE TODOS LOS DATOS ACTUALES ({what})   N: CANCELAR</translation>
+      <source>Y: RESTORE {name} OVER ALL CURRENT DATA (DIFFERENCES: {what})   N: CANCEL</source>
+      <translation>Y: RESTAURAR {name} SOBRE TODOS LOS DATOS ACTUALES (DIFERENCIAS: {what})   N: CANCELAR</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -13855,8 +13845,8 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
-      <source>live state, manual outputs, lamps</source>
-      <translation>estado, salidas a mano, lámparas</translation>
+      <source>live signals, manual outputs, lamps</source>
+      <translation>señales en vivo, salidas a mano, lámparas</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -13872,6 +13862,11 @@
       <location filename="app/special/inputs_outputs.py" />
       <source>{name} IS SET BY THE OPERATOR STATION OR MACHINE, NOT HERE</source>
       <translation>{name} LO FIJA LA ESTACIÓN DEL OPERADOR O LA MÁQUINA, NO AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>A RUNNING CYCLE IS SHOWN ONLY BY A LAMP. IT HAS NO SOUND</source>
+      <translation>EL CICLO EN MARCHA SE INDICA SÓLO CON LÁMPARA. NO TIENE SONIDO</translation>
     </message>
     <message>
       <location filename="app/special/lamps_and_sound.py" />
@@ -13917,11 +13912,6 @@
       <location filename="app/special/lamps_and_sound.py" />
       <source>LOUDER</source>
       <translation>MÁS</translation>
-    </message>
-    <message>
-      <location filename="app/special/lamps_and_sound.py" />
-      <source>NO SOUND IS AVAILABLE FOR A RUNNING CYCLE, ONLY A LAMP</source>
-      <translation>PARA UN CICLO EN MARCHA NO HAY SONIDO, SÓLO LÁMPARA</translation>
     </message>
     <message>
       <location filename="app/special/lamps_and_sound.py" />
@@ -14135,8 +14125,8 @@
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
-      <source>Cycle Repeat is switched off during the last part. Enter 0 to remove the target.</source>
-      <translation>Repetir ciclo se apaga durante la última pieza. Escriba 0 para quitar la meta.</translation>
+      <source>Cycle Repeat turns off during the last part of the target count. Enter 0 for no part target.</source>
+      <translation>Repetir ciclo se apaga durante la última pieza de la meta. Escriba 0 para no tener meta de piezas.</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -14290,11 +14280,6 @@
     </message>
     <message>
       <location filename="app/special/preferences.py" />
-      <source>PALM BUTTONS LATCH ONLY IN SIMULATION. A REAL SPINDLE COULD START</source>
-      <translation>LOS PULSADORES SE RETIENEN SOLO EN SIMULACIÓN. PODRÍA ARRANCAR UN HUSILLO REAL</translation>
-    </message>
-    <message>
-      <location filename="app/special/preferences.py" />
       <source>PRESS BUTTONS IN SEQUENCE</source>
       <translation>PULSAR UNO TRAS OTRO</translation>
     </message>
@@ -14317,6 +14302,11 @@
       <location filename="app/special/preferences.py" />
       <source>SHOWN</source>
       <translation>VISIBLE</translation>
+    </message>
+    <message>
+      <location filename="app/special/preferences.py" />
+      <source>SIMULATION ONLY: LATCHED PALM BUTTONS COULD START A REAL SPINDLE</source>
+      <translation>SÓLO EN SIMULACIÓN: PULSADORES RETENIDOS PODRÍAN ARRANCAR UN HUSILLO REAL</translation>
     </message>
     <message>
       <location filename="app/special/preferences.py" />
@@ -14485,6 +14475,11 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet_function.py" />
+      <source>LOOK</source>
+      <translation>BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/special/setup_sheet_function.py" />
       <source>NOTES CAN HAVE UP TO {maximum} CHARACTERS. ADD ANOTHER NOTE</source>
       <translation>LAS NOTAS PUEDEN TENER HASTA {maximum} CARACTERES. AÑADA OTRA NOTA</translation>
     </message>
@@ -14615,8 +14610,8 @@
     </message>
     <message>
       <location filename="app/special/setup_sheet_work.py" />
-      <source>PROGRAM TEXT (SHA-256)</source>
-      <translation>TEXTO DEL PROGRAMA (SHA-256)</translation>
+      <source>PROGRAM CHECKSUM (SHA-256)</source>
+      <translation>SUMA DEL PROGRAMA (SHA-256)</translation>
     </message>
     <message>
       <location filename="app/special/setup_sheet_work.py" />
@@ -14655,6 +14650,11 @@
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
+      <source>If a program commands a higher speed, the spindle runs at the limit.</source>
+      <translation>Si un programa pide más velocidad, el husillo gira al tope.</translation>
+    </message>
+    <message>
+      <location filename="app/special/spindle_limit.py" />
       <source>MACHINE MAXIMUM</source>
       <translation>MÁXIMO DE LA MÁQUINA</translation>
     </message>
@@ -14680,18 +14680,13 @@
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
-      <source>NO LIMIT IS ACTIVE</source>
-      <translation>NO HAY TOPE ACTIVO</translation>
+      <source>NO SPINDLE SPEED LIMIT IS ACTIVE</source>
+      <translation>NO HAY TOPE DE VELOCIDAD DEL HUSILLO ACTIVO</translation>
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
       <source>PRESS Y TO REMOVE THE LIMIT, N TO KEEP IT</source>
       <translation>PULSE Y PARA QUITAR EL TOPE, N PARA CONSERVARLO</translation>
-    </message>
-    <message>
-      <location filename="app/special/spindle_limit.py" />
-      <source>Programs that command a higher speed run at the limit.</source>
-      <translation>Los programas que piden más velocidad giran al tope.</translation>
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
@@ -14710,13 +14705,13 @@
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
-      <source>speed limit until restart</source>
-      <translation>tope de velocidad hasta reiniciar</translation>
+      <source>spindle speed limit until restart</source>
+      <translation>tope de velocidad del husillo hasta reiniciar</translation>
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
-      <source>spindle limit: {details}</source>
-      <translation>límite del husillo: {details}</translation>
+      <source>spindle speed limit: {details}</source>
+      <translation>tope de velocidad del husillo: {details}</translation>
     </message>
     <message>
       <location filename="app/special/spindle_limit.py" />
@@ -15120,8 +15115,8 @@
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
-      <source>Press Reset, then Drives On, and home the axis. If the axis is still on the switch, first move the axis off the switch by hand</source>
-      <translation>Pulse Reset, encienda los servos y referencie el eje. Si el eje todavía está sobre el interruptor, sáquelo antes a mano</translation>
+      <source>Press Reset, then Drives On, and home the axis. If the axis is still on its limit switch, first move the axis off the switch by hand</source>
+      <translation>Pulse Reset, encienda los servos y referencie el eje. Si el eje todavía está sobre su final de carrera, sáquelo antes a mano</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
@@ -15130,8 +15125,8 @@
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
-      <source>Press Reset, then Drives On. Close other programs on this computer, then restart at the interrupted line</source>
-      <translation>Pulse Reset y encienda los servos. Cierre los demás programas de esta computadora y reinicie en la línea interrumpida</translation>
+      <source>Press Reset, then Drives On. Close other programs on this computer, then restart the program at the interrupted line</source>
+      <translation>Pulse Reset y encienda los servos. Cierre los demás programas de esta computadora y reinicie el programa en la línea interrumpida</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
@@ -15200,8 +15195,8 @@
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
-      <source>a fault in the encoder, its cable or its coupling; the axis may have moved anyway</source>
-      <translation>una falla en el encoder, su cable o su cople; el eje pudo moverse de todos modos</translation>
+      <source>a fault in the encoder, its cable or its coupling; the axis may have moved although the encoder did not count</source>
+      <translation>una falla en el encoder, su cable o su cople; el eje pudo moverse aunque el encoder no contó</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
@@ -15350,6 +15345,11 @@
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
+      <source>the axis travel in the machine file is too long</source>
+      <translation>el recorrido del eje en el archivo de máquina es demasiado largo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axis_alarms.py" />
       <source>the axis was moved before it was homed</source>
       <translation>el eje se movió antes de referenciarse</translation>
     </message>
@@ -15420,8 +15420,8 @@
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
-      <source>the drives received a command that they cannot carry out now</source>
-      <translation>los servos recibieron una orden que ahora no pueden ejecutar</translation>
+      <source>the drives received a command that they cannot execute in their present state</source>
+      <translation>los servos recibieron una orden que no pueden ejecutar en su estado actual</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
@@ -15462,11 +15462,6 @@
       <location filename="core/alarms/axis_alarms.py" />
       <source>the spindle was too fast for the thread's lead</source>
       <translation>el husillo iba demasiado rápido para el paso de la rosca</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/axis_alarms.py" />
-      <source>the travel in the machine file is too long</source>
-      <translation>el recorrido en el archivo de máquina es demasiado largo</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -15590,8 +15585,8 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>a cable fault, or interference on the line</source>
-      <translation>una falla del cable, o interferencias en la línea</translation>
+      <source>a cable fault, or electrical interference on the controller cable</source>
+      <translation>una falla del cable, o interferencias eléctricas en el cable del controlador</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -15607,6 +15602,11 @@
       <location filename="core/alarms/bus_alarms.py" />
       <source>an EtherCAT slave is not operational, or the bus is still starting</source>
       <translation>un esclavo EtherCAT no está operativo, o el bus aún está arrancando</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>an interface board does not respond to its driver because of a cable or power fault</source>
+      <translation>una tarjeta de interfaz no responde a su controlador por una falla del cable o de la alimentación</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -15795,11 +15795,6 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>the driver of a board is waiting for the board because of a cable or power fault</source>
-      <translation>el controlador de una tarjeta espera a la tarjeta por una falla del cable o de la alimentación</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
       <source>the module restarted and its outputs dropped out</source>
       <translation>el módulo se reinició y sus salidas cayeron</translation>
     </message>
@@ -15835,8 +15830,8 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>Check the tool. Read on the screen what will restart, then press Cycle Start. Measure this part; it is not counted automatically</source>
-      <translation>Revise la herramienta. Lea en la pantalla qué va a arrancar, luego pulse arranque de ciclo. Mida esta pieza; no se cuenta automáticamente</translation>
+      <source>Check the tool. Read on the screen which functions will restart, then press Cycle Start. Measure this part, because it is not counted automatically</source>
+      <translation>Revise la herramienta. Lea en la pantalla qué funciones van a arrancar, luego pulse arranque de ciclo. Mida esta pieza, porque no se cuenta automáticamente</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -15870,18 +15865,13 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>Press Reset, then Drives On. Save the program and the log (F10), then restart at another line</source>
-      <translation>Pulse Reset y encienda los servos. Guarde el programa y la bitácora (F10), luego reinicie en otra línea</translation>
+      <source>Press Reset, then Drives On. Save the program and the log (F10), then restart the program at another line</source>
+      <translation>Pulse Reset y encienda los servos. Guarde el programa y la bitácora (F10), luego reinicie el programa en otra línea</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
       <source>The axes have stopped on the path. Close other programs, then press Cycle Start</source>
       <translation>Los ejes pararon sobre la trayectoria. Cierre los demás programas, luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
-      <source>a branch controlled by an input or a counter went to a line that had never run before</source>
-      <translation>un salto controlado por una entrada o un contador fue a una línea que nunca se había corrido</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -15905,13 +15895,18 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>an input or a counter made the program jump to a line that had never run before</source>
+      <translation>una entrada o un contador hizo saltar el programa a una línea que nunca se había corrido</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>an internal error in TurnDesk; see the log</source>
       <translation>un error interno de TurnDesk; vea la bitácora</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>an internal error in TurnDesk; the faulty section of the path was not executed</source>
-      <translation>un error interno de TurnDesk; el tramo defectuoso de la trayectoria no se ejecutó</translation>
+      <source>an internal error in TurnDesk; the axes did not move along the faulty part of the path</source>
+      <translation>un error interno de TurnDesk; los ejes no recorrieron la parte defectuosa de la trayectoria</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16020,8 +16015,8 @@
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
-      <source>Before moving any axis, check whether a boring bar is still in its hole. Press Reset, then test the orientation in MDI</source>
-      <translation>Antes de mover un eje, vea si una barra de mandrinar sigue en su agujero. Pulse Reset, luego pruebe la orientación en MDI</translation>
+      <source>Before moving any axis, check whether a boring bar is still in its hole. Press Reset, then test the spindle orientation in MDI</source>
+      <translation>Antes de mover un eje, vea si una barra de mandrinar sigue en su agujero. Pulse Reset, luego pruebe la orientación del husillo en MDI</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -16330,6 +16325,11 @@
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
+      <source>the index pulse of the spindle encoder was not found</source>
+      <translation>no se encontró el pulso índice del encoder del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/spindle_alarms.py" />
       <source>the inverter cable is disconnected, or picks up interference from the motor cable</source>
       <translation>el cable del variador está suelto, o el cable del motor lo perturba</translation>
     </message>
@@ -16382,11 +16382,6 @@
       <location filename="core/alarms/spindle_alarms.py" />
       <source>the spindle drive has tripped; its display shows the reason</source>
       <translation>el variador del husillo se disparó; su pantalla muestra el motivo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/spindle_alarms.py" />
-      <source>the spindle index was not found</source>
-      <translation>no se encontró el índice del husillo</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -16620,11 +16615,6 @@
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
-      <source>the cause is shown in this alarm</source>
-      <translation>la causa se muestra en esta alarma</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
       <source>the controller's own feed hold or safety door input is active</source>
       <translation>la entrada de retención de avance o de puerta de seguridad del propio controlador está activa</translation>
     </message>
@@ -16657,6 +16647,11 @@
       <location filename="core/alarms/station_alarms.py" />
       <source>the spindle was stopped manually</source>
       <translation>el husillo se paró a mano</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/station_alarms.py" />
+      <source>the text of this alarm shows the cause</source>
+      <translation>el texto de esta alarma muestra la causa</translation>
     </message>
     <message>
       <location filename="core/alarms/station_alarms.py" />
@@ -16850,18 +16845,8 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>elsewhere, the simulated part</source>
-      <translation>por lo demás, la pieza simulada</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
       <source>gaps up to {closed} {unit} were closed</source>
       <translation>se cerraron huecos de hasta {closed} {unit}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>of stock remains, measured on</source>
-      <translation>de material quedan, medidos en</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -16875,6 +16860,16 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
+      <source>stock remains</source>
+      <translation>queda material</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>the rest of the simulated part</source>
+      <translation>el resto de la pieza simulada</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
       <source>the simulated part</source>
       <translation>la pieza simulada</translation>
     </message>
@@ -16885,18 +16880,13 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>too much is cut, measured on</source>
-      <translation>de más se cortan, medidos en</translation>
+      <source>too much stock is cut</source>
+      <translation>se corta demasiado material</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
       <source>{depth} {unit} of stock remains in the corner at Z {position} because of the tool nose radius</source>
       <translation>{depth} {unit} de material quedan en el rincón en Z {position} por el radio de punta del útil</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{depth} {unit} {what} the radius, from {span}</source>
-      <translation>{depth} {unit} {what} el radio, de {span}</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -16912,6 +16902,11 @@
       <location filename="core/drawings/profile_words.py" />
       <source>{what} matches the drawing to within {within} {unit}</source>
       <translation>{what} coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
+      <source>{what}: {depth} {unit} on the radius, from {span}</source>
+      <translation>{what}: {depth} {unit} en el radio, de {span}</translation>
     </message>
     <message>
       <location filename="core/drawings/svg_reader.py" />
@@ -17040,11 +17035,6 @@
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
-      <source>more parts may be run</source>
-      <translation>se pueden hacer más piezas</translation>
-    </message>
-    <message>
-      <location filename="core/executor/command_handler.py" />
       <source>no more parts may be run: {why}</source>
       <translation>no se pueden hacer más piezas: {why}</translation>
     </message>
@@ -17052,6 +17042,11 @@
       <location filename="core/executor/command_handler.py" />
       <source>not available in state {state}</source>
       <translation>no disponible en el estado {state}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
+      <source>parts may be run again</source>
+      <translation>se pueden hacer piezas otra vez</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
@@ -17375,8 +17370,8 @@
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
-      <source>jog the tool clear of the part, press Y</source>
-      <translation>saque la herramienta de la pieza a mano, pulse la tecla Y</translation>
+      <source>jog the tool clear of the part, then press Y</source>
+      <translation>saque la herramienta de la pieza a mano, después pulse la tecla Y</translation>
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
@@ -17590,8 +17585,8 @@
     </message>
     <message>
       <location filename="core/executor/path_section.py" />
-      <source>no path section is active, or the end of the path section is reached</source>
-      <translation>no hay tramo de trayectoria activo, o se llegó al final del tramo</translation>
+      <source>no move is active, or all moves of the path are finished</source>
+      <translation>no hay ningún movimiento activo, o terminaron todos los movimientos de la trayectoria</translation>
     </message>
     <message>
       <location filename="core/executor/path_section.py" />
@@ -17675,11 +17670,6 @@
     </message>
     <message>
       <location filename="core/executor/recorder.py" />
-      <source>the record is stored in memory only: {error}</source>
-      <translation>el registro se guarda sólo en memoria: {error}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/recorder.py" />
       <source>the record of an alarm was lost: {error}</source>
       <translation>se perdió el registro de una alarma: {error}</translation>
     </message>
@@ -17690,13 +17680,18 @@
     </message>
     <message>
       <location filename="core/executor/recorder.py" />
+      <source>the scope record is stored in memory only: {error}</source>
+      <translation>el registro del osciloscopio se guarda sólo en memoria: {error}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/recorder.py" />
       <source>this alarm record was deleted; only the newest {saved} are stored</source>
       <translation>este registro de alarma se borró; sólo se guardan los {saved} más recientes</translation>
     </message>
     <message>
       <location filename="core/executor/recorder.py" />
-      <source>{folder}: old records cannot be deleted: {cause}</source>
-      <translation>{folder}: los registros antiguos no se pueden borrar: {cause}</translation>
+      <source>{folder}: old alarm records cannot be deleted: {cause}</source>
+      <translation>{folder}: los registros de alarma antiguos no se pueden borrar: {cause}</translation>
     </message>
     <message>
       <location filename="core/executor/safe_stop.py" />
@@ -17990,8 +17985,8 @@
     </message>
     <message>
       <location filename="core/executor/supervision.py" />
-      <source>DRIVER HOST STOPPED SPINDLE/OUTPUTS</source>
-      <translation>EL PROCESO DE DRIVERS APAGÓ EL HUSILLO O SALIDAS</translation>
+      <source>DRIVER PROCESS SWITCHED OFF SPINDLE AND OUTPUTS</source>
+      <translation>EL PROCESO DE DRIVERS APAGÓ EL HUSILLO Y LAS SALIDAS</translation>
     </message>
     <message>
       <location filename="core/executor/supervision.py" />
@@ -18060,8 +18055,8 @@
     </message>
     <message>
       <location filename="core/executor/thread_path.py" />
-      <source>{why} during the pull-out: the thread is cut, but its runout is short</source>
-      <translation>{why} durante la salida: la rosca está cortada, pero su salida es corta</translation>
+      <source>{why} during the pull-out: the thread is cut, but the thread runout is shorter than programmed</source>
+      <translation>{why} durante la salida: la rosca está cortada, pero la salida de rosca es más corta que la programada</translation>
     </message>
     <message>
       <location filename="core/executor/thread_path.py" />
@@ -18130,8 +18125,8 @@
     </message>
     <message>
       <location filename="core/executor/touch_off.py" />
-      <source>the probe input is still on at a distance of {distance} from the touch point; check the stylus and the cable</source>
-      <translation>la entrada probe sigue activa a una distancia de {distance} del punto de toque; revise la punta y el cable</translation>
+      <source>the probe input is still on after the tool has backed off {distance} from the touch point; check the stylus and the cable</source>
+      <translation>la entrada probe sigue activa después de retroceder {distance} desde el punto de toque; revise la punta y el cable</translation>
     </message>
     <message>
       <location filename="core/executor/touch_off.py" />
@@ -18185,8 +18180,8 @@
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
-      <source>line itself</source>
-      <translation>línea misma</translation>
+      <source>current line</source>
+      <translation>línea actual</translation>
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
@@ -19510,8 +19505,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/older_contour_cycles.py" />
-      <source>the cycle drills holes where this tool would plunge; cycle 6 plunges along a ramp and does not need these holes.</source>
-      <translation>el ciclo taladra agujeros donde esta herramienta penetraría; el ciclo 6 penetra en rampa y no necesita estos agujeros.</translation>
+      <source>the cycle drills holes where the active tool would plunge; cycle 6 plunges along a ramp and does not need these holes.</source>
+      <translation>el ciclo taladra agujeros donde la herramienta activa penetraría; el ciclo 6 penetra en rampa y no necesita estos agujeros.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/older_contour_cycles.py" />
@@ -19620,8 +19615,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/path_elements.py" />
-      <source>Program a full circle as two arcs or with C.</source>
-      <translation>Programe un círculo completo como dos arcos o con C.</translation>
+      <source>Program a full circle as two arcs or with path function C.</source>
+      <translation>Programe un círculo completo como dos arcos o con la función de trayectoria C.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/path_elements.py" />
@@ -19740,8 +19735,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/path_functions.py" />
-      <source>The position of {off} does not match the plane of line {line}.</source>
-      <translation>La posición de {off} no corresponde al plano de la línea {line}.</translation>
+      <source>The position of {off} does not match the plane programmed on line {line}.</source>
+      <translation>La posición de {off} no corresponde al plano programado en la línea {line}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/path_functions.py" />
@@ -19805,8 +19800,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source> with {side}</source>
-      <translation> con {side}</translation>
+      <source> when {side} is programmed</source>
+      <translation> cuando está programado {side}</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
@@ -20090,6 +20085,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/text_values.py" />
+      <source>Function {unknown} in string parameter QS{number}</source>
+      <translation>La función {unknown} en el parámetro de texto QS{number}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/text_values.py" />
       <source>No table is open.</source>
       <translation>No hay ninguna tabla abierta.</translation>
     </message>
@@ -20115,23 +20115,18 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/text_values.py" />
-      <source>The row does not contain a number in column {column}.</source>
-      <translation>La fila no contiene ningún número en la columna {column}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
       <source>The table has no row {number}.</source>
       <translation>La tabla no tiene la fila {number}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/text_values.py" />
-      <source>Writing to the file with FN 27: TABWRITE</source>
-      <translation>Escribir en el archivo con FN 27: TABWRITE</translation>
+      <source>The table row does not contain a number in column {column}.</source>
+      <translation>La fila de la tabla no contiene ningún número en la columna {column}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/text_values.py" />
-      <source>{unknown} in string parameter QS{number}</source>
-      <translation>{unknown} en el parámetro de texto QS{number}</translation>
+      <source>Writing to the file with FN 27: TABWRITE</source>
+      <translation>Escribir en el archivo con FN 27: TABWRITE</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
@@ -20280,8 +20275,8 @@
     </message>
     <message>
       <location filename="core/interpreter/machine_requirements.py" />
-      <source>milling with plane switching</source>
-      <translation>fresado con cambio de plano</translation>
+      <source>milling with the plane commands (~PLXC) and (~PLZC)</source>
+      <translation>fresado con los comandos de plano (~PLXC) y (~PLZC)</translation>
     </message>
     <message>
       <location filename="core/interpreter/machine_requirements.py" />
@@ -20330,13 +20325,13 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>Here, I and K are distances from the start point of the arc.</source>
-      <translation>Aquí, I y K son distancias desde el punto de inicio del arco.</translation>
+      <source>On this line, I and K are distances from the start point of the arc.</source>
+      <translation>En esta línea, I y K son distancias desde el punto de inicio del arco.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>Here, I and K are the coordinates of the arc center.</source>
-      <translation>Aquí, I y K son las coordenadas del centro del arco.</translation>
+      <source>On this line, I and K are the coordinates of the arc center.</source>
+      <translation>En esta línea, I y K son las coordenadas del centro del arco.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
@@ -20505,8 +20500,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
-      <source>the contour ends here</source>
-      <translation>el contorno termina aquí</translation>
+      <source>the contour ends at this corner</source>
+      <translation>el contorno termina en esta esquina</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
@@ -20955,11 +20950,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>Plane switching with (~PLXC) or (~PLZC) is not allowed while G{state} is active.</source>
-      <translation>El cambio de plano con (~PLXC) o (~PLZC) no está permitido con G{state} activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>Program the approach as a straight line with D.</source>
       <translation>Programe la entrada como una recta con D.</translation>
     </message>
@@ -21000,18 +20990,23 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>The plane commands (~PLXC) and (~PLZC) are not allowed while G{state} is active.</source>
+      <translation>Los comandos de plano (~PLXC) y (~PLZC) no están permitidos con G{state} activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>The program ends while G{state} is active.</source>
       <translation>El programa termina con G{state} activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>The {lead} is {length} long, which is less than the nose radius of {nose}.</source>
-      <translation>La {lead} mide {length}, que es menos que el radio de punta de {nose}.</translation>
+      <source>The {lead} move is {length} long, which is less than the nose radius of {nose}.</source>
+      <translation>El movimiento de {lead} mide {length}, que es menos que el radio de punta de {nose}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>The {lead} {choice} {value} from the part</source>
-      <translation>La {lead} {choice} a {value} de la pieza</translation>
+      <source>The {lead} {choice} at a distance of {value} from the part</source>
+      <translation>La {lead} {choice} a una distancia de {value} de la pieza</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
@@ -21070,13 +21065,13 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>{what}, which is less than the nose radius of {nose}.</source>
-      <translation>{what}, que es menos que el radio de punta de {nose}.</translation>
+      <source>{what}. This distance is less than the nose radius of {nose}.</source>
+      <translation>{what}. Esta distancia es menor que el radio de punta de {nose}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>{what}, which is less than twice the nose radius of {nose}.</source>
-      <translation>{what}, que es menos que el doble del radio de punta de {nose}.</translation>
+      <source>{what}. This distance is less than twice the nose radius of {nose}.</source>
+      <translation>{what}. Esta distancia es menor que el doble del radio de punta de {nose}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_book.py" />
@@ -21200,11 +21195,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>Plane switching that begins on line {plane} has no (END).</source>
-      <translation>El cambio de plano que empieza en la línea {plane} no tiene (END).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>Press Enter at the end of the last line.</source>
       <translation>Pulse Enter al final de la última línea.</translation>
     </message>
@@ -21242,6 +21232,11 @@
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
       <source>The lines end with a carriage return.</source>
       <translation>Las líneas terminan con un retorno de carro.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_program.py" />
+      <source>The plane command (~PLXC) or (~PLZC) on line {plane} has no matching (END).</source>
+      <translation>El comando de plano (~PLXC) o (~PLZC) de la línea {plane} no tiene su (END).</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
@@ -21360,8 +21355,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>{what} looks like plane switching; (~PLXC) and (~PLZC) must be alone on a line.</source>
-      <translation>{what} parece cambio de plano; (~PLXC) y (~PLZC) deben ir solos en una línea.</translation>
+      <source>{what} looks like a plane command; write the plane commands (~PLXC) and (~PLZC) alone on a line.</source>
+      <translation>{what} parece un comando de plano; escriba los comandos de plano (~PLXC) y (~PLZC) solos en una línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
@@ -21420,8 +21415,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>The path comes within {nearest} of the spindle centerline, but with this H the tool cannot come closer than {minimum}.</source>
-      <translation>La trayectoria pasa a {nearest} del eje del husillo, pero con esta H la herramienta no puede acercarse a menos de {minimum}.</translation>
+      <source>The path comes within {nearest} of the spindle centerline, but with the programmed H the tool cannot come closer to the centerline than {minimum}.</source>
+      <translation>La trayectoria pasa a {nearest} del eje del husillo, pero con la H programada la herramienta no puede acercarse al eje a menos de {minimum}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
@@ -21430,8 +21425,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Write H before all moves and F.</source>
-      <translation>Escriba H antes de todos los movimientos y de F.</translation>
+      <source>Write H before the first move and before F.</source>
+      <translation>Escriba H antes del primer movimiento y antes de F.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
@@ -21520,6 +21515,11 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
+      <source>The allowance {text} leaves no material for the box cycle to cut.</source>
+      <translation>La sobremedida {text} no deja material para que lo corte el ciclo de caja.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>The box has zero size along {letter} because its corner is at the start point.</source>
       <translation>La caja tiene medida cero en {letter} porque su esquina está en el punto de inicio.</translation>
     </message>
@@ -21547,11 +21547,6 @@
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
       <source>U must be less than the distance in X from the start point to the programmed X.</source>
       <translation>U debe ser menor que la distancia en X del punto de inicio a la X programada.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>With {text}, no material remains for the box cycle to cut.</source>
-      <translation>Con {text}, no queda material por cortar en la caja.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
@@ -21875,13 +21870,13 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_lines.py" />
-      <source>is in the plane switching section that begins on line {done}.</source>
-      <translation>está en la sección de cambio de plano que empieza en la línea {done}.</translation>
+      <source>is inside the loop from line {start} to line {end}.</source>
+      <translation>está dentro del bucle de la línea {start} a la línea {end}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_lines.py" />
-      <source>is inside the loop from line {start} to line {end}.</source>
-      <translation>está dentro del bucle de la línea {start} a la línea {end}.</translation>
+      <source>is inside the plane switching with (~PLXC) or (~PLZC) that begins on line {done}.</source>
+      <translation>está dentro del cambio de plano con (~PLXC) o (~PLZC) que empieza en la línea {done}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_lines.py" />
@@ -21910,28 +21905,28 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
-      <source>Line {line} depends on an input that is read on line {requested}.</source>
-      <translation>La línea {line} depende de una entrada que se lee en la línea {requested}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/state_rebuild.py" />
-      <source>Line {line} uses nose compensation or is part of a corner.</source>
-      <translation>La línea {line} usa compensación de punta o forma parte de una esquina.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>No axis has moved before line {line}; start the program from its first line.</source>
       <translation>Ningún eje se ha movido antes de la línea {line}; empiece el programa desde su primera línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
-      <source>Plane switching with (~PLXC) or (~PLZC) is active at line {line}.</source>
-      <translation>El cambio de plano con (~PLXC) o (~PLZC) está activo en la línea {line}.</translation>
+      <source>The program cannot resume at line {line}, because that line depends on an input that is read on line {requested}.</source>
+      <translation>El programa no puede continuar en la línea {line}, porque esa línea depende de una entrada que se lee en la línea {requested}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
-      <source>The axis positions at line {line} depend on the axis positions at Cycle Start.</source>
-      <translation>Las posiciones de los ejes en la línea {line} dependen de sus posiciones en el arranque de ciclo.</translation>
+      <source>The program cannot resume at line {line}, because that line uses nose compensation or is part of a corner.</source>
+      <translation>El programa no puede continuar en la línea {line}, porque esa línea usa compensación de punta o forma parte de una esquina.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/state_rebuild.py" />
+      <source>The program cannot resume at line {line}, because the axis positions there depend on the axis positions at Cycle Start.</source>
+      <translation>El programa no puede continuar en la línea {line}, porque las posiciones de los ejes ahí dependen de sus posiciones en el arranque de ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/state_rebuild.py" />
+      <source>The program cannot resume at line {line}, because the plane command (~PLXC) or (~PLZC) is active there.</source>
+      <translation>El programa no puede continuar en la línea {line}, porque ahí está activo el comando de plano (~PLXC) o (~PLZC).</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
@@ -22275,6 +22270,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Correct the values so that RTP, RFP and the depth follow each other in this order along the drilling direction.</source>
+      <translation>Corrija los valores para que RTP, RFP y la profundidad se sucedan en este orden en la dirección de taladrado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>DP and DPR differ, so DP is used.</source>
       <translation>DP y DPR difieren, así que se usa DP.</translation>
     </message>
@@ -22282,11 +22282,6 @@
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>Enter DP, or DPR measured from the reference plane.</source>
       <translation>Indique DP, o DPR medido desde el plano de referencia.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
-      <source>Enter RTP, RFP and the depth in this order along the drilling direction.</source>
-      <translation>Indique RTP, RFP y la profundidad en este orden a lo largo de la dirección de taladrado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
@@ -22365,8 +22360,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
-      <source>{name} selects an axis other than Z</source>
-      <translation>{name} selecciona un eje distinto de Z</translation>
+      <source>{name} selects an axis other than Z, which is not supported</source>
+      <translation>{name} selecciona un eje distinto de Z, lo que no se admite</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/fixed_points.py" />
@@ -22740,8 +22735,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/live_tool.py" />
-      <source>{word}: this machine only switches the live tool on and off; its speed is set at its drive.</source>
-      <translation>{word}: esta máquina sólo enciende y apaga la herramienta motorizada; su velocidad se ajusta en su accionamiento.</translation>
+      <source>{word}: this machine only switches the live tool on and off; the speed is set at the drive of the live tool.</source>
+      <translation>{word}: esta máquina sólo enciende y apaga la herramienta motorizada; la velocidad se ajusta en el accionamiento de la herramienta motorizada.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/m_functions.py" />
@@ -22855,8 +22850,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>rotates the plane with RPL=, not with axis words</source>
-      <translation>gira el plano con RPL=, no con palabras de eje</translation>
+      <source>the plane is rotated with RPL=, not with axis words</source>
+      <translation>el plano se gira con RPL=, no con palabras de eje</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
@@ -22885,6 +22880,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>{word} with {key}: on a lathe, {what}.</source>
+      <translation>{word} con {key}: en un torno, {what}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>{word}: a factor must be between 0.001 and 1000.</source>
       <translation>{word}: un factor debe estar entre 0.001 y 1000.</translation>
     </message>
@@ -22892,11 +22892,6 @@
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>{word}: an offset must be a plain number.</source>
       <translation>{word}: un desplazamiento debe ser un número simple.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>{word}: on a lathe, {key} {what}.</source>
-      <translation>{word}: en un torno, {key} {what}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
@@ -22990,8 +22985,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/parting_cycle.py" />
-      <source>the tool retracts, and this machine has no parts catcher</source>
-      <translation>la herramienta se retira, y esta máquina no tiene recogedor de piezas</translation>
+      <source>the tool only retracts, because this machine has no parts catcher</source>
+      <translation>la herramienta sólo se retira, porque esta máquina no tiene recogedor de piezas</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/parting_cycle.py" />
@@ -23010,8 +23005,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/parting_cycle.py" />
-      <source>{name} specifies depths measured from SPD</source>
-      <translation>{name} especifica profundidades medidas desde SPD</translation>
+      <source>{name} specifies depths measured from SPD, which is not supported</source>
+      <translation>{name} especifica profundidades medidas desde SPD, lo que no se admite</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
+      <source>After G40, program a move before T or D.</source>
+      <translation>Después de G40, programe un movimiento antes de T o D.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
@@ -23072,11 +23072,6 @@
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
       <source>Move off the part with G40 before the program ends.</source>
       <translation>Salga de la pieza con G40 antes del final del programa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
-      <source>Program a move after G40, before T or D.</source>
-      <translation>Programe un movimiento después de G40, antes de T o D.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
@@ -23290,18 +23285,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
-      <source>G95 needs a speed, but the live tool is stopped and SETMS(2) is active.</source>
-      <translation>G95 necesita una velocidad, pero la herramienta motorizada está parada y SETMS(2) está activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
       <source>G95 needs a spindle speed, but the spindle is stopped.</source>
       <translation>G95 necesita una velocidad de husillo, pero el husillo está parado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
-      <source>Program F; a change between G94 and G95 deletes F, and G96 and G97 are treated as G95.</source>
-      <translation>Programe F; un cambio entre G94 y G95 borra F, y G96 y G97 se tratan como G95.</translation>
+      <source>G95 needs the live tool speed because SETMS(2) is active, but the live tool is stopped.</source>
+      <translation>G95 necesita la velocidad de la herramienta motorizada porque SETMS(2) está activo, pero la herramienta motorizada está parada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
+      <source>Program F. A change between G94 and G95 deletes F; G96 and G97 have the same effect as G95.</source>
+      <translation>Programe F. Un cambio entre G94 y G95 borra F; G96 y G97 tienen el mismo efecto que G95.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_feeds.py" />
@@ -23515,8 +23510,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>Set oriented = true under [spindle] in the machine file if the drive supports it, or write M5 and index the part with C.</source>
-      <translation>Ponga oriented = true en [spindle] del archivo de máquina si el accionamiento lo admite, o escriba M5 y divida la pieza con C.</translation>
+      <source>Set oriented = true under [spindle] in the machine file if the drive can stop the spindle at an angle, or write M5 and index the part with C.</source>
+      <translation>Ponga oriented = true en [spindle] del archivo de máquina si el accionamiento puede parar el husillo en un ángulo, o escriba M5 y divida la pieza con C.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -23670,8 +23665,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/stock_removal.py" />
-      <source>{name} does not leave a continuous path along the contour</source>
-      <translation>{name} no deja una trayectoria continua a lo largo del contorno</translation>
+      <source>with allowance {name}, no continuous path along the contour is possible</source>
+      <translation>con la sobremedida {name} no es posible una trayectoria continua a lo largo del contorno</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/stock_removal.py" />
@@ -23735,8 +23730,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
-      <source>In the loop, change a variable that the condition uses; to repeat the part, use Cycle Start instead.</source>
-      <translation>Cambie en el bucle una variable que use la condición; para repetir la pieza, use el arranque de ciclo.</translation>
+      <source>In the loop, change a variable that the condition uses; to make another part, use Cycle Start instead.</source>
+      <translation>Cambie en el bucle una variable que use la condición; para hacer otra pieza, use el arranque de ciclo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/subprogram_flow.py" />
@@ -23835,8 +23830,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
-      <source>{call}: {name} is {value} rpm, but C taps at its maximum speed, {maximum} rpm.</source>
-      <translation>{call}: {name} es {value} rpm, pero C rosca a su velocidad máxima, {maximum} rpm.</translation>
+      <source>{call}: {name} is {value} rpm, but tapping with the C axis is limited to the C-axis maximum of {maximum} rpm.</source>
+      <translation>{call}: {name} es {value} rpm, pero el roscado con el eje C está limitado al máximo del eje C, {maximum} rpm.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
@@ -24125,7 +24120,7 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
-      <source>Set the tool's offset on the page of tool offsets (F8); tools are T1 to T32.</source>
+      <source>Set the offset of the tool on the TOOL OFFSETS page (F8); tools are T1 to T32.</source>
       <translation>Ponga el corrector de la herramienta en la página de correctores (F8); las herramientas son de T1 a T32.</translation>
     </message>
     <message>
@@ -24150,8 +24145,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
-      <source>{word} is tool {word2} here; write {meant}.</source>
-      <translation>{word} es aquí la herramienta {word2}; escriba {meant}.</translation>
+      <source>{word} calls tool {word2} on this control; write {meant}.</source>
+      <translation>{word} llama a la herramienta {word2} en este control; escriba {meant}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
@@ -24205,8 +24200,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformations.py" />
-      <source>Write {word} alone, and program the walls as contours.</source>
-      <translation>Escriba {word} solo y programe las paredes como contornos.</translation>
+      <source>Write {word} without a data set number or groove walls, and program the groove walls as contours.</source>
+      <translation>Escriba {word} sin número de juego de datos ni paredes de ranura, y programe las paredes de la ranura como contornos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformations.py" />
@@ -24220,11 +24215,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformations.py" />
-      <source>{word} requests another data set or groove walls; only one data set without groove walls is available.</source>
-      <translation>{word} pide otro juego de datos o paredes de ranura; sólo hay un juego de datos sin paredes de ranura.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/transformations.py" />
       <source>{word} rotates the part with C, but the third axis of this machine is linear.</source>
       <translation>{word} gira la pieza con C, pero el tercer eje de esta máquina es lineal.</translation>
     </message>
@@ -24232,6 +24222,11 @@
       <location filename="core/interpreter/sinumerik/transformations.py" />
       <source>{word} rotates the part with C, but this machine has no third axis.</source>
       <translation>{word} gira la pieza con C, pero esta máquina no tiene tercer eje.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/transformations.py" />
+      <source>{word} selects a data set other than the first, or groove walls, but only one data set without groove walls is available.</source>
+      <translation>{word} selecciona un juego de datos distinto del primero, o paredes de ranura, pero sólo hay un juego de datos sin paredes de ranura.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformations.py" />
@@ -24245,13 +24240,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformed_plane.py" />
-      <source>Make this change before the corner or after G40.</source>
-      <translation>Haga este cambio antes de la esquina o después de G40.</translation>
+      <source>Change the tool or the zero point before the corner or after G40.</source>
+      <translation>Cambie la herramienta o el cero antes de la esquina o después de G40.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformed_plane.py" />
-      <source>Program the walls as contours after G40.</source>
-      <translation>Programe las paredes como contornos después de G40.</translation>
+      <source>Program the groove walls as contours after G40.</source>
+      <translation>Programe las paredes de la ranura como contornos después de G40.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformed_plane.py" />
@@ -24595,8 +24590,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Use another number.</source>
-      <translation>Use otro número.</translation>
+      <source>Use a smaller contour number.</source>
+      <translation>Use un número de contorno menor.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/contour_blocks.py" />
@@ -24950,8 +24945,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Assigns a closed contour to QCn: a separate program (in quotes) or LBL n.</source>
-      <translation>Asigna un contorno cerrado a QCn: un programa aparte (entre comillas) o LBL n.</translation>
+      <source>Assigns a closed contour to QCn. The contour is a separate program (name in quotes) or LBL n.</source>
+      <translation>Asigna un contorno cerrado a QCn. El contorno es un programa aparte (nombre entre comillas) o LBL n.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
@@ -25020,13 +25015,13 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Drills at the plunge point of a tool with this radius; in TurnDesk, cycle 6 does not need this hole.</source>
-      <translation>Taladra en el punto donde bajaría una herramienta de este radio; en TurnDesk, el ciclo 6 no necesita este agujero.</translation>
+      <source>Drills at the points where the tool with the number Q13 plunges in cycle 22.</source>
+      <translation>Taladra en los puntos donde la herramienta con el número Q13 baja en el ciclo 22.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Drills at the points where the tool with the number Q13 plunges in cycle 22.</source>
-      <translation>Taladra en los puntos donde la herramienta con el número Q13 baja en el ciclo 22.</translation>
+      <source>Drills where a tool with the radius of the active tool would plunge; in TurnDesk, cycle 6 does not need this hole.</source>
+      <translation>Taladra donde bajaría una herramienta con el radio de la herramienta activa; en TurnDesk, el ciclo 6 no necesita este agujero.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
@@ -25035,8 +25030,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Lists the pockets (P) and islands (I), as cycle 14 does: LBL n, a program name in quotes, or QC n.</source>
-      <translation>Indica las cajeras (P) y las islas (I), como el ciclo 14: LBL n, un nombre de programa entre comillas, o QC n.</translation>
+      <source>Lists the pockets (P) and islands (I), as cycle 14 does. Each of them is LBL n, a program name in quotes, or QC n.</source>
+      <translation>Indica las cajeras (P) y las islas (I), como el ciclo 14. Cada una es LBL n, un nombre de programa entre comillas, o QC n.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
@@ -25535,8 +25530,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills an internal thread downward along a helix, from solid material.</source>
-      <translation>Fresa una rosca interior hacia abajo en hélice, en material macizo.</translation>
+      <source>Mills an internal thread into solid material, downward along a helix.</source>
+      <translation>Fresa una rosca interior en material macizo, hacia abajo en hélice.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
@@ -25635,11 +25630,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>In TOOL CALL, sets the spindle speed from a cutting speed in m/min and the tool radius.</source>
-      <translation>En TOOL CALL, fija la velocidad del husillo según una velocidad de corte en m/min y el radio de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
       <source>In a block that moves one axis (X+10 R+ F300; L is optional), R+ lengthens the move by the tool radius and R- shortens it.</source>
       <translation>En un bloque que mueve un solo eje (X+10 R+ F300; L es opcional), R+ alarga el movimiento en el radio de la herramienta y R- lo acorta.</translation>
     </message>
@@ -25650,8 +25640,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>Moves in a straight line with a surface normal. Compensation along the normal is not available: a block with DL, DR, DR2 or TX TY TZ is rejected.</source>
-      <translation>Mueve en recta con normal a la superficie. No hay compensación a lo largo de la normal: se rechaza un bloque con DL, DR, DR2 o TX TY TZ.</translation>
+      <source>Moves in a straight line; NX, NY and NZ are the surface normal. Compensation along the normal is not available: a block with DL, DR, DR2 or TX TY TZ is rejected.</source>
+      <translation>Mueve en línea recta; NX, NY y NZ son la normal a la superficie. No hay compensación a lo largo de la normal: se rechaza un bloque con DL, DR, DR2 o TX TY TZ.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_other_controls_book.py" />
@@ -25662,6 +25652,11 @@
       <location filename="core/language/klartext/klartext_other_controls_book.py" />
       <source>PRESET SELECT #0</source>
       <translation>PRESET SELECT #0</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_other_controls_book.py" />
+      <source>S(VC=…) in TOOL CALL sets the spindle speed from a cutting speed in m/min and the tool radius.</source>
+      <translation>S(VC=…) en TOOL CALL fija la velocidad del husillo según una velocidad de corte en m/min y el radio de la herramienta.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_other_controls_book.py" />
@@ -25895,8 +25890,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/line_cursor.py" />
-      <source>Use another parameter.</source>
-      <translation>Use otro parámetro.</translation>
+      <source>Use a parameter with a smaller number.</source>
+      <translation>Use un parámetro con un número menor.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line_cursor.py" />
@@ -26200,8 +26195,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/plane_block.py" />
-      <source>Write all of these words, even if a value is 0.</source>
-      <translation>Escriba todas estas palabras, aunque un valor sea 0.</translation>
+      <source>Write all the words named in the message, even if a value is 0.</source>
+      <translation>Escriba todas las palabras que nombra el mensaje, aunque un valor sea 0.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/plane_block.py" />
@@ -26525,13 +26520,13 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>The tool table does not contain tool {word} because it has one row per tool and does not use an index.</source>
-      <translation>La tabla de herramientas no contiene la herramienta {word} porque tiene una fila por herramienta y no usa índice.</translation>
+      <source>The tool table has one row per tool and does not use an index, so the table does not contain tool {word}.</source>
+      <translation>La tabla de herramientas tiene una fila por herramienta y no usa índice, así que no contiene la herramienta {word}.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>Touch off by hand on the Jog page, and remove the block.</source>
-      <translation>Toque a mano en la página Manual, y quite el bloque.</translation>
+      <source>Touch off by hand on the Jog page, and delete this block from the program.</source>
+      <translation>Palpe a mano en la página Manual, y borre este bloque del programa.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -26890,13 +26885,13 @@
     </message>
     <message>
       <location filename="core/language/omniturn/intended_code.py" />
-      <source>Write {letter}{plain}.</source>
-      <translation>Escriba {letter}{plain}.</translation>
+      <source>Write the subroutine as }n … M99 and call it with M98Pn.</source>
+      <translation>Escriba la subrutina como }n … M99 y llámela con M98Pn.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/intended_code.py" />
-      <source>Write }n, M99 and M98Pn.</source>
-      <translation>Escriba }n, M99 y M98Pn.</translation>
+      <source>Write {letter}{plain}.</source>
+      <translation>Escriba {letter}{plain}.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/omniturn_lexer.py" />
@@ -27005,8 +27000,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>On this control, T selects the tool offset, and D selects a second one.</source>
-      <translation>En este control, T selecciona el corrector de la herramienta, y D selecciona un segundo.</translation>
+      <source>On this control, T selects the tool offset, and D selects a second offset.</source>
+      <translation>En este control, T selecciona el corrector de la herramienta, y D selecciona un segundo corrector.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -27175,16 +27170,6 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>a character for calculations; this control does not support calculations</source>
-      <translation>un carácter para cálculos; este control no admite cálculos</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/other_controls.py" />
-      <source>a character for variables; this control does not support variables</source>
-      <translation>un carácter para variables; este control no admite variables</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/other_controls.py" />
       <source>a character that only other controls use</source>
       <translation>un carácter que sólo usan otros controles</translation>
     </message>
@@ -27192,6 +27177,11 @@
       <location filename="core/language/omniturn/other_controls.py" />
       <source>a comma, which this control does not allow</source>
       <translation>una coma, que este control no permite</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
+      <source>a symbol for calculations; this control does not support calculations</source>
+      <translation>un símbolo de cálculo; este control no admite cálculos</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -27207,6 +27197,11 @@
       <location filename="core/language/omniturn/other_controls.py" />
       <source>the mark at the start and end of a program transfer</source>
       <translation>la marca del principio y del final de una transferencia de programa</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
+      <source>the symbol for variables; this control does not support variables</source>
+      <translation>el símbolo de las variables; este control no admite variables</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -27990,8 +27985,8 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/iso_words.py" />
-      <source>GOTO {number}: on this control, a jump needs a label or a block number.</source>
-      <translation>GOTO {number}: en este control, un salto necesita una etiqueta o un número de bloque.</translation>
+      <source>GOTO {number}: on this control, the target of a jump is a label or a block number with N.</source>
+      <translation>GOTO {number}: en este control, el destino de un salto es una etiqueta o un número de bloque con N.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/iso_words.py" />
@@ -28935,8 +28930,8 @@
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
-      <source>This move feeds along Z out past the part face, inside the stock diameter.</source>
-      <translation>Este movimiento avanza a lo largo de Z más allá de la cara de la pieza, dentro del diámetro del material en bruto.</translation>
+      <source>This move feeds along Z out of the part and past its face, inside the stock diameter.</source>
+      <translation>Este movimiento avanza a lo largo de Z, sale de la pieza y pasa de su cara, dentro del diámetro del material.</translation>
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
@@ -29080,8 +29075,8 @@
     </message>
     <message>
       <location filename="core/proving/cut_sizes.py" />
-      <source>{tool} cuts {depth} deep in one pass, but its limit is {largest}.</source>
-      <translation>{tool} corta {depth} de profundidad en una pasada, pero su límite es {largest}.</translation>
+      <source>{tool} cuts {depth} deep in one pass, but its maximum depth of cut is {largest}.</source>
+      <translation>{tool} corta {depth} de profundidad en una pasada, pero su profundidad de corte máxima es {largest}.</translation>
     </message>
     <message>
       <location filename="core/proving/cut_sizes.py" />
@@ -29195,8 +29190,8 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
-      <source>This move feeds with the collet open, but it does not move straight away from the spindle as in a bar pull.</source>
-      <translation>Este movimiento avanza con la pinza abierta, pero no se aleja en línea recta del husillo como al jalar la barra.</translation>
+      <source>This move feeds with the collet open, but not in a straight line away from the spindle, as a bar pull does.</source>
+      <translation>Este movimiento avanza con la pinza abierta, pero no se aleja del husillo en línea recta, como al jalar la barra.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29235,8 +29230,8 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
-      <source>the T0 on line {tool_off}</source>
-      <translation>el T0 de la línea {tool_off}</translation>
+      <source>the tool cancel (T0) on line {tool_off}</source>
+      <translation>la anulación de herramienta (T0) de la línea {tool_off}</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29255,13 +29250,8 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>{tool} cuts at a distance of {off} from the spindle centerline.</source>
-      <translation>{tool} corta a una distancia de {off} de la línea de centro del husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
-      <source>{tool} cuts in at {steep}°, but the trailing edge of its insert clears only {clears}°.</source>
-      <translation>{tool} entra cortando a {steep}°, pero el filo posterior de su plaquita libra sólo {clears}°.</translation>
+      <source>{tool} cuts into the part at {steep}°, but the trailing edge of its insert clears only {clears}°.</source>
+      <translation>{tool} entra cortando en la pieza a {steep}°, pero el filo posterior de su plaquita libra sólo {clears}°.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29295,13 +29285,18 @@
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
-      <source>{tool} feeds {solid} into solid material.</source>
-      <translation>{tool} avanza {solid} en material macizo.</translation>
+      <source>{tool} feeds {solid} along Z into solid material.</source>
+      <translation>{tool} avanza {solid} a lo largo de Z en material macizo.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
       <source>{tool} goes {depth} deep, but its cutting length is only {length}.</source>
       <translation>{tool} entra {depth} de profundidad, pero su longitud de corte es sólo {length}.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/edge_checks.py" />
+      <source>{tool} is {off} off the spindle centerline when it cuts.</source>
+      <translation>{tool} está a {off} de la línea de centro del husillo cuando corta.</translation>
     </message>
     <message>
       <location filename="core/proving/edge_checks.py" />
@@ -29370,13 +29365,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A cutting move feeds away from the part, and nothing is cut where a cut seems to be intended.</source>
-      <translation>Un movimiento de corte avanza alejándose de la pieza, y no se corta nada donde parece previsto un corte.</translation>
+      <source>A cutting move feeds away from the part, so a cut that seems to be intended is not made.</source>
+      <translation>Un movimiento de corte avanza alejándose de la pieza, así que un corte que parece previsto no se hace.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A cutting move is programmed after M13. This is only a warning if a feed move does not go straight away from the spindle as in a bar pull, or if the next cycle would start with the collet open.</source>
-      <translation>Se programa un movimiento de corte tras M13. Es solo un aviso si un avance no se aleja en línea recta del husillo como al jalar la barra, o si el ciclo siguiente empezaría con la pinza abierta.</translation>
+      <source>A cutting move is programmed after M13. This is only a warning if the move is a feed move in any direction other than straight out from the spindle (as in a bar pull), or if the next cycle would start with the collet open.</source>
+      <translation>Se programa un movimiento de corte tras M13. Es solo un aviso si el movimiento es un avance en una dirección que no sale en línea recta del husillo (como al jalar la barra), o si el ciclo siguiente empezaría con la pinza abierta.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29390,11 +29385,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A cutting move is programmed with plane switching active, but no live tool is running. If the spindle is locked as the C axis, this is only a warning.</source>
-      <translation>Se programa un movimiento de corte con el cambio de plano activo, pero no hay ninguna herramienta motorizada en marcha. Si el husillo está bloqueado como eje C, es solo un aviso.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>A cutting move is programmed with the collet open.</source>
       <translation>Se programa un movimiento de corte con la pinza abierta.</translation>
     </message>
@@ -29402,6 +29392,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>A cutting move is programmed with the spindle stopped.</source>
       <translation>Se programa un movimiento de corte con el husillo parado.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>A cutting move of face milling, or of milling around the part, is programmed with no live tool running. A cutting move with the spindle locked as the C axis and no live tool running is only a warning.</source>
+      <translation>Se programa un movimiento de corte de fresado frontal, o de fresado alrededor de la pieza, sin ninguna herramienta motorizada en marcha. Un movimiento de corte con el husillo bloqueado como eje C y sin herramienta motorizada en marcha es solo un aviso.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29430,23 +29425,18 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A drill, reamer, mill, turning tool or parting blade cuts more than .001 in of material while no live tool is on and the spindle is stopped, or clamped as the C axis after it has turned. Not checked if the machine file has no M code for a live tool.</source>
-      <translation>Una broca, un escariador, una fresa, una herramienta de torneado o una cuchilla de tronzar corta más de .001 in de material mientras no hay ninguna herramienta motorizada encendida y el husillo está parado, o sujeto como eje C después de haber girado. No se comprueba si el archivo de máquina no tiene código M para una herramienta motorizada.</translation>
+      <source>A feed move along Z ends on the bar side of the part-off position nearest the chuck, past this position by more than .5 in and by more than the part length.</source>
+      <translation>Un avance a lo largo de Z termina del lado de la barra de la posición de tronzado más cercana al plato, más allá de esta posición por más de .5 in y por más del largo de la pieza.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A feed move along Z ends past the part-off position nearest the chuck, on the bar side, by more than .5 in and by more than the part length.</source>
-      <translation>Un avance a lo largo de Z termina más allá de la posición de tronzado más cercana al plato, del lado de la barra, por más de .5 in y por más del largo de la pieza.</translation>
+      <source>A feed move goes away from the part or out past the part face; or no feed move between two rapids, or no feed move of a live tool, comes near material; or the tool moves in and out alongside the part in rapid without a cut; or a tool that reaches the part makes no feed moves; or a drill feeds into an existing hole.</source>
+      <translation>Un avance se aleja de la pieza o sale más allá de su cara; o ningún avance entre dos rápidos, o ningún avance de una herramienta motorizada, se acerca al material; o la herramienta entra y sale en rápido junto a la pieza sin ningún corte; o una herramienta que llega a la pieza no hace ningún avance; o una broca avanza en un agujero ya existente.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A feed move along Z of .1 in or more next to the stock stays at least .08 in outside the stock.</source>
-      <translation>Un avance a lo largo de Z de .1 in o más junto al material en bruto queda al menos .08 in por fuera del material.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>A feed move goes away from the part, or out past the part face; no feed move between two rapids, or no feed move of a live tool, comes near material; the tool moves in and out alongside the part in rapid without a cut; a tool that reaches the part never feeds; or a drill feeds into an existing hole.</source>
-      <translation>Un avance se aleja de la pieza, o sale más allá de su cara; ningún avance entre dos rápidos, o ningún avance de una herramienta motorizada, se acerca al material; la herramienta entra y sale en rápido junto a la pieza sin ningún corte; una herramienta que llega a la pieza nunca avanza; o una broca avanza en un agujero ya existente.</translation>
+      <source>A feed move of .1 in or more along Z, next to the stock, stays at least .08 in outside the stock.</source>
+      <translation>Un avance de .1 in o más a lo largo de Z, junto al material en bruto, queda al menos .08 in por fuera del material.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29495,8 +29485,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A tap is pulled out of its thread instead of being turned out.</source>
-      <translation>Un macho se saca de su rosca tirando en lugar de girándolo.</translation>
+      <source>A tap is pulled out of its thread instead of being backed out.</source>
+      <translation>Un macho se saca de su rosca tirando en lugar de desenroscarlo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29560,8 +29550,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A turning tool with a defined shape returns in rapid along Z, by .1 in or more, at the radius it has turned.</source>
-      <translation>Una herramienta de tornear con forma definida vuelve en rápido a lo largo de Z, .1 in o más, en el radio que ha torneado.</translation>
+      <source>A turning tool with a defined shape returns in rapid along Z, by .1 in or more, at the radius that it has just turned.</source>
+      <translation>Una herramienta de tornear con forma definida vuelve en rápido a lo largo de Z, .1 in o más, en el radio que acaba de tornear.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29640,7 +29630,7 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>Check the call, or prove again with the inputs that lead to the unreached lines.</source>
+      <source>Check the call, or prove the program again with the inputs that lead to the lines not reached.</source>
       <translation>Revise la llamada, o compruebe de nuevo el programa con las entradas que llevan a las líneas no alcanzadas.</translation>
     </message>
     <message>
@@ -29860,8 +29850,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The blade turns along Z by more than its width, at a depth of more than .01 in (parting) or .8 of its width (grooving, per Ingersoll).</source>
-      <translation>La cuchilla cilindra a lo largo de Z más que su ancho, a una profundidad de más de .01 in (tronzado) o .8 de su ancho (ranurado, según Ingersoll).</translation>
+      <source>The blade turns along Z by more than its width. The depth of cut is more than .01 in for a parting blade, or more than .8 of the blade width for a grooving blade (Ingersoll's limit).</source>
+      <translation>La cuchilla cilindra a lo largo de Z más que su ancho. La profundidad de corte es de más de .01 in en una cuchilla de tronzar, o de más de .8 del ancho en una de ranurar (límite de Ingersoll).</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29875,18 +29865,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The distance from the start of the pass to the material is less than v²/2a of the Z axis, or the pass stops in material and v²/2a is more than one lead.</source>
-      <translation>La distancia desde el inicio de la pasada hasta el material es menor que v²/2a del eje Z, o la pasada se detiene en el material y v²/2a es más que un paso.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>The feed is more than .8 of the nose radius, .12 of the width of a grooving tool, or .04 of the diameter of a drill (.1 of a reamer).</source>
-      <translation>El avance es más de .8 del radio de punta, .12 del ancho de una herramienta de ranurar, o .04 del diámetro de una broca (.1 de un escariador).</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>The feed is more than twice the nose radius of an insert and more than .006 in, or more than five times the chip-load limit of a drill, reamer or blade.</source>
-      <translation>El avance es más del doble del radio de punta de una plaquita y más de .006 in, o más de cinco veces el límite de carga de viruta de una broca, un escariador o una cuchilla.</translation>
+      <source>The distance from the start of the pass to the material is less than the acceleration distance v²/2a of the Z axis, or the pass stops in material and v²/2a is more than one lead.</source>
+      <translation>La distancia desde el inicio de la pasada hasta el material es menor que la distancia de aceleración v²/2a del eje Z, o la pasada se detiene en el material y v²/2a es más que un paso.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29902,6 +29882,16 @@
       <location filename="core/proving/part_checks.py" />
       <source>The feed per revolution is far too high for the cutting edge.</source>
       <translation>El avance por vuelta es muy superior a lo que admite el filo.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The feed per revolution is more than .8 of the nose radius, .12 of the width of a grooving tool, or .04 of the diameter of a drill (.1 of a reamer).</source>
+      <translation>El avance por vuelta es más de .8 del radio de punta, .12 del ancho de una herramienta de ranurar, o .04 del diámetro de una broca (.1 de un escariador).</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>The feed per revolution is more than twice the nose radius of an insert and more than .006 in, or it is more than five times the chip-load limit of a drill, reamer or blade.</source>
+      <translation>El avance por vuelta es más del doble del radio de punta de una plaquita y más de .006 in, o es más de cinco veces el límite de carga de viruta de una broca, un escariador o una cuchilla.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29975,8 +29965,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The speed is more than half the first critical speed of the protruding stock, calculated as a brass bar clamped at one end.</source>
-      <translation>La velocidad supera la mitad de la primera velocidad crítica del material en voladizo, calculada como una barra de latón sujeta por un extremo.</translation>
+      <source>The spindle speed is more than half the first critical speed of the protruding stock. The critical speed is calculated for a brass bar clamped at one end.</source>
+      <translation>La velocidad del husillo supera la mitad de la primera velocidad crítica del material en voladizo. La velocidad crítica se calcula para una barra de latón sujeta por un extremo.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29995,8 +29985,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>The tap is retracted in rapid, with the spindle stopped or not reversed, or at a different feed than it was fed in; or the tap travels more than .5 in before the spindle stops. Not checked if the comment says that the holder reverses automatically.</source>
-      <translation>El macho se retira en rápido, con el husillo parado o sin invertir, o con un avance distinto del de entrada; o el macho recorre más de .5 in antes de que el husillo se pare. No se comprueba si el comentario dice que el portamachos invierte automáticamente.</translation>
+      <source>The tap is retracted at rapid, with the spindle stopped, with the spindle not reversed, or at a feed that differs from the feed into the hole; or the tap travels more than .5 in before the spindle stops. Not checked if the comment says that the holder reverses automatically.</source>
+      <translation>El macho se retira en rápido, con el husillo parado, con el husillo sin invertir, o con un avance distinto del de entrada; o el macho recorre más de .5 in antes de que el husillo se pare. No se comprueba si el comentario dice que el portamachos invierte automáticamente.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30077,6 +30067,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>With [tooling] kind = "gang", the outline of another tool, positioned by its tool offset, overlaps material.</source>
       <translation>Con [tooling] kind = "gang", el perfil de otra herramienta, situado por su corrector, se solapa con el material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>With no live tool on, a drill, reamer, mill, turning tool or parting blade cuts more than .001 in of material while the spindle is stopped, or while it is clamped as the C axis after it has turned. Not checked if the machine file has no M code for a live tool.</source>
+      <translation>Sin ninguna herramienta motorizada encendida, una broca, un escariador, una fresa, una herramienta de torneado o una cuchilla de tronzar corta más de .001 in de material mientras el husillo está parado, o mientras está sujeto como eje C después de haber girado. No se comprueba si el archivo de máquina no tiene código M para una herramienta motorizada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30245,13 +30240,13 @@
     </message>
     <message>
       <location filename="core/proving/part_making.py" />
-      <source>cuts by {tool} with the spindle stopped, starting at line {line}</source>
-      <translation>cortes de {tool} con el husillo parado, desde la línea {line}</translation>
+      <source>cuts by {tool} from line {line} on, while the spindle is stopped</source>
+      <translation>cortes de {tool} desde la línea {line}, con el husillo parado</translation>
     </message>
     <message>
       <location filename="core/proving/part_making.py" />
-      <source>no stock is assumed, because feed moves cut in front of Z0, and the stock face cannot be there</source>
-      <translation>no se supone material en bruto, porque hay movimientos de avance que cortan delante de Z0 y la cara del material no puede estar ahí</translation>
+      <source>no stock could be assumed: feed moves cut in front of Z0, so the stock face cannot be at Z0</source>
+      <translation>no se pudo suponer un material en bruto: hay avances que cortan delante de Z0, así que la cara del material no puede estar en Z0</translation>
     </message>
     <message>
       <location filename="core/proving/part_proof.py" />
@@ -30260,8 +30255,18 @@
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
-      <source>Call the subroutine with M98P{number}, or remove it.</source>
-      <translation>Llame a la subrutina con M98P{number}, o quítela.</translation>
+      <source>Call the subroutine with M98P{number}, or remove the subroutine.</source>
+      <translation>Llame a la subrutina con M98P{number}, o quite la subrutina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_branches.py" />
+      <source>If {input} and {second}: {message}</source>
+      <translation>Si {input} y {second}: {message}</translation>
+    </message>
+    <message>
+      <location filename="core/proving/program_branches.py" />
+      <source>If {input}: {message}</source>
+      <translation>Si {input}: {message}</translation>
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
@@ -30275,18 +30280,8 @@
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
-      <source>With {input} and {second}: {message}</source>
-      <translation>Con {input} y {second}: {message}</translation>
-    </message>
-    <message>
-      <location filename="core/proving/program_branches.py" />
-      <source>With {input}: {message}</source>
-      <translation>Con {input}: {message}</translation>
-    </message>
-    <message>
-      <location filename="core/proving/program_branches.py" />
-      <source>input {number} {state} at line {line}</source>
-      <translation>la entrada {number} {state} en la línea {line}</translation>
+      <source>input {number} is {state} at line {line}</source>
+      <translation>la entrada {number} está {state} en la línea {line}</translation>
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
@@ -30315,8 +30310,8 @@
     </message>
     <message>
       <location filename="core/proving/program_tools.py" />
-      <source>{number} never feeds, because all its moves are rapids.</source>
-      <translation>{number} no avanza nunca, porque todos sus movimientos son rápidos.</translation>
+      <source>{number} makes no feed moves; all its moves are rapids.</source>
+      <translation>{number} no hace movimientos de avance; todos sus movimientos son rápidos.</translation>
     </message>
     <message>
       <location filename="core/proving/proof_pass.py" />
@@ -30350,8 +30345,8 @@
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
-      <source>while the spindle still turns in the tapping direction</source>
-      <translation>mientras el husillo sigue girando en el sentido de roscado</translation>
+      <source>the spindle still turns in the tapping direction</source>
+      <translation>el husillo sigue girando en el sentido de roscado</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
@@ -30375,18 +30370,18 @@
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
-      <source>{tool} is pulled out of its thread in rapid.</source>
-      <translation>{tool} se saca de su rosca en rápido.</translation>
+      <source>{tool} retracts from the thread at rapid.</source>
+      <translation>{tool} se retira de la rosca en rápido.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
-      <source>{tool} is pulled out of its thread with the spindle stopped.</source>
-      <translation>{tool} se saca de su rosca con el husillo parado.</translation>
+      <source>{tool} retracts from the thread with the spindle stopped.</source>
+      <translation>{tool} se retira de la rosca con el husillo parado.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
-      <source>{tool} is pulled out of its thread {words}.</source>
-      <translation>{tool} se saca de su rosca {words}.</translation>
+      <source>{tool} retracts from the thread, but {words}.</source>
+      <translation>{tool} se retira de la rosca, pero {words}.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
@@ -30405,13 +30400,13 @@
     </message>
     <message>
       <location filename="core/proving/unchecked_parts.py" />
-      <source>maximum chuck speed (no max_rpm in [clamping])</source>
-      <translation>velocidad máxima del plato (sin max_rpm en [clamping])</translation>
+      <source>maximum chuck speed (unknown: no max_rpm in [clamping])</source>
+      <translation>velocidad máxima del plato (desconocida: sin max_rpm en [clamping])</translation>
     </message>
     <message>
       <location filename="core/proving/unchecked_parts.py" />
-      <source>{short}: maximum tool depth (no flute length defined)</source>
-      <translation>{short}: profundidad máxima de la herramienta (sin largo de hélice definido)</translation>
+      <source>{short}: maximum tool depth (unknown: no flute length defined)</source>
+      <translation>{short}: profundidad máxima de la herramienta (desconocida: sin largo de hélice definido)</translation>
     </message>
     <message>
       <location filename="core/proving/unchecked_parts.py" />
@@ -30450,8 +30445,8 @@
     </message>
     <message>
       <location filename="core/quality/control_charts.py" />
-      <source>a control chart is not possible for a sample of {size}; use 1 to {sample_sizes} parts</source>
-      <translation>no es posible una gráfica de control para una muestra de {size}; use de 1 a {sample_sizes} piezas</translation>
+      <source>a control chart is not possible for samples of {size}; use samples of 1 to {sample_sizes} parts</source>
+      <translation>no es posible una gráfica de control para muestras de {size}; use muestras de 1 a {sample_sizes} piezas</translation>
     </message>
     <message>
       <location filename="core/quality/control_charts.py" />
@@ -30600,8 +30595,8 @@
     </message>
     <message>
       <location filename="core/quality/wear_proposal.py" />
-      <source>the correction would be less than the smallest step, so no correction is needed</source>
-      <translation>la corrección sería menor que el paso mínimo, así que no hace falta corregir</translation>
+      <source>the correction would be less than the smallest offset step, so no correction is needed</source>
+      <translation>la corrección sería menor que el paso mínimo del corrector, así que no hace falta corregir</translation>
     </message>
     <message>
       <location filename="core/quality/wear_proposal.py" />
@@ -30690,18 +30685,18 @@
     </message>
     <message>
       <location filename="core/records/record.py" />
-      <source>the start time, {started} s after 1970, is not valid</source>
-      <translation>la hora de comienzo, {started} s después de 1970, no es válida</translation>
+      <source>the start time of the record, {started} s after 1970, is not valid</source>
+      <translation>la hora de comienzo del registro, {started} s después de 1970, no es válida</translation>
     </message>
     <message>
       <location filename="core/records/record_errors.py" />
-      <source>{path} is damaged ({error}); open another record</source>
-      <translation>{path} está dañado ({error}); abra otro registro</translation>
+      <source>{path} is damaged ({error}); open another scope record</source>
+      <translation>{path} está dañado ({error}); abra otro registro del osciloscopio</translation>
     </message>
     <message>
       <location filename="core/records/record_errors.py" />
-      <source>{path} is damaged; open another record</source>
-      <translation>{path} está dañado; abra otro registro</translation>
+      <source>{path} is damaged; open another scope record</source>
+      <translation>{path} está dañado; abra otro registro del osciloscopio</translation>
     </message>
     <message>
       <location filename="core/records/record_errors.py" />
@@ -30730,8 +30725,8 @@
     </message>
     <message>
       <location filename="core/records/record_file.py" />
-      <source>the start time is missing</source>
-      <translation>falta la hora de comienzo</translation>
+      <source>the start time of the record is missing</source>
+      <translation>falta la hora de comienzo del registro</translation>
     </message>
     <message>
       <location filename="core/records/record_file.py" />
@@ -30850,13 +30845,13 @@
     </message>
     <message>
       <location filename="core/shapes/bar_work.py" />
-      <source>BAR LOOP</source>
-      <translation>BUCLE DE BARRA</translation>
+      <source>BAR LENGTH PER PART + CUT-OFF</source>
+      <translation>LARGO DE BARRA POR PIEZA + CORTE</translation>
     </message>
     <message>
       <location filename="core/shapes/bar_work.py" />
-      <source>BAR PER PART, WITH CUT-OFF</source>
-      <translation>BARRA POR PIEZA, CON EL CORTE</translation>
+      <source>BAR LOOP</source>
+      <translation>BUCLE DE BARRA</translation>
     </message>
     <message>
       <location filename="core/shapes/bar_work.py" />
@@ -30905,7 +30900,7 @@
     </message>
     <message>
       <location filename="core/shapes/blade.py" />
-      <source>CORNER TOUCHED OFF</source>
+      <source>CORNER USED FOR TOUCH-OFF</source>
       <translation>ESQUINA DE REFERENCIA</translation>
     </message>
     <message>
@@ -31175,18 +31170,18 @@
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>CYCLE93 can cut only square walls here: enter 0, or enter 0 as the D number of the other blade corner.</source>
-      <translation>CYCLE93 aquí solo puede cortar paredes rectas: introduzca 0, o introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
+      <source>CYCLE93 can cut only square walls here: enter 0 for the slope, or use G1 by entering 0 as the D number of the other blade corner.</source>
+      <translation>CYCLE93 aquí solo puede cortar paredes rectas: introduzca 0 para la inclinación, o use G1 introduciendo 0 como número D de la otra esquina de la cuchilla.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>CYCLE93 cannot break these edges: enter 0, or enter 0 as the D number of the other blade corner.</source>
-      <translation>CYCLE93 no puede matar estos cantos: introduzca 0, o introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
+      <source>CYCLE93 cannot chamfer these edges: enter 0 for the chamfer, or use G1 by entering 0 as the D number of the other blade corner.</source>
+      <translation>CYCLE93 no puede achaflanar estos cantos: introduzca 0 para el chaflán, o use G1 introduciendo 0 como número D de la otra esquina de la cuchilla.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>CYCLE93 does not support a tool at negative X: enter 0 as the D number of the other blade corner.</source>
-      <translation>CYCLE93 no admite herramientas en X negativa: introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
+      <source>CYCLE93 does not support a tool at negative X: use G1 by entering 0 as the D number of the other blade corner.</source>
+      <translation>CYCLE93 no admite herramientas en X negativa: use G1 introduciendo 0 como número D de la otra esquina de la cuchilla.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
@@ -31380,8 +31375,8 @@
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
-      <source>The third axis of this machine is named Y, but this plane needs a separate Y axis</source>
-      <translation>El tercer eje de esta máquina se llama Y, pero este plano necesita un eje Y separado</translation>
+      <source>The third axis of this machine is named Y, but the plane of this shape needs a separate Y axis</source>
+      <translation>El tercer eje de esta máquina se llama Y, pero el plano de esta forma necesita un eje Y separado</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
@@ -31550,13 +31545,13 @@
     </message>
     <message>
       <location filename="core/shapes/sinumerik_helpers.py" />
-      <source>equivalent feed per minute: G94 F{number}</source>
-      <translation>avance por minuto equivalente: G94 F{number}</translation>
+      <source>calls the tool, leads in, and cuts passes with a constant chip cross-section</source>
+      <translation>llama al útil, entra y corta pasadas con sección de viruta constante</translation>
     </message>
     <message>
       <location filename="core/shapes/sinumerik_helpers.py" />
-      <source>tool, lead-in, passes with constant chip cross-section</source>
-      <translation>útil, entrada, pasadas con sección de viruta constante</translation>
+      <source>equivalent feed per minute: G94 F{number}</source>
+      <translation>avance por minuto equivalente: G94 F{number}</translation>
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
@@ -31650,6 +31645,11 @@
     </message>
     <message>
       <location filename="core/shapes/templates.py" />
+      <source>calls the tool, leads in, cuts passes with a constant chip cross-section, and pulls out</source>
+      <translation>llama al útil, entra, corta pasadas con sección de viruta constante y sale</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/templates.py" />
       <source>positions a stop, opens the collet and feeds the bar; the part program is a subroutine</source>
       <translation>coloca un tope, abre la pinza y avanza la barra; el programa de la pieza es una subrutina</translation>
     </message>
@@ -31662,11 +31662,6 @@
       <location filename="core/shapes/templates.py" />
       <source>roughing passes down to a contour of points, which you edit by hand</source>
       <translation>pasadas de desbaste hasta un contorno de puntos, que se editan a mano</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/templates.py" />
-      <source>tool, lead-in, passes with constant chip cross-section, pull-out</source>
-      <translation>útil, entrada, pasadas con sección de viruta constante, salida</translation>
     </message>
     <message>
       <location filename="core/shapes/templates.py" />
@@ -31995,8 +31990,8 @@
     </message>
     <message>
       <location filename="core/sharing/connection_string.py" />
-      <source>{named} (TLS not verified)</source>
-      <translation>{named} (TLS sin verificar)</translation>
+      <source>{named} (TLS certificate not verified)</source>
+      <translation>{named} (certificado TLS sin verificar)</translation>
     </message>
     <message>
       <location filename="core/sharing/shared_folder.py" />
@@ -32550,6 +32545,11 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
+      <source>the tool shape of {key}</source>
+      <translation>la forma de herramienta de {key}</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_tables.py" />
       <source>the tool-life record</source>
       <translation>el registro de vida de herramienta</translation>
     </message>
@@ -32557,11 +32557,6 @@
       <location filename="core/store/offset_tables.py" />
       <source>{details} is out of range; enter {accepted}</source>
       <translation>{details} está fuera de rango; introduzca {accepted}</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>{key}'s shape</source>
-      <translation>la forma de {key}</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -32590,6 +32585,11 @@
     </message>
     <message>
       <location filename="core/store/offset_undo.py" />
+      <source>no tool would be left for cutting edge {orphans}; clear this cutting edge first</source>
+      <translation>no quedaría herramienta para el filo {orphans}; borre antes ese filo</translation>
+    </message>
+    <message>
+      <location filename="core/store/offset_undo.py" />
       <source>offset {changed_since} was changed later; undo that change first</source>
       <translation>el corrector {changed_since} se cambió después; deshaga antes ese cambio</translation>
     </message>
@@ -32599,24 +32599,19 @@
       <translation>{masters} serían maestras a la vez; quite antes la maestra actual</translation>
     </message>
     <message>
-      <location filename="core/store/offset_undo.py" />
-      <source>{orphans} would be left without a tool; clear this cutting edge first</source>
-      <translation>{orphans} quedaría sin herramienta; borre antes ese filo</translation>
-    </message>
-    <message>
       <location filename="core/store/people.py" />
       <source>a name must have 1 to {name_longest} characters</source>
       <translation>un nombre debe tener de 1 a {name_longest} caracteres</translation>
     </message>
     <message>
       <location filename="core/store/people.py" />
-      <source>the list of people must contain one person with SERVICE level who can enter the others; enter this person first</source>
-      <translation>la lista de personas debe contener una persona de nivel SERVICIO que pueda introducir a las demás; introduzca antes a esa persona</translation>
+      <source>the list of users must contain one user with SERVICE level who can enter the others; enter this user first</source>
+      <translation>la lista de usuarios debe contener un usuario de nivel SERVICIO que pueda introducir a los demás; introduzca antes a ese usuario</translation>
     </message>
     <message>
       <location filename="core/store/people.py" />
-      <source>{name} is not in the list of people</source>
-      <translation>{name} no está en la lista de personas</translation>
+      <source>{name} is not in the list of users</source>
+      <translation>{name} no está en la lista de usuarios</translation>
     </message>
     <message>
       <location filename="core/store/program_records.py" />

@@ -60,7 +60,7 @@ def test_published_seen_compared_taken_and_settled(shop: Shop) -> None:
     for number in (1, 2):
         shop.program(number, "CAP.NC").write_text(f"G00 X1{number}\nM30\n")
         shop.share(number, "publish")
-    assert "changed here and elsewhere" in shop.share(1, "status")[1]
+    assert "changed on this control and elsewhere" in shop.share(1, "status")[1]
     assert shop.share(1, "compare", "CAP.NC")[1] == (
         "    1       - G00 X11\n          1 + G00 X12\n    2     2   M30\n"
     )

@@ -262,7 +262,7 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     (folder / "2026-11-22-bad.turndesk.db").write_bytes(b"no store any more")
     store.set_tool(3, "x", x=2.0).result(60)
     hands.key(Key.Key_F4)
-    said = ["RESTORE: BACKUP IS INTACT", "NO ACTION: BACKUP IS DAMAGED"]
+    said = ["RESTORE (BACKUP IS INTACT)", "CANNOT RESTORE: BACKUP DAMAGED"]
     hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:3]] == said)
     hands.key(Key.Key_Down)
     hands.sees(lambda: page.table.sheet.notes[0] == wording("screen.other-than-now", what="tool offsets 1"))

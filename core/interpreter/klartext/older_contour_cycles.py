@@ -42,8 +42,8 @@ def _pilot(state: State, tool: CycleTool, lines: Lines, area: Area, column: int)
     values = _heights(tool, told) | {3: told.number(2, at=1), 10: -abs(told.number(2))}
     values |= {11: told.cutting_feed(2), 13: float(state.modal.tool)}
     tool.tell(
-        "the cycle drills holes where this tool would plunge; cycle 6 plunges along a ramp "
-        "and does not need these holes."
+        "the cycle drills holes where the active tool would plunge; cycle 6 plunges along a "
+        "ramp and does not need these holes."
     )
     yield from pilot_drilling(tool.seen(values), area)
 

@@ -191,7 +191,7 @@ def _by_radius(state: State, node: Move, start: Point, end: Point, _: Point | No
             chord=f"{chord:.10g}",
         )
         hint = (
-            "Program a full circle as two arcs or with C."
+            "Program a full circle as two arcs or with path function C."
             if chord < SAME_POINT
             else "Correct R or the end point."
         )

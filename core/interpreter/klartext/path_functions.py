@@ -488,7 +488,7 @@ def _warn(state: State, node: Move) -> None:
     if off:
         state.reported.add(("table", plane.line))
         text = Message(
-            "The position of {off} does not match the plane of line {line}.",
+            "The position of {off} does not match the plane programmed on line {line}.",
             off=" and ".join(off),
             line=plane.line,
         )

@@ -65,7 +65,7 @@ def working_plane(state: State, node: Plane) -> WorkingPlane:
     table_rot = node.positioning.rotation == "TABLE ROT"
     found = choose(state.kinematics, frame, state.rotary, side, table_rot=table_rot)
     if found is None:
-        asked = Message(" with {side}", side=side) if side else ""
+        asked = Message(" when {side} is programmed", side=side) if side else ""
         text = Message(
             "The rotary axes cannot reach this plane within their ranges{requested}.", requested=asked
         )

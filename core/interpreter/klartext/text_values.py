@@ -37,7 +37,9 @@ def assign_text(state: State, node: TextAssign) -> None:
         if unknown:
             state.texts[number] = None
             state.unheeded(
-                Message(("{unknown} in string parameter QS{number}"), unknown=unknown, number=number),
+                Message(
+                    ("Function {unknown} in string parameter QS{number}"), unknown=unknown, number=number
+                ),
                 node.column,
             )
             continue
@@ -180,7 +182,7 @@ def read_cells(state: State, node: TableRead) -> None:
     row = _row(state, node)
     for offset, column in enumerate(node.columns):
         if column not in row:
-            text = Message("The row does not contain a number in column {column}.", column=column)
+            text = Message("The table row does not contain a number in column {column}.", column=column)
             raise state.refuse(node.column, INPUT_VALUE, text, ("Correct the column, or fill in the cell."))
         keep(state, node.kind, node.q + offset, row[column])
 

@@ -101,7 +101,7 @@ def _check_radii(state: State, statement: Statement, first: float, last: float) 
         last=state.modal.length_text(last),
     )
     if state.modal.diameter or not state.absolute:
-        hint = "Here, I and K are distances from the start point of the arc."
+        hint = "On this line, I and K are distances from the start point of the arc."
     else:
-        hint = "Here, I and K are the coordinates of the arc center."
+        hint = "On this line, I and K are the coordinates of the arc center."
     raise statement.refuse("", "arc-radius", text, hint)

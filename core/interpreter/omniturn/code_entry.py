@@ -57,9 +57,10 @@ class Limit(Enum):
 
     FEED = "the machine's maximum feed"
     FEED_IN_FORCE = (
-        "the machine's maximum feed under G94; under G95 .2 in/rev (1 in/rev after G35, 2 in/rev after G35F2)"
+        "the maximum feed: with G94, the machine's limit; with G95, .2 in/rev (1 in/rev "
+        "after G35, 2 in/rev after G35F2)"
     )
-    LEAD = ".2 in per revolution (1 in after G35, 2 in after G35F2)"
+    LEAD = ".2 in/rev (1 in/rev after G35, 2 in/rev after G35F2)"
     RPM = "the maximum spindle speed"
     C_RPM = "the maximum speed of the C axis"
     SURFACE = "6000 m/min"  # ten times what any tool stands

@@ -141,7 +141,7 @@ _c_word = partial(
         "The line contains both {first} and {word}.", "Keep only one of these words.")),),
     not_when={When.C_FREE: Refusal(
         "c-unlocked",
-        "{word} rotates the spindle, but the spindle is not locked.", (
+        "{word} rotates the C axis, but the spindle is not locked as the C axis.", (
             "Write M19 or M89 before this line."))},
     further=names("c-too-little feed-over-speed finer-than-step speed-missing"),
 )
@@ -165,7 +165,7 @@ _LENGTH = partial(
     WordRule, least=0, over=True,
     wrong=Refusal(
         "cycle-length",
-        "{word}: {letter} ({what}) must be greater than 0.", "Correct {letter}."),
+        "{word}: {letter} ({what}) must be greater than 0.", "Write {letter} with a number greater than 0."),
 )
 _NEEDS = Refusal("word-missing", "{code} needs {letter}, {what}.", "Add {letter}.")
 _needed = partial(_LENGTH, missing=_NEEDS)
@@ -254,7 +254,7 @@ _thread = partial(
 )
 _coarse = partial(
     Code, acts=Acts.MODE, handler="coarse_feeds.coarse_line", group="coarse feed",
-    not_in_mdi="needs a G92 on the next line, but MDI runs only one line",
+    not_in_mdi="cannot be used in MDI, because it needs a G92 on the next line and MDI runs only " "one line",
 )
 _COARSE_ALONE = Refusal(
     "not-alone",
@@ -268,7 +268,7 @@ _plane = partial(
     not_when={
         When.C_FREE: Refusal(
             "c-unlocked",
-            "(~{name}) rotates the C axis, but the C axis is not locked.",
+            "(~{name}) rotates the C axis, but the spindle is not locked as the C axis.",
             "Write M19 before the (~PLXC) or (~PLZC) line.", 1),
         When.PER_REV: Refusal(
             "plane-feed-mode",
@@ -497,7 +497,7 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
         _flow("RF", "RF", "Ends the contour description for G75 and G78.", f"G78U.02F.004\n{_CONTOUR}\nRF",
             handler="loops_and_subroutines.Flow.contour", words=names("RF"), deletable=False,
             not_in_mdi=
-                "ends a contour, but no contour was started", further=names("rf-alone")),
+                "cannot end a contour in MDI, because no contour was started", further=names("rf-alone")),
     )),
     ("Threads", (
         _thread("G33", "G33XnZnInKnAnCnPO",
@@ -531,8 +531,8 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
             },
             further=names("feed-over-speed thread-length thread-run-up")),
         _coarse("G35", "G35, G35F2",
-        "Allows leads of up to 1 in, or up to 2 in with F2. Write G35 alone on a line, "
-        "followed by G92 with the current point.", _COARSE,
+        "Allows leads of up to 1 in, or up to 2 in with F2. Write G35 alone on a line, and "
+        "G92 with the current point on the next line.", _COARSE,
             words=names("F"), f=FWord.LEADS,
             rules={"F": WordRule("thread leads of up to 2 in/rev", least=2, most=2, wrong=Refusal(
                 "coarse-range",
@@ -542,7 +542,8 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
                 "coarse-order", "G35 is already active.", "Delete the line.", 1)},
             further=names("coarse-preset")),
         _coarse("G36", "G36",
-        "Ends G35 at the point where G35 started. Write G36 alone on a line, followed by G92.",
+        "Ends G35; the axes must be at the point where G35 started. Write G36 alone on a " "line, "
+        "and G92 on the next line.",
             _COARSE, f=FWord.NONE,
             not_when={When.WITH_OTHERS: _COARSE_ALONE, When.NOT_COARSE: Refusal(
                 "coarse-order", "G36 ends G35, but G35 is not active.", "Delete the line.", 1)},
@@ -558,18 +559,18 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
         _flow("LF", "LF", "Ends a loop.", "LS2\nX.55\nX.6\nLF",
             handler="loops_and_subroutines.Flow.steer", words=names("LF"), deletable=False,
             not_in_mdi=
-                "ends a loop, but no loop was started", further=names("loop-unopened")),
+                "cannot end a loop in MDI, because no loop was started", further=names("loop-unopened")),
         _flow("P", "Pn", "Runs subroutine n.", "P4", "}4\nX.55\nM99\n",
             handler="loops_and_subroutines.Flow.call", words=names("P"), calls=True,
             not_in_mdi=
                 "cannot call a subroutine in MDI; subroutine calls are possible only in a program",
             further=names("recursion subroutine-missing")),
         _flow("}", "}n",
-        "Starts subroutine n; subroutines are written after the end of the program.",
+        "Marks the start of subroutine n; subroutines are written after the end of the program.",
         "M98P5", "}5\nX.55\nM99\n",
             handler="loops_and_subroutines.Flow.steer", words=names("}"), deletable=False,
             not_in_mdi=
-                "cannot start a subroutine in MDI; subroutines are possible only in a program",
+                "cannot define a subroutine in MDI; subroutines are possible only in a program",
             further=names("subroutine-open subroutine-twice word-missing")),
         _flow("M98", "M98Pn", "Runs subroutine n.", "M98P2", "}2\nX.55\nM99\n",
             handler="loops_and_subroutines.Flow.call", words=names("P M"), calls=True,
@@ -579,7 +580,8 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
         _flow("M99", "M99", "Ends a subroutine.", "M98P3", "}3\nX.55\nM99\n",
             handler="loops_and_subroutines.Flow.steer", words=names("M"), deletable=False,
             not_in_mdi=
-                "ends a subroutine, but no subroutine was started", further=names("m99-outside")),
+                "cannot end a subroutine in MDI, because no subroutine was started",
+                further=names("m99-outside")),
         _flow("M95", "M95",
         "Runs subroutine 1 if TB2-9 is closed.", "M95", "}1\nX.55\nM99\n",
             handler="loops_and_subroutines.Flow.call", words=names("M"), terminal=("TB2-9", True), calls=True,

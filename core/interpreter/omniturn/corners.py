@@ -240,7 +240,7 @@ def cut_corners(pieces: Sequence[ContourPiece], log: Log) -> list[Element]:
         done.append(element)
         asked = piece if piece.corner is not None else None
     if asked is not None:
-        raise _refused_in_contour(asked, "corner-next", "the contour ends here")
+        raise _refused_in_contour(asked, "corner-next", "the contour ends at this corner")
     return [element for element in done if element.length > _SHORTEST]
 
 

@@ -103,7 +103,7 @@ def _rule(rule: WordRule) -> str:
     if rule.missing is not None:
         said.append("required")
     if rule.numbered is not None:
-        said.append("written without a number")
+        said.append("no number allowed after the word")
     if rule.bare is not None:
         said.append(f"without a number {_shown(rule.bare)}")
     if rule.nonzero:

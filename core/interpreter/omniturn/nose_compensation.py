@@ -56,7 +56,7 @@ def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: L
     if dist(free, corner) < radius - SAME_POINT:
         length = lead.block.modal.length_text(dist(free, corner))
         text = Message(
-            "The {lead} is {length} long, which is less than the nose radius of {nose}.",
+            "The {lead} move is {length} long, which is less than the nose radius of {nose}.",
             lead=lead.name,
             length=length,
             nose=nose,
@@ -65,7 +65,7 @@ def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: L
     off = min(distance(element, free) for element in lead.contour)
     shown = lead.block.modal.length_text(off)
     text = Message(
-        "The {lead} {choice} {value} from the part",
+        "The {lead} {choice} at a distance of {value} from the part",
         lead=lead.name,
         choice="ends" if lead.departs else "starts",
         value=shown,
@@ -74,11 +74,13 @@ def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: L
     if off < radius - SAME_POINT:
         raise lead.refused(
             "-near",
-            Message("{what}, which is less than the nose radius of {nose}.", what=text, nose=nose),
+            Message("{what}. This distance is less than the nose radius of {nose}.", what=text, nose=nose),
             hint,
         )
     if off < 2 * radius - SAME_POINT:
-        text = Message("{what}, which is less than twice the nose radius of {nose}.", what=text, nose=nose)
+        text = Message(
+            "{what}. This distance is less than twice the nose radius of {nose}.", what=text, nose=nose
+        )
         log.warn(lead.block.line, 0, f"comp-{lead.name}-near", text, hint)
 
 
@@ -340,7 +342,7 @@ def check_under_nose(state: State, statement: Statement) -> None:
             1,
             "comp-with",
             Message(
-                ("Plane switching with (~PLXC) or (~PLZC) is not allowed while G{state} is active."), state=on
+                ("The plane commands (~PLXC) and (~PLZC) are not allowed while G{state} is active."), state=on
             ),
             ("Write G40 before this line."),
         )

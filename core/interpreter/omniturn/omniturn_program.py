@@ -205,7 +205,9 @@ class _Reader:
         return statement
 
     def _plane_open(self, number: int) -> None:
-        text = Message("Plane switching that begins on line {plane} has no (END).", plane=self._plane)
+        text = Message(
+            "The plane command (~PLXC) or (~PLZC) on line {plane} has no matching (END).", plane=self._plane
+        )
         self.problems.append(refusal(number, 1, "plane-open", text, "Write (END) alone on a line."))
         self._plane = 0
 

@@ -113,7 +113,9 @@ def statement_of(line: Line) -> Statement:
     if line.comment is not None and line.comment.lstrip().startswith("~"):
         what = f"({line.comment.strip()})"
         message = Message(
-            "{what} looks like plane switching; (~PLXC) and (~PLZC) must be alone on a line.", what=what
+            "{what} looks like a plane command; write the plane commands (~PLXC) and (~PLZC) "
+            "alone on a line.",
+            what=what,
         )
         raise program_error(
             line.number,

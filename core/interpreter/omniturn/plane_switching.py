@@ -92,8 +92,8 @@ def _legs(state: State, statement: Statement, whole: PlaneMove) -> list[PlaneMov
         near, least = state.modal.length_text(rho), state.modal.length_text(h)
         text = Message(
             (
-                "The path comes within {nearest} of the spindle centerline, but with this H "
-                "the tool cannot come closer than {minimum}."
+                "The path comes within {nearest} of the spindle centerline, but with the programmed "
+                "H the tool cannot come closer to the centerline than {minimum}."
             ),
             nearest=near,
             minimum=least,
@@ -198,7 +198,7 @@ def _height(state: State, statement: Statement, mill: Mill) -> None:
             statement,
             "plane-h-late",
             "H is programmed after a move or F, but must come first.",
-            ("Write H before all moves and F."),
+            ("Write H before the first move and before F."),
             "H",
         )
     h = plane_length(state, statement, "H", 0.0)

@@ -155,7 +155,8 @@ def box_moves(state: State, statement: Statement) -> list[Move]:
     depth = abs(x - state.x) - left
     if depth <= 0:
         text = Message(
-            "With {text}, no material remains for the box cycle to cut.", text=statement.words["U"].text
+            "The allowance {text} leaves no material for the box cycle to cut.",
+            text=statement.words["U"].text,
         )
         raise statement.refuse(
             "U",

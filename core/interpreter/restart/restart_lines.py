@@ -149,7 +149,10 @@ def _open(steps: ReadyLines) -> Iterator[LineRange]:
                 yield LineRange(
                     done + 1,
                     number,
-                    Message("is in the plane switching section that begins on line {done}.", done=done),
+                    Message(
+                        "is inside the plane switching with (~PLXC) or (~PLZC) that begins on line {done}.",
+                        done=done,
+                    ),
                 )
         if not nose and _NOSE_ON.intersection(step.modal):
             nose = number

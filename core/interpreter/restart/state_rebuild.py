@@ -237,17 +237,28 @@ class StateRebuild:
             ),
             (
                 walk.holds_moves,
-                Message("Line {line} uses nose compensation or is part of a corner.", line=line),
+                Message(
+                    "The program cannot resume at line {line}, because that line uses nose compensation "
+                    "or is part of a corner.",
+                    line=line,
+                ),
             ),
             (
                 walk.checkpoint.modal.mill,
-                Message(("Plane switching with (~PLXC) or (~PLZC) is active at line {line}."), line=line),
+                Message(
+                    (
+                        "The program cannot resume at line {line}, because the plane command (~PLXC) or "
+                        "(~PLZC) is active there."
+                    ),
+                    line=line,
+                ),
             ),
             (
                 not known and self._asked,
                 (
                     Message(
-                        "Line {line} depends on an input that is read on line {requested}.",
+                        "The program cannot resume at line {line}, because that line depends on an input "
+                        "that is read on line {requested}.",
                         line=line,
                         requested=self._asked,
                     )
@@ -263,7 +274,8 @@ class StateRebuild:
                 not known,
                 (
                     Message(
-                        "The axis positions at line {line} depend on the axis positions at Cycle Start.",
+                        "The program cannot resume at line {line}, because the axis positions there depend "
+                        "on the axis positions at Cycle Start.",
                         line=line,
                     )
                 ),

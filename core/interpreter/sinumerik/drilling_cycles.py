@@ -34,7 +34,12 @@ def hole_of(cycle: Cycle) -> Hole:
         )
         raise cycle.refused("cycle-plane", text, ("Write G17 before this block and G18 after it."))
     if cycle.number("_AXN", 3.0) not in {0.0, 3.0}:
-        raise cycle.wrong("_AXN", "{name} selects an axis other than Z", "Omit _AXN.", "not-in-subset")
+        raise cycle.wrong(
+            "_AXN",
+            "{name} selects an axis other than Z, which is not supported",
+            "Omit _AXN.",
+            "not-in-subset",
+        )
     retract, reference = cycle.needed("RTP"), cycle.needed("RFP")
     if cycle.given("DP") == cycle.given("DPR"):
         if not cycle.given("DP"):
@@ -61,7 +66,10 @@ def hole_of(cycle: Cycle) -> Hole:
         raise cycle.wrong(
             name,
             text,
-            ("Enter RTP, RFP and the depth in this order along the drilling direction."),
+            (
+                "Correct the values so that RTP, RFP and the depth follow each other in this order "
+                "along the drilling direction."
+            ),
             REFERENCE_PLANE,
         )
     return Hole(retract, reference, reference - down * cycle.size("SDIS"), bottom, down)

@@ -62,7 +62,8 @@ def _speed(state: State, statement: Statement, word: Word) -> None:
     if "live-speed" not in state.told:
         state.told.add("live-speed")
         text = Message(
-            "{word}: this machine only switches the live tool on and off; its speed is set at its drive.",
+            "{word}: this machine only switches the live tool on and off; the speed is set at "
+            "the drive of the live tool.",
             word=word.text,
         )
         state.log.add(

@@ -37,7 +37,7 @@ def programmed_frame(state: State, statement: Statement) -> None:
     check_c(state, statement)
     name = key.name.removeprefix("A")
     if name == "ROT":
-        _refuse_axes(statement, key, "rotates the plane with RPL=, not with axis words")
+        _refuse_axes(statement, key, "the plane is rotated with RPL=, not with axis words")
     elif word := statement.words.get("RPL"):
         raise statement.refuse(
             word,
@@ -98,7 +98,7 @@ def check_y(state: State, statement: Statement) -> None:
 def _refuse_axes(statement: Statement, key: Word, what: str) -> None:
     for axis in statement.axes:
         word = statement.words[axis]
-        text = Message("{word}: on a lathe, {key} {what}.", word=word.text, key=key.name, what=what)
+        text = Message("{word} with {key}: on a lathe, {what}.", word=word.text, key=key.name, what=what)
         raise statement.refuse(word, "offset-form", text, Message("Write {key} RPL=…", key=key.name))
 
 

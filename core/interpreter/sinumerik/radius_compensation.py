@@ -135,7 +135,7 @@ class Compensation:
             raise _open(block)
         if isinstance(block.action, ToolChange):
             text = "T or D is programmed before the move that leaves the contour."
-            raise _fault(block, "comp-with", text, "Program a move after G40, before T or D.")
+            raise _fault(block, "comp-with", text, "After G40, program a move before T or D.")
         _last(contour).after.append(block)
 
     def _follow(self, contour: _Contour, block: Block) -> None:

@@ -66,7 +66,7 @@ def check_feed(
     word = statement.words.get("FB")
     feed = modal.feed if word is None else feed_of(state, statement, word)
     if feed is None:
-        hint = "Program F; a change between G94 and G95 deletes F, and G96 and G97 are treated as G95."
+        hint = "Program F. A change between G94 and G95 deletes F; G96 and G97 have the same effect as G95."
         raise statement.refuse(_mover(statement), NO_FEED, "no feedrate is programmed.", hint)
     if modal.css and modal.spindle and not modal.surface_speed:
         text = "G96 is active, but no surface speed is programmed with S."
@@ -75,7 +75,7 @@ def check_feed(
         )
     by_tool = modal.per_rev and state.master != 1
     if by_tool and not state.live_rpm:
-        text = "G95 needs a speed, but the live tool is stopped and SETMS(2) is active."
+        text = "G95 needs the live tool speed because SETMS(2) is active, but the live tool is stopped."
         raise statement.refuse(
             _mover(statement), "g95-spindle-stopped", text, ("Start the live tool with S and M3.")
         )

@@ -138,8 +138,8 @@ def demand_spindle_as_c(state: State, refuse: Callable[[str, str], ProgramError]
         why=why,
     )
     hint = (
-        "Set oriented = true under [spindle] in the machine file if the drive supports it, "
-        "or write M5 and index the part with C."
+        "Set oriented = true under [spindle] in the machine file if the drive can stop the "
+        "spindle at an angle, or write M5 and index the part with C."
     )
     raise refuse(text, hint)
 

@@ -146,7 +146,10 @@ class _Plan:
         except TrimError:
             hint = "Reduce FAL, or widen the narrow part of the contour."
             raise self._cycle.wrong(
-                "FAL", ("{name} does not leave a continuous path along the contour"), hint, 61606
+                "FAL",
+                ("with allowance {name}, no continuous path along the contour is possible"),
+                hint,
+                61606,
             ) from None
 
     def approach(self) -> list[Step]:

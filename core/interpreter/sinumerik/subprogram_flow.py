@@ -243,7 +243,7 @@ class Flow:
                     "condition."
                 )
                 hint = (
-                    "In the loop, change a variable that the condition uses; to repeat the part, use "
+                    "In the loop, change a variable that the condition uses; to make another part, use "
                     "Cycle Start instead."
                 )
                 raise _steering_fault(line, jump, ENDLESS, text, hint)

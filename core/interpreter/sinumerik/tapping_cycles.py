@@ -99,7 +99,8 @@ def _speed(cycle: Cycle, name: str, default: float) -> float:
         )
     if value > most:
         text = Message(
-            "{call}: {name} is {value} rpm, but C taps at its maximum speed, {maximum} rpm.",
+            "{call}: {name} is {value} rpm, but tapping with the C axis is limited to the C-axis "
+            "maximum of {maximum} rpm.",
             call=cycle.line.call,
             name=name,
             value=f"{value:g}",

@@ -115,7 +115,7 @@ def _hint(word: Word | None) -> str:
     if word is not None and (iso := _TOOL_AND_OFFSET.fullmatch(word.text)):
         meant = f"T{int(iso[1])} D{max(int(iso[2]) % 10, 1)}"
         return Message(
-            "{word} is tool {word2} here; write {meant}.",
+            "{word} calls tool {word2} on this control; write {meant}.",
             word=word.text,
             word2=int(word.text[1:]),
             meant=meant,
@@ -124,4 +124,4 @@ def _hint(word: Word | None) -> str:
 
 
 _TOOL_AND_OFFSET = re.compile(r"T([0-9]{1,2})([0-9]{2})")
-_SET = "Set the tool's offset on the page of tool offsets (F8); tools are T1 to T32."
+_SET = "Set the offset of the tool on the TOOL OFFSETS page (F8); tools are T1 to T32."

@@ -104,8 +104,8 @@ def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
     if any(value not in {0.0, 1.0} for value in sets[:1]) or any(sets[1:]):
         text: str = Message(
             (
-                "{word} requests another data set or groove walls; only one data set without "
-                "groove walls is available."
+                "{word} selects a data set other than the first, or groove walls, but only one data "
+                "set without groove walls is available."
             ),
             word=word.text,
         )
@@ -113,7 +113,13 @@ def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
             word,
             NOT_THERE,
             text,
-            (Message("Write {word} alone, and program the walls as contours.", word=word.name)),
+            (
+                Message(
+                    "Write {word} without a data set number or groove walls, and program the groove "
+                    "walls as contours.",
+                    word=word.name,
+                )
+            ),
         )
     far = state.x - state.modal.base_x > -_SAME
     if word.name == "TRANSMIT":

@@ -270,7 +270,9 @@ class Transformation:
                     "walls from this value.",
                     word=word.text,
                 )
-            raise statement.refuse(word, "not-in-subset", text, ("Program the walls as contours after G40."))
+            raise statement.refuse(
+                word, "not-in-subset", text, ("Program the groove walls as contours after G40.")
+            )
         self.offn = value
 
     def _check(self, statement: Statement) -> None:
@@ -279,7 +281,7 @@ class Transformation:
         if self.holds and self._offset != (state.modal.base_x, state.modal.base_z):
             text = "the tool or the zero point changes between two moves of a corner or a contour."
             raise statement.refuse(
-                None, "comp-with", text, ("Make this change before the corner or after G40.")
+                None, "comp-with", text, ("Change the tool or the zero point before the corner or after G40.")
             )
         if (code := statement.code(BLOCKWISE)) in {25, 26, 74, 75} or SUPPRESSION in statement.g:
             word = statement.g.get(SUPPRESSION) or statement.g[BLOCKWISE]

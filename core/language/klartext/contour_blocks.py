@@ -67,7 +67,7 @@ def _number(cursor: Cursor) -> int:
         raise cursor.expected("Expected QC and a contour number", "Write QC and a number.")
     if int(match.group(1)[:6]) > _HIGHEST:
         text = Message("Contour numbers go up to QC{highest}.", highest=_HIGHEST)
-        raise syntax(cursor.line, column, text, "Use another number.")
+        raise syntax(cursor.line, column, text, "Use a smaller contour number.")
     return int(match.group(1))
 
 

@@ -27,7 +27,7 @@ def _frame() -> tuple[Entry, ...]:
         Entry(
             "BEGIN PGM",
             "name MM",
-            "Starts the program, in millimeters or in inches.",
+            "Marks the start of the program and sets its unit, millimeters or inches.",
             program,
             "BEGIN PGM EXAMPLE\nEND PGM EXAMPLE\n",
             "needs MM or INCH",
@@ -176,8 +176,8 @@ def _paths() -> tuple[Entry, ...]:
             "FU",
             "n",
             (
-                "Feed per revolution, or feed per tooth with FZ (CUT of the tool table), based on "
-                "the programmed S."
+                "Feed per revolution, or feed per tooth with FZ (the number of teeth is CUT in the "
+                "tool table), based on the programmed S."
             ),
             "L X+10 R0 FU0.1",
             "L X+10 R0 FZ0.1",
@@ -265,7 +265,7 @@ def _flow() -> tuple[Entry, ...]:
         Entry(
             "LBL",
             "n",
-            "Starts a subprogram or a section to be repeated; LBL 0 ends a subprogram.",
+            "Marks the start of a subprogram or of a section to be repeated; LBL 0 ends a subprogram.",
             "CALL LBL 1",
             "LBL 1\nLBL 1",
             "twice",
@@ -418,8 +418,8 @@ def _parameters() -> tuple[Entry, ...]:
             17,
             ": SYSWRITE ID50 NR22 IDX1 = +0",
             (
-                "Writes to the tool table. This control does not change any value in the tool "
-                "table, and it rejects values that would move an axis."
+                "On the original control, writes to the tool table. This control does not change any "
+                "value in the tool table, and it rejects values that would move an axis."
             ),
             "FN 17: SYSWRITE ID50 NR4 IDX1 = +0.5",
             "DL of tool 1",

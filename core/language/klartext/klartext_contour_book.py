@@ -25,8 +25,8 @@ _OLDER = {
     15: (
         "PILOT DRILLING",
         (
-            "Drills at the plunge point of a tool with this radius; in TurnDesk, cycle 6 does "
-            "not need this hole."
+            "Drills where a tool with the radius of the active tool would plunge; in TurnDesk, "
+            "cycle 6 does not need this hole."
         ),
         "SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2",
         ("F150", "FMAX", "rapid"),
@@ -112,7 +112,7 @@ def _formulas() -> tuple[Entry, ...]:
         Entry(
             "DECLARE CONTOUR",
             'QCn = "name"',
-            "Assigns a closed contour to QCn: a separate program (in quotes) or LBL n.",
+            "Assigns a closed contour to QCn. The contour is a separate program (name in quotes) or LBL n.",
             f"{_DECLARED}\nCONTOUR DEF P1 = QC1\n{_DATA}\n{_ROUGH}\nCYCL CALL",
             Message("{declared} DEPTH5", declared=_DECLARED),
             "a separate depth",
@@ -178,8 +178,8 @@ def contours() -> tuple[Entry, ...]:
             "CONTOUR DEF",
             "P1 = LBL n I2 = LBL n",
             (
-                "Lists the pockets (P) and islands (I), as cycle 14 does: LBL n, a program name in "
-                "quotes, or QC n."
+                "Lists the pockets (P) and islands (I), as cycle 14 does. Each of them is LBL n, a "
+                "program name in quotes, or QC n."
             ),
             f"CONTOUR DEF P1 = LBL 1 I2 = LBL 2\n{_DATA}\n{_ROUGH}\nCYCL CALL",
             f'CONTOUR DEF P1 = "POCKET.H"\n{_DATA}\n{_ROUGH}\nCYCL CALL',

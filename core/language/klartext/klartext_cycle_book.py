@@ -409,8 +409,8 @@ def m_functions() -> tuple[Entry, ...]:
         code(
             101,
             (
-                "Changes to a replacement tool when tool life is used up. This control does "
-                "not change the tool; it shows a message."
+                "On the original control, changes to a replacement tool when tool life is used up. "
+                "This control does not change the tool; it shows a message."
             ),
         ),
         code(102, "Ends M101."),

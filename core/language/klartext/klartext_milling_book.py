@@ -46,7 +46,7 @@ _OF_A_CYCLE = {
     ),
     265: (
         "HEL.THREAD DRLG/MLG",
-        "Mills an internal thread downward along a helix, from solid material.",
+        "Mills an internal thread into solid material, downward along a helix.",
         f"{_THREAD} Q253=750 {_FRONT} Q360=0 Q200=2 {_HEIGHTS} Q254=150 Q207=500",
         _UPWARDS,
     ),

@@ -38,8 +38,8 @@ def other_controls() -> tuple[Entry, ...]:
             "LN",
             "X.. Y.. Z.. NX.. NY.. NZ..",
             (
-                "Moves in a straight line with a surface normal. Compensation along the normal is "
-                "not available: a block with DL, DR, DR2 or TX TY TZ is rejected."
+                "Moves in a straight line; NX, NY and NZ are the surface normal. Compensation along "
+                "the normal is not available: a block with DL, DR, DR2 or TX TY TZ is rejected."
             ),
             "LN X+10 Y+5 Z+20 NX+0.1 NY+0.2 NZ+0.97 F300",
             "TOOL CALL 1 Z S1000 F200 DR+0.1\nLN X+10 Y+5 Z+20 NX+0.1 NY+0.2 NZ+0.97 F300",
@@ -59,7 +59,7 @@ def other_controls() -> tuple[Entry, ...]:
         Entry(
             "S(VC=",
             "n)",
-            "In TOOL CALL, sets the spindle speed from a cutting speed in m/min and the tool radius.",
+            "S(VC=…) in TOOL CALL sets the spindle speed from a cutting speed in m/min and the tool radius.",
             "TOOL CALL 1 Z S(VC=60) F300",
             "TOOL DEF 7 L+0 R+0\nTOOL CALL 7 Z S(VC=60) F300",
             "radius",

@@ -176,7 +176,7 @@ class Cursor:
     def _q(self, number: int, column: int) -> int:
         if number > _HIGHEST_Q:
             text = Message("Q parameters go up to Q{highest_q}.", highest_q=_HIGHEST_Q)
-            raise fault(self.line, column, INPUT_VALUE, text, "Use another parameter.")
+            raise fault(self.line, column, INPUT_VALUE, text, "Use a parameter with a smaller number.")
         return number
 
 

@@ -84,7 +84,7 @@ def _all_of(cursor: Cursor, names: tuple[str, ...], words: tuple[AxisWord, ...])
         verb = "are" if len(missing) > 1 else "is"
         raise cursor.expected(
             Message("{missing} {verb} missing", missing=", ".join(missing), verb=verb),
-            ("Write all of these words, even if a value is 0."),
+            ("Write all the words named in the message, even if a value is 0."),
         )
     return tuple(found[name] for name in names)
 

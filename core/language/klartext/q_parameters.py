@@ -156,7 +156,7 @@ def parameter(cursor: Cursor) -> tuple[str, int]:
         text = Message(
             "{kind} parameters go up to {kind2}{highest}.", kind=kind, kind2=kind, highest=HIGHEST[kind]
         )
-        raise syntax(cursor.line, column, text, "Use another parameter.")
+        raise syntax(cursor.line, column, text, "Use a parameter with a smaller number.")
     return kind, number
 
 

@@ -162,8 +162,8 @@ def _demand_no_index(cursor: Cursor) -> None:
     """Raises ProgramError for 5.1, another edge of tool 5: the tool table has no such row here."""
     if found := _INDEXED.match(cursor.upper, cursor.at):
         text = Message(
-            "The tool table does not contain tool {word} because it has one row per tool and "
-            "does not use an index.",
+            "The tool table has one row per tool and does not use an index, so the table does "
+            "not contain tool {word}.",
             word=found.group(),
         )
         hint = "Give this cutting edge its own table row and tool number."
@@ -306,7 +306,7 @@ def touch_probe(cursor: Cursor, column: int) -> ProgramError:
     match = cursor.take(_PROBE)
     what = Message("TCH PROBE {word}", word=match.group()) if match else "TCH PROBE"
     text = Message("{what} needs a touch probe, but this machine does not have one.", what=what)
-    hint = "Touch off by hand on the Jog page, and remove the block."
+    hint = "Touch off by hand on the Jog page, and delete this block from the program."
     return fault(cursor.line, column, NO_PROBE, text, hint)
 
 

@@ -72,7 +72,7 @@ def _number(cursor: Cursor) -> int:
     number = int(match.group(1)[:6])
     if number > _HIGHEST:
         message = Message("The highest QS parameter is QS{highest}.", highest=_HIGHEST)
-        raise syntax(cursor.line, column, message, "Use another parameter.")
+        raise syntax(cursor.line, column, message, "Use a parameter with a smaller number.")
     return number
 
 

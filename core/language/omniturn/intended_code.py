@@ -63,7 +63,7 @@ _PATTERNS = (
             "LinuxCNC O words are not supported. On this control, write a subroutine as }n … M99 "
             "and call it with M98Pn."
         ),
-        _always("Write }n, M99 and M98Pn."),
+        _always("Write the subroutine as }n … M99 and call it with M98Pn."),
     ),
     _Pattern(
         re.compile(r"^(?=#<)"),

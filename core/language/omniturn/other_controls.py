@@ -71,7 +71,7 @@ _HERE: dict[str, tuple[str, str]] = {
         "Remove this text from the program.",
     ),
     "M60": ("On this control, M00 stops the program.", "Write M00."),
-    "H": ("On this control, T selects the tool offset, and D selects a second one.", "Write T or D."),
+    "H": ("On this control, T selects the tool offset, and D selects a second offset.", "Write T or D."),
     "Q": (
         ("Q belongs to cycles of other controls; the cycles of this control are G33, G74, G75, G81 and G83."),
         LOOK_UP,
@@ -88,21 +88,21 @@ _SIGNS: dict[str, tuple[str, str]] = {
         "the character that other controls use for a comment or the end of a line",
         "Put the comment in parentheses.",
     ),
-    "#": ("a character for variables; this control does not support variables", "Write the actual number."),
+    "#": ("the symbol for variables; this control does not support variables", "Write the actual number."),
     "[": (
-        ("a character for calculations; this control does not support calculations"),
+        ("a symbol for calculations; this control does not support calculations"),
         "Write the actual number.",
     ),
     "]": (
-        ("a character for calculations; this control does not support calculations"),
+        ("a symbol for calculations; this control does not support calculations"),
         "Write the actual number.",
     ),
     "*": (
-        ("a character for calculations; this control does not support calculations"),
+        ("a symbol for calculations; this control does not support calculations"),
         "Write the actual number.",
     ),
     "=": (
-        ("a character for calculations; this control does not support calculations"),
+        ("a symbol for calculations; this control does not support calculations"),
         "Write the actual number.",
     ),
     "%": ("the mark at the start and end of a program transfer", "Delete the character."),

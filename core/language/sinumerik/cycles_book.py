@@ -55,9 +55,9 @@ STANDARD_CYCLES = (
     _entry(
         "CYCLE840",
         (
-                "Taps with a compensating chuck: the tap feeds in at the pitch PIT or of the "
-                "thread size MPIT, or at F with ENC 1; the spindle reverses, and the tap feeds "
-                "out."),
+                "Taps with a compensating chuck: the tap feeds in at the pitch PIT, at the pitch of "
+                "" "the thread size MPIT, or at F with ENC 1; the spindle reverses, and the tap "
+                "feeds " "out."),
         _HOLE + "CYCLE840(5, 0, 2, -12, , , 0, 3, 0, , 1)", "G17\nCYCLE840(5, 0, 2, -12, , , 0, 3, 0, , 1)",
         "61102",
     ),
@@ -132,9 +132,9 @@ STANDARD_CYCLES = (
     _entry(
         "CYCLE96",
         (
-                "Cuts a thread undercut (DIN 76) at the shoulder SPL, after a coarse thread of "
-                "size DIATH: forms A and B (short) are outside, forms C and D (short) are "
-                "inside; VARI as in CYCLE94."),
+                "Cuts a thread undercut (DIN 76) at the shoulder SPL, after a coarse thread of size "
+                "" "DIATH: forms A and B (short) are outside, forms C and D (short) are inside; "
+                "VARI " "has the same meaning as in CYCLE94."),
         _CUT + 'T1 D1\nG0 X50 Z5\nCYCLE96(30, -20, "A")', _CUT + 'T1 D1\nCYCLE96(7, -20, "A")', "DIATH",
     ),
     _entry(
@@ -179,8 +179,8 @@ STANDARD_CYCLES = (
     ),
     _entry(
         "HOLES1",
-        "Row of NUM holes with TRANSMIT from X SPCA, Y SPCO at the angle STA1; the "
-        "first hole is FDIS from this point, and the spacing is DBH.",
+        "Row of NUM holes with TRANSMIT: the row starts at the point X SPCA, Y SPCO and runs " "at "
+        "the angle STA1. The first hole is FDIS from this point, and the spacing is DBH.",
         _FACE + "MCALL CYCLE81(5, 0, 2, -3)\nHOLES1(20, 0, 90, -10, 10, 3)\nMCALL\nTRAFOOF",
         "MCALL CYCLE81(5, 0, 2, -3)\nHOLES1(20, 0, 90, -10, 10, 3)", "TRANSMIT",
     ),

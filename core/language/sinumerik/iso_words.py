@@ -133,7 +133,10 @@ def _comment(match: re.Match[str]) -> tuple[str, str]:
 def _jump(match: re.Match[str]) -> tuple[str, str]:
     number = match["number"]
     return (
-        Message("GOTO {number}: on this control, a jump needs a label or a block number.", number=number),
+        Message(
+            "GOTO {number}: on this control, the target of a jump is a label or a block number with N.",
+            number=number,
+        ),
         Message("Write GOTO N{number}.", number=number),
     )
 

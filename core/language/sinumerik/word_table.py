@@ -316,8 +316,8 @@ WORDS: Mapping[str, Entry] = {
     "I": Entry(
         "arc",
         (
-            "Arc center along X relative to the start point, given as a radius; I=AC( ) is "
-            "absolute. With G33, the lead along X."
+            "Arc center along X relative to the start point, as a radius value and not a "
+            "diameter; I=AC( ) is absolute. With G33, the lead along X."
         ),
         _ARC_IK,
     ),

@@ -27,12 +27,12 @@ def ethercat_lathe(lathe: Lathe) -> HalFile:
             "for the PDO mapping and the clock settings, see the drive manual"
         ),
         (
-            "axis.….count: check the increments of object 6064 against a dial gauge over a "
-            "10 mm jog; X positions are radii"
+            "axis.NAME.count: check the increments of object 6064 against a dial gauge over a 10 "
+            "mm jog; X positions are radii"
         ),
         (
-            "set the following error window (6065) in the drive too, and set the drive to make a "
-            "quick stop when bus communication is lost"
+            "set the window for the following error (object 6065) in the drive too, and set the "
+            "drive to make a quick stop when bus communication is lost"
         ),
         (
             "spindle: determine the value of object 60FF at 1 rpm and the sign of that "

@@ -11,7 +11,7 @@ NOTES = (
         "use a real-time kernel and a separate network port for the card; halrun alone must "
         "maintain a 1 ms period for an hour"
     ),
-    "axis.….count: check this value against a dial gauge over a 10 mm jog; X positions are radii",
+    "axis.NAME.count: check this value against a dial gauge over a 10 mm jog; X positions are radii",
     (
         "E-stop must remove drive power directly; the card's watchdog only stops step pulses "
         "and analog voltages"

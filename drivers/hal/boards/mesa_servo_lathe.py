@@ -51,7 +51,7 @@ def mesa_servo_lathe(lathe: Lathe) -> HalFile:
     file.setp(f"{_CARD}.pwmgen.pwm_frequency", _PWM_HZ)
     for axis in lathe.driven:
         _axis(file, axis)
-    file.section("Drive power: analog outputs 0 to 3 share one enable")
+    file.section("Drive power: analog outputs 0 to 3 share one enable signal")
     file.enable(*_enables(lathe))
     if spindle.full_speed:
         _speed(file)
@@ -99,7 +99,7 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     encoder(file, counter, sign / axis.count, f"counts per {axis.unit}: 1 / count")
     for key, value in (("Pgain", board.p), ("Igain", board.i), ("Dgain", board.d), ("FF0", 0.0)):
         file.setp(f"{pid}.{key}", value)
-    file.setp(f"{pid}.FF1", 1.0, "passes the commanded speed through unchanged")
+    file.setp(f"{pid}.FF1", 1.0, "FF1 = 1 passes the commanded speed through unchanged")
     file.setp(f"{pid}.FF2", board.ff2)
     file.setp(f"{pid}.maxoutput", full, f"{axis.unit}/s: 10 V")
     file.setp(f"{pid}.error-previous-target", 1)

@@ -130,7 +130,7 @@ def _steps(file: HalFile, axis: LatheAxis) -> str:
     file.setp(
         f"{pin}.maxvel",
         1.5 * axis.vmax,
-        "set higher than any commanded velocity, because a limit here would cause lost position",
+        "set this limit above the highest commanded velocity; if the limit takes effect, position is lost",
     )
     file.setp(f"{pin}.maxaccel", 2.5 * axis.amax)
     return pin

@@ -24,7 +24,7 @@ def parallel_port(lathe: Lathe) -> HalFile:
             "run latency-test: the base period must be longer than the worst latency; a "
             "real-time kernel is required"
         ),
-        "axis.….count: check this value against a dial gauge over a 10 mm jog; X positions are radii",
+        ("axis.NAME.count: check this value against a dial gauge over a 10 mm jog; X positions are radii"),
         (
             "pulse times: use the values in the drive manual; if the direction signal changes "
             "too late, a step is lost at each reversal"
@@ -90,7 +90,7 @@ def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
     file.setp(
         f"{pin}.maxvel",
         1.5 * axis.vmax,
-        "set higher than any commanded velocity, because a limit here would cause lost position",
+        "set this limit above the highest commanded velocity; if the limit takes effect, position is lost",
     )
     file.setp(f"{pin}.maxaccel", 2.5 * axis.amax)
     file.setp(
@@ -103,8 +103,8 @@ def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
     file.setp(f"{pin}.dirhold", board.hold_ns)
     if axis is file.lathe.c:
         file.say(
-            "after the switch to step mode, the spindle drive follows these steps; the spindle "
-            "encoder reports its position"
+            "after the switch to step mode, the spindle drive follows these step pulses; the "
+            "spindle encoder reports the spindle position"
         )
         spindle_as_c.loop(file, axis, f"{pin}.velocity-cmd")
     else:

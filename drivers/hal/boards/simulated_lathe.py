@@ -30,8 +30,8 @@ def simulated_lathe(lathe: Lathe) -> HalFile:
     if lathe.c is not None:
         spindle_as_c.load_simulated(file)
     file.section(
-        "Axes: each axis lags its setpoint by half of the travel in one period; an "
-        "axis without power does not move"
+        "Axes: each axis lags its setpoint by half of the distance that it travels in one "
+        "period; an axis without power does not move"
     )
     for axis in lathe.driven:
         _slide(file, axis.name)

@@ -46,7 +46,7 @@ def loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
     }  # fmt: skip
     for key, gain in gains.items():
         file.setp(f"{_PID}.{key}", gain)
-    file.setp(f"{_PID}.FF1", 1.0, "passes the commanded speed through unchanged")
+    file.setp(f"{_PID}.FF1", 1.0, "FF1 = 1 passes the commanded speed through unchanged")
     file.setp(
         f"{_PID}.maxoutput",
         STAYS_BELOW * axis.vmax,
