@@ -33,6 +33,7 @@ from app.desk.data_folder import data_folder
 from core.coded_error import error_code
 from core.file_placing import make_folder, put_in_place, write_in_place
 from core.message import Message
+from core.private_files import restrict
 from core.store import backup, people
 from core.store.store import Store
 from core.store.store_errors import StoreError
@@ -69,6 +70,7 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
         _check_loadable(made, target)
         try:
             shutil.copyfile(made, part)
+            restrict(part)
             put_in_place(part, target)
         except OSError as error:
             with suppress(OSError):

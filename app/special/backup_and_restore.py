@@ -25,6 +25,7 @@ from core.file_placing import all_to_disk
 from core.message import Message
 from core.store.backup_verdict import Verdict
 
+_IN_TERMINAL = "Close TurnDesk, then run in a terminal: turndesk store restore FILE"
 BARRED = "PROGRAM RUNNING. WAIT UNTIL IT ENDS, THEN RESTORE"
 
 
@@ -60,6 +61,7 @@ class BackupAndRestore(SpecialFunction):
         self.daily = daily
         self.places: tuple[Place, ...] = ()
         self.verdicts: dict[Place, Verdict] = {}
+        self.unchecked = ""  # why backups cannot be checked: the current data cannot be read
         self.busy = ""
         self.restored: Callable[[], None] = lambda: None
 
@@ -79,10 +81,10 @@ class BackupAndRestore(SpecialFunction):
     def _found(self, places: tuple[Place, ...]) -> None:
         self.places = places
         self.marked = min(self.marked, max(0, len(places) - 1))
-        self.verdicts = {}
+        self.verdicts, self.unchecked = {}, ""
         for place in places:
             if place.backup:
-                self.worker.queue(partial(self._judged, place), self._judge, self._failed)
+                self.worker.queue(partial(self._judged, place), self._judge, self._not_judged)
 
     def _judged(self, place: Place) -> tuple[Place, Verdict]:
         """On the worker, one after the other. Raises StoreError."""
@@ -92,6 +94,9 @@ class BackupAndRestore(SpecialFunction):
         place, verdict = found
         if place in self.places:
             self.verdicts[place] = verdict
+
+    def _not_judged(self, why: str) -> None:
+        self.unchecked = why
 
     def sheet(self, _snapshot: Snapshot) -> Sheet:
         """Places, each with its backups under it."""
@@ -123,7 +128,7 @@ class BackupAndRestore(SpecialFunction):
             return "BACK UP HERE"
         verdict = self.verdicts.get(place)
         if verdict is None:
-            return "CHECKING …"
+            return "NOT CHECKED" if self.unchecked else "CHECKING …"
         return "CANNOT RESTORE: BACKUP DAMAGED" if verdict.problem else "RESTORE (BACKUP IS INTACT)"
 
     def _notes(self) -> tuple[str, ...]:
@@ -132,10 +137,12 @@ class BackupAndRestore(SpecialFunction):
         place = self.places[self.marked] if self.places else None
         verdict = self.verdicts.get(place) if place is not None else None
         if verdict is None:
-            return (kept,)
+            return (self.unchecked, tr(_IN_TERMINAL)) if self.unchecked else (kept,)
         if verdict.problem:
             return (verdict.problem, kept)
-        return (tr(Message("Differences from the current data: {what}.", what=_other(verdict))), kept)
+        what = _differences(verdict)
+        differs = Message("Differences from the current data: {what}.", what=what)
+        return (tr(differs if what else "The backup and the current data are the same."), kept)
 
     def keys(self) -> Mapping[str, Key]:
         """F4 looks for media again."""
@@ -169,14 +176,21 @@ class BackupAndRestore(SpecialFunction):
             all_to_disk()
             return name
 
-        self.worker.queue(work, self._backed_up, self._failed)
+        self.worker.queue(work, partial(self._backed_up, place), self._failed)
 
-    def _backed_up(self, name: str) -> None:
+    def _backed_up(self, place: Place, name: str) -> None:
         self.busy = ""
-        self.desk.done(tr(Message("BACKUP {name} IS COMPLETE. YOU CAN REMOVE THE USB STICK", name=name)))
+        own = place.path in {self.folder, self.daily}
+        done = (
+            "BACKUP {name} IS COMPLETE" if own else "BACKUP {name} IS COMPLETE. YOU CAN REMOVE THE USB STICK"
+        )
+        self.desk.done(tr(Message(done, name=name)))
         self.look()
 
     def _restore(self, place: Place) -> None:
+        if self.unchecked:
+            self.desk.refuse(tr(_IN_TERMINAL))
+            return
         if self.desk.refused(Act.RESTORE):
             return
         verdict = self.verdicts.get(place)
@@ -188,9 +202,8 @@ class BackupAndRestore(SpecialFunction):
             self.desk.say(BARRED)
             return
         asked = tr("Y: RESTORE {name} OVER ALL CURRENT DATA (DIFFERENCES: {what})   N: CANCEL")
-        self.desk.ask(
-            tr(Message(asked, name=place.label, what=_other(verdict))), lambda: self._restore_now(place)
-        )
+        what = _differences(verdict) or tr("NONE")
+        self.desk.ask(tr(Message(asked, name=place.label, what=what)), lambda: self._restore_now(place))
 
     def _restore_now(self, place: Place) -> None:
         if self.desk.snapshot().state in UNDER_WAY:
@@ -222,12 +235,12 @@ class BackupAndRestore(SpecialFunction):
         return "ENTER OR TAP: BACK UP OR RESTORE   F4: LOOK FOR USB STICKS"
 
 
-def _other(verdict: Verdict) -> str:
-    """How many of what a restore would change, in words."""
+def _differences(verdict: Verdict) -> str:
+    """Return how many rows of each table a restore would change, as text; empty for none."""
     told = [f"{tr(name)} {count}" for name, count in verdict.differs]
     if verdict.older:
         told.append(tr("other data was not compared because the backup is from an older version"))
-    return ", ".join(told) or tr("nothing")
+    return ", ".join(told)
 
 
 def _places(folder: Path, plugged: Sequence[Stick], daily: Path | None) -> tuple[Place, ...]:

@@ -16,7 +16,8 @@ _HEAD = """\
 
 This page is the reference of all alarms. `turndesk alarms` prints the same list, and
 `turndesk alarms 102` one alarm. For the steps after a stop, see
-[guide/read-an-alarm.md](guide/read-an-alarm.md).
+[guide/read-an-alarm.md](guide/read-an-alarm.md). For the alarm that each broken wire or device raises,
+see [integrator/failures.md](integrator/failures.md).
 
 {contents}
 It is written from `core/alarms` by `python -m core.alarms.alarms_page docs/alarms.md`. Do not edit it.

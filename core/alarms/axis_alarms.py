@@ -199,7 +199,7 @@ AXES: Entries = {
         ),
         (
             "Check the actual position of the axis. Check the encoder and its coupling. "
-            "Press Reset, then Drives On, and home the axis"
+            "Press Reset, then Drives On. Home any axis shown as not homed"
         ),
         tells=True,
     ),

@@ -43,6 +43,10 @@ NEEDS: Mapping[int, tuple[str, ...]] = {
     **dict.fromkeys(HERE, ()),
 }
 _OFF_LIMIT = {17: 1.0, 18: -1.0}  # homing methods whose mark is a limit switch alone, and the way off it
+_OFF_SWITCH = {
+    19: -1.0,
+    21: 1.0,
+}  # homing methods whose mark is the edge of a home switch, and the way off it
 
 _FIELDS = (
     Field("file", Kind.TEXT, meaning="HAL file, in the folder of the machine file."),
@@ -420,6 +424,18 @@ def _homes(file: FileReading) -> Iterator[Finding]:
                 side=side,
             )
             yield Finding(offset, "", expected)
+        other = _same_switch(file, axis)
+        off = _OFF_SWITCH.get(method, 0.0)
+        if other and off and values.has(offset) and values.number(offset) * off <= 0.0:
+            expected = Message(
+                (
+                    "expected a home offset {side} 0, because {other} uses the same switch, so the axis "
+                    "must be clear of the switch at home"
+                ),
+                side="above" if off > 0 else "below",
+                other=other,
+            )
+            yield Finding(offset, "", expected)
         for key in NEEDS[method]:
             if values.has(f"{pins}.{key}") and not values.text(f"{pins}.{key}"):
                 yield Finding(
@@ -427,6 +443,15 @@ def _homes(file: FileReading) -> Iterator[Finding]:
                     "",
                     Message("missing; required by {path} = {method}", path=path, method=method),
                 )
+
+
+def _same_switch(file: FileReading, axis: str) -> str:
+    """Return the key of another axis whose home switch is on the same input; empty for none."""
+    values = file.values
+    homes = {each: f"{_AXES}.{each}.home" for each in file.names(_AXES)}
+    pins = {each: values.text(path) for each, path in homes.items() if values.has(path)}
+    own = pins.get(axis)
+    return next((homes[each] for each, pin in pins.items() if own and each != axis and pin == own), "")
 
 
 def _pin(file: FileReading, text: str) -> object:

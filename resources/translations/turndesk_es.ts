@@ -13600,6 +13600,11 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
+      <source>BACKUP {name} IS COMPLETE</source>
+      <translation>RESPALDO {name} COMPLETO</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
       <source>BACKUP {name} IS COMPLETE. YOU CAN REMOVE THE USB STICK</source>
       <translation>RESPALDO {name} COMPLETO. YA PUEDE RETIRAR LA MEMORIA USB</translation>
     </message>
@@ -13615,6 +13620,11 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
+      <source>Close TurnDesk, then run in a terminal: turndesk store restore FILE</source>
+      <translation>Cierre TurnDesk y ejecute en una terminal: turndesk store restore ARCHIVO</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
       <source>DAILY BACKUPS</source>
       <translation>COPIAS DIARIAS</translation>
     </message>
@@ -13627,6 +13637,11 @@
       <location filename="app/special/backup_and_restore.py" />
       <source>ENTER OR TAP: BACK UP OR RESTORE   F4: LOOK FOR USB STICKS</source>
       <translation>ENTER O TOQUE: RESPALDAR O RESTAURAR   F4: BUSCAR MEMORIAS USB</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
+      <source>NOT CHECKED</source>
+      <translation>SIN COMPROBAR</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -13655,6 +13670,11 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
+      <source>The backup and the current data are the same.</source>
+      <translation>El respaldo y los datos actuales son iguales.</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
       <source>WHEN</source>
       <translation>CUÁNDO</translation>
     </message>
@@ -13662,11 +13682,6 @@
       <location filename="app/special/backup_and_restore.py" />
       <source>Y: RESTORE {name} OVER ALL CURRENT DATA (DIFFERENCES: {what})   N: CANCEL</source>
       <translation>Y: RESTAURAR {name} SOBRE TODOS LOS DATOS ACTUALES (DIFERENCIAS: {what})   N: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/special/backup_and_restore.py" />
-      <source>nothing</source>
-      <translation>nada</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -15065,8 +15080,8 @@
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
-      <source>Check the actual position of the axis. Check the encoder and its coupling. Press Reset, then Drives On, and home the axis</source>
-      <translation>Vea la posición real del eje. Revise el encoder y su cople. Pulse Reset, encienda los servos y referencie el eje</translation>
+      <source>Check the actual position of the axis. Check the encoder and its coupling. Press Reset, then Drives On. Home any axis shown as not homed</source>
+      <translation>Vea la posición real del eje. Revise el encoder y su cople. Pulse Reset y encienda los servos. Referencie los ejes que aparezcan sin referencia</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />

@@ -8,7 +8,9 @@ import json
 import os
 import resource
 import shutil
+import stat
 import subprocess
+import sys
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -50,6 +52,11 @@ def test_another_desk_has_it_all(
     assert kept.read_text() == "(MINE)\n"
     assert turndesk("prove", other / "programs" / "part.nc", "--machine", other / "machines" / "mine.toml")
     assert f"--machine {other / 'machines' / 'mine.toml'}" in told.out
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps its own rights")
+def test_only_its_owner_may_read_a_saved_setup(saved: Path) -> None:
+    assert stat.S_IMODE(saved.stat().st_mode) == 0o600
 
 
 def test_a_check_changes_nothing(

@@ -12,6 +12,7 @@ from core.table_schema import Finding, MachineFileError
 from drivers.hal.hal_table import HalTable
 
 HAL = resources.machine_file("gt75-hal.toml")
+PARPORT = resources.machine_file("gt75-parport.toml")
 
 
 def changed(*pairs: tuple[str, str]) -> str:
@@ -101,6 +102,32 @@ def test_homing_needs_its_pins(method: int, pins: str, path: str, expected: str)
     text = changed(("absolute = true", HOMED.format(method)), ('"x-motor.sel"', f'"x-motor.sel"\n{pins}'))
     found = only_finding(text)
     assert (found.path, expected in str(found)) == (path, True), found
+
+
+def on_one_switch(method: int, offset: float) -> str:
+    """Return the parallel port sample, whose home switches are on one input, homed with other values."""
+    homed = f"method = {method}, speed = 40, latch = 4, offset = {offset}"
+    return re.sub("method = 19, speed = 40, latch = 4, offset = -0.1", homed, PARPORT)
+
+
+@pytest.mark.parametrize(
+    ("method", "offset", "side"),
+    [(19, 0.0, "below"), (19, 0.1, "below"), (21, 0.0, "above"), (21, -0.1, "above")],
+)
+def test_axes_with_one_home_switch_leave_it_at_home(method: int, offset: float, side: str) -> None:
+    """An axis that rests on the switch would hide the switch of the other axis."""
+    with pytest.raises(MachineFileError) as caught:
+        parse_machine(on_one_switch(method, offset), "test.toml")
+    assert [found.path for found in caught.value.errors] == ["axis.X.home.offset", "axis.Z.home.offset"]
+    for found, other in zip(caught.value.errors, ("Z", "X"), strict=True):
+        assert f"expected a home offset {side} 0, because hal.axes.{other}.home uses the same" in str(found)
+
+
+@pytest.mark.parametrize(("method", "offset"), [(19, -0.1), (21, 0.1)])
+def test_axes_may_share_a_home_switch_that_they_leave(method: int, offset: float) -> None:
+    table = parse_machine(on_one_switch(method, offset), "test.toml").hardware.table(HalTable)
+    assert table is not None
+    assert table.axes["X"].home == table.axes["Z"].home
 
 
 def test_an_inverter_beside_hal_needs_no_pin_that_turns_the_spindle() -> None:

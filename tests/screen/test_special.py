@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from app.compose.journal import Journal
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
+from app.programs.removable_media import Stick
 from app.screen import page_table
 from app.special.backup_and_restore import BARRED, BackupAndRestore
 from app.special.inputs_outputs import NOT_NOW
@@ -16,7 +18,9 @@ from app.special.special_view import SpecialPage
 from core.access.pins import hashed
 from core.executor.commands import FeedHold, ForceOutput, SetSwitch, SpindleLimit
 from core.executor.snapshot import Alarm, Event, State
+from core.store.backup_verdict import Verdict
 from core.store.people import PersonRow
+from core.store.store_errors import StoreError
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
@@ -274,6 +278,38 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     assert shows(hands.desk.notice, "screen.refused")
     assert shows(hands.desk.notice, "screen.not-a-database")
     assert store.tools()[3].x == 2.0
+
+
+@pytest.mark.parametrize("row", [0, 1])
+def test_only_a_backup_on_a_stick_speaks_of_a_stick(hands: Hands, row: int, tmp_path: Path) -> None:
+    page = open_function(hands, 6)
+    backups = page.model.current
+    assert isinstance(backups, BackupAndRestore)
+    backups.plugged = lambda: (Stick("STICK", tmp_path, 1_000_000),)
+    hands.key(Key.Key_F4)
+    hands.sees(lambda: len(page.table.sheet.rows) == 2)
+    for _ in range(row):
+        hands.key(Key.Key_Down)
+    hands.key(Key.Key_Return)
+    hands.sees(lambda: shows(hands.prompt(), "screen.backup-on-stick" if row else "screen.backup-is-whole"))
+
+
+def test_backups_beside_data_that_cannot_be_read_point_to_the_terminal(
+    hands: Hands, journal: Journal, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def unreadable(_source: object) -> Verdict:
+        raise StoreError("the file is damaged", "damaged")
+
+    monkeypatch.setattr(journal, "judge", unreadable)
+    folder = data_folder() / "backups"
+    folder.mkdir(parents=True, exist_ok=True)
+    journal.backup(folder / "2026-11-23-good.turndesk.db")
+    page = open_function(hands, 6)
+    hands.sees(lambda: [row.cells[1] for row in page.table.sheet.rows[1:2]] == ["NOT CHECKED"])
+    hands.key(Key.Key_Down)
+    hands.sees(lambda: page.table.sheet.notes[0] == "the file is damaged")
+    hands.key(Key.Key_Return)
+    assert "turndesk store restore" in hands.desk.notice
 
 
 def test_a_restore_leaves_the_levels_on(hands: Hands, journal: Journal) -> None:

@@ -13,8 +13,8 @@ NOTES = (
     ),
     "axis.NAME.count: check this value against a dial gauge over a 10 mm jog; X positions are radii",
     (
-        "E-stop must remove drive power directly; the card's watchdog only stops step pulses "
-        "and analog voltages"
+        "E-stop must remove drive power directly; the card's watchdog acts only when the computer "
+        "sends nothing"
     ),
 )
 
@@ -30,7 +30,7 @@ def load_card(file: HalFile, card: str, config: str, *further: str) -> None:
     address = f'board_ip="{lathe.board.address}" ' if lathe.board.address else ""
     file.load(f'loadrt hm2_eth {address}config="{config}"')
     file.first.append(f"{card}.read")
-    file.section("Watchdog: the card turns its outputs off when it receives nothing from the computer")
+    file.section("Watchdog: the card turns all outputs off when it receives nothing from the computer")
     file.setp(f"{card}.watchdog.timeout_ns", _WATCHDOG)
     _link(file, card, further)
 
