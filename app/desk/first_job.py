@@ -89,7 +89,9 @@ class FirstJob:
         """The card of now."""
         keys = ((CLOSE, tr("CLOSE")),)
         if self.at >= len(STEPS):
-            return NoticeRow(tr("FIRST JOB: DONE"), tr("F10, 7, ENTER: SHOW THIS CARD AGAIN"), keys, "run")
+            return NoticeRow(
+                tr("FIRST JOB: DONE"), tr("SHOW THIS CARD AGAIN: F10, 7, ENTER, FIRST JOB CARD"), keys, "run"
+            )
         step = STEPS[self.at]
         head = tr(Message("FIRST JOB, STEP {number} OF {count}", number=self.at + 1, count=len(STEPS)))
         own = tuple((name, tr(label)) for name, label in step.keys)

@@ -36,7 +36,7 @@ NOT_HERE = "START CYCLES ON THE AUTOMATIC PAGE: PRESS F1, THEN F2"
 RESTORING = "CANNOT START: A BACKUP IS BEING RESTORED"
 STALE = "CANNOT START: THE PROGRAM IS BEING RELOADED"
 NO_START = "WILL NOT START"  # how the standing prompt begins then
-GIVE_UP = "PRESS Y TO ABORT THE PROGRAM, N TO KEEP IT"
+GIVE_UP = "PRESS Y TO CANCEL THE PROGRAM, N TO KEEP IT"
 TWIST_OUT = "PRESS Y TO RELEASE THE E-STOP, N TO LEAVE IT PRESSED"
 NO_MUSHROOM = "PRESS E-STOP ON THE MACHINE. THIS KEY ONLY STARTED FEED HOLD"
 HOW_TO_HOLD = "FEED HOLD: PAUSE, H OR ESC   E-STOP: SCROLL LOCK (STOP)"
@@ -51,7 +51,7 @@ def prompt(snapshot: Snapshot, loaded: Loaded, start: str, release: str, *, fiel
 
     ``field_open``: letters are text.
     """
-    go_on = Message("TO CONTINUE: {start}. R: ABORT THE PROGRAM", start=start)
+    go_on = Message("TO CONTINUE: {start}. R: CANCEL THE PROGRAM", start=start)
     standing = {
         State.ESTOP: _estop(release),
         State.DISABLED: "DRIVES ARE OFF: PRESS D FOR DRIVES ON",

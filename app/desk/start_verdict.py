@@ -173,4 +173,4 @@ def _way_out(found: FirstMove, part: KnownPart) -> str:
         jog = tr("JOG THE TOOL BACK OUT ALONG ITS ENTRY PATH")
     if part.broken is None or not may_go_on(Loaded(source=part.job.source)):
         return jog
-    return tr(Message("PRESS F6, THEN F4 TO RETRACT, OR {jog}", jog=jog))
+    return tr(Message("F6, ENTER: RESUME   F6, F4: RETRACT   OR {jog}", jog=jog))

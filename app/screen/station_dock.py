@@ -187,7 +187,7 @@ class StationDock(FingerPanel):
         head = self._row(54.2, 2.4)
         text = "CYCLE START: BOTH BUTTONS" if desk.two_hand else "CYCLE START"
         if self._latches:
-            text = "CYCLE START: TAP EACH BUTTON"
+            text = "CYCLE START: TAP F11, F12"
         painter.write(head, text, 1.6, "pause" if self._latches else "soft")
         box = self._row(56.8, 13.6)
         if not desk.two_hand:

@@ -5170,11 +5170,6 @@
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
-      <source>F10, 7, ENTER: SHOW THIS CARD AGAIN</source>
-      <translation>F10, 7, ENTER: MOSTRAR ESTA TARJETA OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/desk/first_job.py" />
       <source>F2: TYPE A NAME   F1, F6: CHOOSE FROM THE LIST</source>
       <translation>F2: ESCRIBIR UN NOMBRE   F1, F6: ELEGIR DE LA LISTA</translation>
     </message>
@@ -5217,6 +5212,11 @@
       <location filename="app/desk/first_job.py" />
       <source>SET THE TOOLS</source>
       <translation>REGLAR LAS HERRAMIENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/first_job.py" />
+      <source>SHOW THIS CARD AGAIN: F10, 7, ENTER, FIRST JOB CARD</source>
+      <translation>VER OTRA VEZ: F10, 7, ENTER, TARJETA DEL PRIMER TRABAJO</translation>
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
@@ -5775,7 +5775,7 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
-      <source>PRESS Y TO ABORT THE PROGRAM, N TO KEEP IT</source>
+      <source>PRESS Y TO CANCEL THE PROGRAM, N TO KEEP IT</source>
       <translation>PULSE Y PARA CANCELAR EL PROGRAMA, N PARA CONSERVARLO</translation>
     </message>
     <message>
@@ -5820,7 +5820,7 @@
     </message>
     <message>
       <location filename="app/desk/prompt_line.py" />
-      <source>TO CONTINUE: {start}. R: ABORT THE PROGRAM</source>
+      <source>TO CONTINUE: {start}. R: CANCEL THE PROGRAM</source>
       <translation>PARA CONTINUAR: {start}. R: CANCELAR EL PROGRAMA</translation>
     </message>
     <message>
@@ -6130,6 +6130,11 @@
     </message>
     <message>
       <location filename="app/desk/start_verdict.py" />
+      <source>F6, ENTER: RESUME   F6, F4: RETRACT   OR {jog}</source>
+      <translation>F6, ENTER: REANUDAR   F6, F4: RETIRAR   O {jog}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/start_verdict.py" />
       <source>JOG THE TOOL BACK OUT ALONG ITS ENTRY PATH</source>
       <translation>SAQUE LA HERRAMIENTA EN JOG POR SU TRAYECTORIA DE ENTRADA</translation>
     </message>
@@ -6137,11 +6142,6 @@
       <location filename="app/desk/start_verdict.py" />
       <source>JOG {direction} UNTIL THE TOOL IS CLEAR</source>
       <translation>MUEVA {direction} EN JOG HASTA QUE LA HERRAMIENTA QUEDE LIBRE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/start_verdict.py" />
-      <source>PRESS F6, THEN F4 TO RETRACT, OR {jog}</source>
-      <translation>PULSE F6 Y LUEGO F4 PARA RETIRAR, O {jog}</translation>
     </message>
     <message>
       <location filename="app/desk/start_verdict.py" />
@@ -6270,7 +6270,7 @@
     </message>
     <message>
       <location filename="app/desk/waiting.py" />
-      <source>PAUSE (FEED HOLD), THEN R: ABORT THE PROGRAM</source>
+      <source>PAUSE (FEED HOLD), THEN R: CANCEL THE PROGRAM</source>
       <translation>PAUSA (RETENCIÓN DE AVANCE), LUEGO R: CANCELAR EL PROGRAMA</translation>
     </message>
     <message>
@@ -12435,8 +12435,8 @@
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
-      <source>CYCLE START: TAP EACH BUTTON</source>
-      <translation>ARRANQUE CICLO: UNO Y OTRO</translation>
+      <source>CYCLE START: TAP F11, F12</source>
+      <translation>ARRANQUE: UNO Y OTRO</translation>
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />

@@ -98,7 +98,7 @@ def test_a_pendant_and_a_setter() -> None:
         ("pendant.BTN_2", "pendant.BTN_0", "io.in.wheel_x already uses"),
         ("pendant.BTN_2", "pendant.BTN_NOPE", "expected the Linux name of a button"),
         ("pendant.REL_DIAL", "pendant.BTN_A", "expected the Linux name of a handwheel"),
-        ("wheel_step", "wheel_axis", "a button or switches, not both"),
+        ("wheel_step", "wheel_axis", "already makes this selection"),
         ("jog_z_minus", "jog_y_minus", "is not a jog button; use one of jog_rapid, jog_x_plus"),
         (
             '[pendant]\ndevice = "0b33:0030"\ncounts = "place"\n',

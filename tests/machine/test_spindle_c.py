@@ -25,7 +25,7 @@ def test_a_spindle_drive_that_counts_is_c() -> None:
 
 
 def test_one_that_does_not_count_is_none() -> None:
-    assert_refused(with_c(), "canopen.nodes.C", "counts_per_rev of the spindle drive")
+    assert_refused(with_c(), "canopen.nodes.C", "the spindle drive can also serve as the C axis")
 
 
 def test_one_without_a_queue_of_positions_is_none() -> None:
