@@ -28,7 +28,7 @@ DIAGNOSTIC = keys(
 line | integer | | Line of the program; 0 if the finding has no line.
 column | integer | | Column from 1; 0 if the finding has no line.
 severity | string | | error, warning or note.
-code | string | | What is wrong; the code of a Klartext error is the message name of the control.
+code | string | | Code of the finding; for a Klartext error, the message name of the control.
 message | string | | What is wrong, in one sentence.
 args | object | | Values of the message by name.
 args.* | string or number | | One value of the message.
@@ -60,8 +60,8 @@ removed_volume | list | length³ | Removed volume with the current and the other
 cycle_time_s | list | s | Cycle time with the current and the other offsets.
 cutting_time_s | list | s | Cutting time with the current and the other offsets.
 rapid_time_s | list | s | Rapid time with the current and the other offsets.
-gone | list | | Findings that the other offsets do not have, with the keys of `diagnostics`.
-added | list | | Findings that only the other offsets have, with the keys of `diagnostics`.
+gone | list | | Findings that do not occur with the other offsets, with the keys of `diagnostics`.
+added | list | | Findings that occur only with the other offsets, with the keys of `diagnostics`.
 """
     ),
     *below("gone[].", DIAGNOSTIC),
@@ -69,12 +69,13 @@ added | list | | Findings that only the other offsets have, with the keys of `di
 )
 PROVE = Output(
     "prove FILE… --json",
-    "One object for each program, one on a line. A folder gives one object for each program in the order of "
-    "the names. `stock` is null on a mill and if no stock is known; `compare` exists only with --compare.",
+    "One object for each program, one per line. For a folder, the output contains one "
+    "object for each program, in the order of the names. `stock` is null on a mill, or "
+    "if the stock is not known; `compare` exists only with --compare.",
     (
         *keys(
             """
-file | string | | The file as the command names it; with a folder or --jobs, the name of the program.
+file | string | | The file name as entered in the command; with a folder or --jobs, the name of the program.
 dialect | string | | omniturn, klartext or sinumerik.
 units | string | | Unit of the program: inch or mm. Lengths in this object follow the language, not this unit.
 blocks | integer | | Blocks of the program.
@@ -96,7 +97,8 @@ cutting_length | number | length | Length of the path at feed.
 rapid_length | number | length | Length of the path at rapid.
 corner_tolerance | number | length | `corner_tolerance` of the machine file.
 tools | list | | Tools that the program uses, sorted: numbers, or names as strings.
-limits | object | | What the program reaches: program positions on a lathe, machine positions on a mill.
+limits | object | | Lowest and highest values in the program: program positions on a lathe, machine
+    positions on a mill.
 limits.x | list | length | Lowest and highest X; a radius on a lathe.
 limits.y | list | mm | Mill: lowest and highest Y.
 limits.z | list | length | Lowest and highest Z.
@@ -106,11 +108,11 @@ limits.c | list | deg | Lowest and highest C; a mill has the key only with this 
 limits.rpm | list | rpm | Lowest and highest spindle speed.
 limits.feed_ipm | list | in/min | Lathe: lowest and highest feed.
 limits.feed_mm_min | list | mm/min | Mill: lowest and highest feed.
-ways | object | | Paths through the program by inputs and block delete.
+ways | object | | Paths through the program, which depend on inputs and block delete.
 ways.proved | integer | | Paths that were proved.
 ways.left | integer | | Paths that were not proved.
 ways.cycle_time_s | list | s | Shortest and longest cycle time of the proved paths.
-stock | object or null | | What becomes of the stock.
+stock | object or null | | The stock, before and after machining.
 stock.given | string or null | | The stock as specified, such as `bar:1.0`; null if TurnDesk assumed it.
 stock.outside | list | length | Points [z, r] of the outside of the stock.
 stock.volume | number | length³ | Volume of the stock.
@@ -121,8 +123,8 @@ stock.bore | list or null | length | Points [z, r] of the finished bore; null wi
 stock.min_wall | number or null | length | Smallest wall thickness; null without a bore.
 stock.milled | boolean | | Whether live tools cut the part.
 stock.pieces | list | length³ | Volumes of the pieces that are parted off.
-stock.assumed | list | | Sentences on what TurnDesk assumed.
-stock.unchecked | list | | Sentences on what was not checked.
+stock.assumed | list | | Assumptions of TurnDesk, as sentences.
+stock.unchecked | list | | Items that were not checked, as sentences.
 final | object | | Position after the program; empty on a mill if not available.
 final.x | number | length | X: on a lathe a radius in the program frame, on a mill in the working plane.
 final.y | number | mm | Mill: Y in the working plane.
@@ -156,8 +158,8 @@ t1 | number | s | End of the block.
 )
 EXPAND_OMNITURN = Output(
     "expand FILE --json, OmniTurn",
-    "One object for each elementary block, one on a line, in the order of execution. Keys that do not apply "
-    "are null. Lengths are in inches, also for metric programs.",
+    "One object for each elementary block, one per line, in the order of execution. Keys "
+    "that do not apply are null. Lengths are in inches, also for metric programs.",
     (
         *_BLOCK,
         *keys(
@@ -177,7 +179,7 @@ pz | number or null | in | Plane switching: end point in the frame of the virtua
   diameter.
 pcx | number or null | in | Plane switching: center of an arc.
 pcy | number or null | in | Plane switching: center of an arc.
-feed | number or null | in/min or in/rev | Feed; of a rapid the rapid rate.
+feed | number or null | in/min or in/rev | Feed; for a rapid move, the rapid rate.
 feed_mode | string or null | | ipm or ipr.
 rpm | number | rpm | Commanded spindle speed at the end of the block; negative with M04.
 css | number or null | ft/min | Constant surface speed.
@@ -188,23 +190,23 @@ css | number or null | ft/min | Constant surface speed.
 )
 EXPAND_SINUMERIK = Output(
     "expand FILE --json, SINUMERIK",
-    "As above, in millimeters.",
+    "One object for each elementary block, as for the other languages, in millimeters.",
     (
         *_BLOCK,
         *keys(
             """
 units | string | | mm.
-x | number | mm | End point as the program counts X: a diameter with DIAMON.
+x | number | mm | End point in X as programmed: a diameter with DIAMON.
 z | number | mm | End point in the program frame.
 c | number | deg | Angle of C in the workpiece system.
 mx | number | mm | End point in machine positions, a radius.
 mz | number | mm | End point in machine positions.
 mc | number | deg | Angle of C in the machine system.
 dc | number | deg | Signed travel of C in the block.
-cx | number or null | mm | Center of an arc, counted like x.
+cx | number or null | mm | Center of an arc, as a radius or diameter like `x`.
 cz | number or null | mm | Center of an arc.
 dir | string or null | | Direction of an arc: cw or ccw.
-feed | number or null | feed_mode | Feed; of a rapid the speed of its path.
+feed | number or null | feed_mode | Feed; for a rapid move, the speed along the path.
 feed_mode | string or null | | mm/min, mm/rev, deg/min or deg/rev.
 rpm | number | rpm | Commanded spindle speed at the end of the block; negative with M4.
 css | number or null | m/min | Constant surface speed.
@@ -215,8 +217,9 @@ css | number or null | m/min | Constant surface speed.
 )
 EXPAND_KLARTEXT = Output(
     "expand FILE --json, Klartext",
-    "As above, in millimeters. Blocks without a position do not have the position keys; only PLANE blocks "
-    "have the keys from `frame` to `q122`.",
+    "One object for each elementary block, as for the other languages, in millimeters. "
+    "Blocks without a position do not have the position keys; only PLANE blocks have the "
+    "keys from `frame` to `q122`.",
     (
         *_BLOCK,
         *keys(
@@ -231,7 +234,8 @@ mz | number | mm | Machine position after the block.
 a | number or null | deg | A after the block; null if the machine does not have the axis.
 b | number or null | deg | B after the block; null if the machine does not have the axis.
 c | number or null | deg | C after the block; null if the machine does not have the axis.
-feed | number or null | feed_mode | Speed of the path; of a rapid what the slowest axis allows.
+feed | number or null | feed_mode | Speed along the path; for a rapid move, the speed that the slowest axis
+    allows.
 feed_mode | string or null | | mm/min, mm/rev, deg/min or deg/rev.
 rpm | number | rpm | Commanded spindle speed at the end of the block.
 """
@@ -250,8 +254,9 @@ q122 | number | deg | Target of C, as in Q122.
 )
 TRACE = Output(
     "trace FILE --out CSV --json",
-    "One object. The CSV file has the columns `t`, the axes of the machine, `spindle_deg` and `line`: one "
-    "setpoint in each row, `dt` apart, in machine positions; X is a radius.",
+    "One object. The CSV file has the columns `t`, the axes of the machine, "
+    "`spindle_deg` and `line`. Each row is one setpoint in machine positions, with X as "
+    "a radius. The rows are `dt` apart in time.",
     (
         *keys(
             """
@@ -276,7 +281,8 @@ final.x | number | length | Lathe: X in the program frame, a radius. Mill: X in 
 final.z | number | length | Z in the program frame or the working plane.
 final.c | number | deg | C; on a mill only if it has the axis.
 final.y | number | mm | Mill: Y in the working plane.
-final.mx | number | mm | Mill: machine position X. The keys without m are missing if the run is not complete.
+final.mx | number | mm | Mill: machine position X. The keys without the prefix `m` are missing if the run is
+    not complete.
 final.my | number | mm | Mill: machine position Y.
 final.mz | number | mm | Mill: machine position Z.
 final.a | number | deg | Mill with this axis: A.
@@ -317,8 +323,8 @@ ports[].at | string | | Where it is connected.
 ports[].state | string | | State, such as ok, on, off, no answer, missing, wrong or fault.
 ports[].detail | string | | Details; may be empty.
 ports[].verdict | string | | ok or FAIL.
-warnings | list | | Sentences on what is worth knowing.
-trouble | list | | Sentences on what failed; the exit status is then 1.
+warnings | list | | Warnings, as sentences.
+trouble | list | | Failures, as sentences; if there are any, the exit status is 1.
 """
     ),
 )
@@ -338,7 +344,7 @@ wires[].place | string | | Terminal of the board; empty for a signal without one
 wires[].pin | string | | HAL pin.
 wires[].signal | string | | HAL signal.
 wires[].names | list | | Keys of the machine file.
-measure | list | | Sentences on what must be measured on the machine.
+measure | list | | Values that must be measured on the machine, as sentences.
 """
     ),
 )
@@ -401,7 +407,7 @@ OFFSETS_HISTORY = Output(
                 """
 id | integer | | Number of the change.
 step | integer | | Number of the step; changes of one step were made together.
-undoes | integer or null | | Step that this change takes back; null if it is not an undo.
+undoes | integer or null | | Step that this change undoes; null if it is not an undo.
 at | string | UTC | Time of the change.
 kind | string | | Table: tool, secondary, zero, shape, mill tool or preset.
 number | integer | | Number of the offset.
@@ -409,8 +415,8 @@ old | object or null | | Row before the change; null if it was not set.
 old.* | string or number or boolean | | One value of the row.
 new | object or null | | Row after the change; null if it was cleared.
 new.* | string or number or boolean | | One value of the row.
-why | string | | Reason of the change.
-who | string | | User or part of the program that made the change.
+why | string | | Reason for the change.
+who | string | | User or TurnDesk function that made the change.
 """
             ),
         ),
@@ -457,7 +463,7 @@ ppk | | Ppk; null if the readings do not scatter.
 """,
             ),
         ),
-        *keys("programs[].corrections | list | | Changes of wear and of secondary offsets."),
+        *keys("programs[].corrections | list | | Changes of wear offsets and secondary offsets."),
         *below("programs[].corrections[].", table_keys.CORRECTIONS),
         *keys("stops | list | | Stops of production."),
         *below("stops[].", _STOP),
@@ -475,12 +481,12 @@ SHIFT = Output(
             """
 from | string | UTC | Start of the shift.
 to | string | UTC | End of the shift.
-notes | list | | Sentences on data that is missing.
+notes | list | | Missing data, as sentences.
 parts | integer | | Parts of all programs.
 programs | list | | Programs that ran.
 programs[].program | string | | File name of the program.
 programs[].parts | integer | | Parts.
-programs[].no_part | object | | Cycles without a part, by how they ended.
+programs[].no_part | object | | Cycles without a part, by outcome.
 programs[].no_part.* | integer | | Number of cycles.
 programs[].cycle_times | list | s | Times of the complete cycles.
 planned | number | s | Time in which production was possible.
@@ -498,11 +504,11 @@ stops | list | | Stops of production.
                 "",
                 ReasonShare,
                 """
-reason | | Reason of the stops.
+reason | | Reason for the stops.
 times | | Number of stops.
 seconds | s | Total time.
 share | | Fraction of the time of all stops, 0 to 1.
-together | | Fraction of this reason and all longer ones, 0 to 1.
+together | | Cumulative fraction of this reason and all reasons with a longer total time, 0 to 1.
 """,
             ),
         ),
@@ -518,8 +524,8 @@ offset_changes | list | | Changes of offsets.
 offset_changes[].at | string | UTC | Time of the change.
 offset_changes[].kind | string | | Table: tool, secondary, zero, shape, mill tool or preset.
 offset_changes[].number | integer | | Number of the offset.
-offset_changes[].why | string | | Reason of the change.
-offset_changes[].who | string | | User or part of the program that made the change.
+offset_changes[].why | string | | Reason for the change.
+offset_changes[].who | string | | User or TurnDesk function that made the change.
 offset_changes[].old | object or null | mm | Row before the change; null if it was not set.
 offset_changes[].old.* | string or number or boolean | mm | One value of the row.
 offset_changes[].new | object or null | mm | Row after the change; null if it was cleared.
@@ -540,7 +546,7 @@ JOBS = Output(
     "One object.",
     keys(
         """
-jobs | list | | The queue in its order.
+jobs | list | | The job queue, in order.
 jobs[].place | integer | | Position, from 1.
 jobs[].program | string | | File name of the program.
 jobs[].parts | integer | | Parts to make.
@@ -558,7 +564,7 @@ STORE_VERIFY = Output(
     keys(
         """
 store | string | | Path of the store.
-problems | list | | Sentences on what is damaged; the exit status is then 1.
+problems | list | | Damage to the store, as sentences; if there is any, the exit status is 1.
 """
     ),
 )
@@ -569,19 +575,20 @@ desk | string | | Machine that saved the version.
 saved | string | UTC | Time at which it was saved.
 size | integer | bytes | Size of the program.
 why | string | | Reason for saving.
-follows | list | | IDs of the versions from which it was made.
+follows | list | | IDs of the versions on which it is based.
 """
 )
 _SHARED = (
     *keys(
         """
-place | string | | The shared place.
-desk | string | | Name of this machine among the others.
-trouble | string or null | | Why the place does not respond; null if it responds.
+place | string | | The shared location.
+desk | string | | Name of this machine in the list of machines.
+trouble | string or null | | Why the shared location does not respond; null if it responds.
 waiting | integer | | Versions that are not yet published.
 programs | list | | Shared programs.
 programs[].program | string | | File name of the program.
-programs[].state | string | | same, newer (elsewhere), both (changed here and elsewhere) or new (not here).
+programs[].state | string | | same, newer (a newer version exists on another machine), both (changed here
+    and on another machine) or new (not on this machine).
 programs[].here | object or null | | Version on this machine; null if not available.
 """
     ),
@@ -599,14 +606,14 @@ desks[].desk | string | | Name of the machine.
 desks[].told | string | UTC | Time of its last report.
 desks[].has | object | | Its programs.
 desks[].has.* | string | | ID of the version, by program.
-strays | list | | Files in the shared place that are not versions.
+strays | list | | Files in the shared location that are not versions.
 not_shared | object | | Programs that are not shared.
 not_shared.* | string | | Reason, by program.
 """
     ),
 )
 SHARE_STATUS = Output("share status --json, share publish --json", "One object.", _SHARED)
-SHARE_BEGIN = Output("share begin --json", "One object.", keys("place | string | | The shared place."))
+SHARE_BEGIN = Output("share begin --json", "One object.", keys("place | string | | The shared location."))
 SHARE_COMPARE = Output(
     "share compare PROGRAM --json",
     "One object.",
@@ -617,8 +624,8 @@ SHARE_COMPARE = Output(
             """
 changes | list | | Lines of the comparison.
 changes[].sign | string | | + (added), − as a hyphen (removed) or a space (unchanged).
-changes[].here | integer or null | | Line in the local program; null if it is not there.
-changes[].there | integer or null | | Line in the other version; null if it is not there.
+changes[].here | integer or null | | Line in the local program; null if the local program does not contain it.
+changes[].there | integer or null | | Line in the other version; null if that version does not contain it.
 changes[].text | string | | Text of the line.
 """
         ),
@@ -652,7 +659,7 @@ file | string | | The file with the steps.
 out | string or null | | File of --out.
 program | string | | Text of the program.
 steps | list | | Kinds of the steps.
-words | list | | Sentences on what TurnDesk chose or noticed.
+words | list | | Choices and observations of TurnDesk, as sentences.
 errors | list | | Errors of the program; the exit status is then 1.
 cycle_time_s | number | s | Cycle time.
 """
@@ -686,7 +693,7 @@ channels | list | | Recorded channels.
                 """
 name | | Name of the channel.
 unit | | Unit of its values; empty if it has none.
-logic | | Whether the channel is on (1) or off (0).
+logic | | Whether the channel is a logic signal with the values 1 (on) and 0 (off).
 """,
             ),
         ),
@@ -717,7 +724,7 @@ ACCESS_TABLE = Output(
     keys(
         """
 *.level | string | | Level that the change needs.
-*.what | string | | What the change is, in words.
+*.what | string | | Description of the change.
 """
     ),
 )

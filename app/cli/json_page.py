@@ -23,8 +23,9 @@ and units. New versions add keys and do not change or remove any.
 _HEAD = """\
 ## Conventions
 
-- `--json` prints JSON alone on stdout. Messages go to stderr.
-- In a path, `.` leads into an object, `[]` into each element of a list, and `*` is any key.
+- With `--json`, a command prints only JSON on stdout. Messages go to stderr.
+- In a path, `.` leads to a key of an object, `[]` means each element of a list, and `*` means any
+  key.
 - **length** is inches for OmniTurn programs and millimeters for Klartext and SINUMERIK programs;
   **length³** is the volume in that unit.
 - **UTC** is a time as text in ISO 8601, such as `2026-11-29T15:04:05.000Z`.
@@ -35,37 +36,39 @@ _HEAD = """\
 |---|---|
 | 0 | Done. There may be warnings. |
 | 1 | The program, the run or the machine has errors. |
-| 2 | The command cannot be carried out: usage, a file that cannot be read, an error in a machine file. |
+| 2 | The command cannot be carried out because of a usage error, an unreadable file or a bad machine file. |
 | 130 | The command was interrupted with Ctrl+C. |
 
-A command that ends with 2 prints the reason on stderr, in lines that begin with `turndesk:`, and no
-JSON. Exceptions: `machine check` prints JSON with the errors in the machine file, and `prove`
-continues with the other programs if one cannot be read.
+A command that ends with status 2 prints the reason on stderr, in lines that begin with `turndesk:`,
+and no JSON. Exceptions: `machine check` prints JSON with the errors in the machine file, and
+`prove` continues with the other programs if one cannot be read.
 
 """
 _STATUS = """
 `status.json` is in the data folder (`TURNDESK_HOME`). TurnDesk replaces the whole file at each
-change and at least every ten seconds. A file that is older than 30 seconds is from a TurnDesk that
-is no longer running.
+change and at least every ten seconds. If the file is older than 30 seconds, TurnDesk is no longer
+running.
 """
 _OFFICE = """
-The office page of [status_page] has this object at `/status.json`. MQTT publishes it as a retained
-message at `TOPIC/state`. `TOPIC/available` is `online` or `offline`, without JSON.
+The office page, which [status_page] configures, serves this object at `/status.json`. MQTT
+publishes it as a retained message at `TOPIC/state`. `TOPIC/available` is `online` or `offline`,
+without JSON.
 """
 _EVENT = """
-MQTT publishes each event at `TOPIC/event`, not retained. The web hook receives the same object by
-POST, with `Content-Type: application/json`.
+MQTT publishes each event at `TOPIC/event` as a message that is not retained. The web hook receives
+the same object by POST, with `Content-Type: application/json`.
 """
 _STORE = """
-The store is the SQLite file `turndesk.db` in the data folder. Open it read-only while TurnDesk runs.
-`turndesk store export DIR` writes the tables that have a file below as CSV with the same columns,
-the newest version of each program into `programs`, and the offsets into `offsets.toml` in inches.
-Tables that are not listed are internal and may change with any version.
+The store is the SQLite file `turndesk.db` in the data folder. Open it read-only while TurnDesk
+runs. `turndesk store export DIR` writes each table below that names an export file as a CSV file
+with the same columns. It also writes the newest version of each program to `programs`, and the
+offsets, in inches, to `offsets.toml`. Tables that are not listed are internal and may change with
+any version.
 
-Each table of offsets, tool shapes, mill tools and presets has a second table whose name ends in
-`_changes`, with `id`, `step`, `undoes` (the step that the change takes back), `at`, the number, the
-row before and after the change as `old_…` and `new_…`, `why` and `who`. Tool and secondary offsets
-share `offset_changes`.
+For each table of offsets, tool shapes, mill tools and presets, a second table records the changes;
+its name ends in `_changes`. Its columns are `id`, `step`, `undoes` (the step that the change
+undoes), `at`, the number, the row before and after the change as `old_…` and `new_…`, `why` and
+`who`. Tool and secondary offsets share `offset_changes`.
 """
 
 

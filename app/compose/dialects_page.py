@@ -48,7 +48,8 @@ def with_generated(text: str) -> str:
 
 
 def _languages(found: dict[str, Machine]) -> Iterator[str]:
-    yield "| language | files | codes in the reference | MDI and SEARCHTO on |"
+    machines = "machines on which MDI and SEARCHTO use the language"
+    yield f"| language | files | codes in the reference | {machines} |"
     yield "|---|---|---|---|"
     for dialect in Dialect:
         endings = " ".join(f"`{each}`" for each in _ENDINGS if dialect_of(f"a{each}") is dialect)

@@ -8,15 +8,15 @@ STATUS = keys(
     """
 machine | string | | Name of the machine.
 available | boolean | | Whether TurnDesk receives the state of the machine. If not, most values are null.
-execution | string or null | | Execution in the words of MTConnect: READY, ACTIVE, WAIT, FEED_HOLD,
+execution | string or null | | Execution state as defined by MTConnect: READY, ACTIVE, WAIT, FEED_HOLD,
   INTERRUPTED, STOPPED, PROGRAM_STOPPED, OPTIONAL_STOP or PROGRAM_COMPLETED.
-mode | string or null | | Mode in the words of MTConnect: AUTOMATIC, SEMI_AUTOMATIC, MANUAL or
+mode | string or null | | Mode as defined by MTConnect: AUTOMATIC, SEMI_AUTOMATIC, MANUAL or
   MANUAL_DATA_INPUT.
 estop | string or null | | TRIGGERED or ARMED.
 program | string or null | | File name of the loaded program.
 parts | integer or null | | Parts made since TurnDesk started.
 spindle_load | integer or null | % | Spindle load in steps of five; null if the drive does not report it.
-interrupted | object or null | | The job that did not reach its end, otherwise null.
+interrupted | object or null | | The interrupted job; null if no job was interrupted.
 interrupted.line | integer | | Line at which the job was interrupted.
 interrupted.tool | integer | | Tool in use.
 interrupted.part | integer | | Number of the part.
@@ -36,7 +36,7 @@ FILE = (
     *keys(
         """
 updated | string | UTC | Time at which the file was written.
-since | string | UTC | Time since which `execution` has its value.
+since | string | UTC | Time at which `execution` last changed.
 """
     ),
     *STATUS,
@@ -46,19 +46,20 @@ OFFICE = (
     *STATUS,
     *keys(
         """
-state | string | | State in the words of the screen, such as RUNNING, FEED HOLD or ALARM; CONTROL SILENT
+state | string | | State as shown on the screen, such as RUNNING, FEED HOLD or ALARM; CONTROL SILENT
   if TurnDesk does not receive the state of the machine.
 waiting_for | string | | What a cycle waits for; empty if it does not wait.
-line | integer or null | | Line that runs.
+line | integer or null | | Line that is being executed.
 made | integer or null | | Part count of the program.
 time_left | number or null | s | Remaining time of the cycle; null if it is not known.
 cycle_elapsed | number or null | s | Time since the start of the cycle.
 last_cycle | number or null | s | Time of the last complete cycle.
-stop | string | | Why the machine is stopped, in the words of the screen.
-next_barred | string | | Why no further part starts, such as a used tool life; empty if it can start.
+stop | string | | Why the machine is stopped, as shown on the screen.
+next_barred | string | | Why no further part can start, such as a used-up tool life; empty if a part can
+    start.
 stops | list | | The newest stops of production, at most six, the newest first.
 stops[].at | string | UTC | Start of the stop.
-stops[].reason | string | | Reason of the stop.
+stops[].reason | string | | Reason for the stop.
 stops[].seconds | integer | s | Length of the stop.
 """
     ),

@@ -12,22 +12,22 @@ _HEAD = """\
 # What each access level may change
 
 This page is a reference for the person who manages users and PINs. It lists what each access level
-may change, on which pages of the screen and by which commands. How to set up users is in
+may change, and on which screen pages and with which commands. To set up users, see
 [guide/access-levels.md](guide/access-levels.md).
 
-Levels are off until a user of SERVICE level is added: `F10`, ACCESS LEVELS, or
-`turndesk access add`. Each level may also make the changes of the levels before it.
+Access levels are off until a user of SERVICE level is added with `F10`, ACCESS LEVELS, or with
+`turndesk access add`. Each level also includes the changes that the lower levels may make.
 
 No level is ever required for:
 
 {never}
 
-TurnDesk publishes the programs in the program folder automatically, and this needs no level. The
-person who put a program there needed the level for that. A published program replaces nothing on
-another control.
+TurnDesk publishes the programs in the program folder automatically, and no access level is required
+for this. The person who put a program into the folder needed the access level for that action. A
+published program does not replace a program on another control.
 
-`python -m core.access.access_page docs/access.md` writes this page from
-`core/access/access_table.py`. Do not edit it.
+This page is generated from `core/access/access_table.py` by
+`python -m core.access.access_page docs/access.md`. Do not edit it.
 """
 
 

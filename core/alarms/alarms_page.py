@@ -14,15 +14,15 @@ from core.page_contents import contents
 _HEAD = """\
 # Alarms, holds and stops
 
-This page is the reference of all alarms. `turndesk alarms` prints the same list, and
-`turndesk alarms 102` one alarm. For the steps after a stop, see
-[guide/read-an-alarm.md](guide/read-an-alarm.md). For the alarm that each broken wire or device raises,
-see [integrator/failures.md](integrator/failures.md).
+This page lists all alarms. `turndesk alarms` prints the same list, and `turndesk alarms 102` prints
+one alarm. For the steps after a stop, see [guide/read-an-alarm.md](guide/read-an-alarm.md). For the
+alarm that each broken wire or device raises, see [integrator/failures.md](integrator/failures.md).
 
 {contents}
-It is written from `core/alarms` by `python -m core.alarms.alarms_page docs/alarms.md`. Do not edit it.
-The number is shown on the screen, in `F7` with the time, in the event log and in `status.json`. If the
-axis, the line or the text of the drive is known, the alarm includes it. Technical details are in
+This page is generated from `core/alarms` by
+`python -m core.alarms.alarms_page docs/alarms.md`. Do not edit it. The alarm number is shown on the
+screen, in `F7` with the time, in the event log and in `status.json`. The alarm also shows the axis,
+the program line and the drive's own text if they are known. Technical details are in
 `logs/turndesk.log`.
 
 The kind in parentheses is what the alarm does:

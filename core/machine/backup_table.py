@@ -13,8 +13,8 @@ _FIELDS = (
         Kind.TEXT,
         default="",
         meaning=(
-            "Folder of the daily backups, best on another disk or computer. Default: `backups` in "
-            "the data folder."
+            "Folder for the daily backups, preferably on another disk or computer. Default: "
+            "`backups` in the data folder."
         ),
     ),
     Field(
@@ -23,7 +23,7 @@ _FIELDS = (
         low=2,
         high=400,
         default=KEPT,
-        meaning="Number of daily backups that remain; older ones are deleted.",
+        meaning="Number of daily backups that TurnDesk retains; it deletes older backups.",
     ),
 )
 
@@ -42,7 +42,7 @@ DRIVER = Driver(
             "backup",
             _FIELDS,
             lambda file: file.values.model(BackupTable, "backup"),
-            purpose="Where TurnDesk saves its daily backups, and how many of them remain.",
+            purpose="Where TurnDesk saves its daily backups, and how many of them it retains.",
         ),
     )
 )

@@ -28,8 +28,8 @@ ANALOG = (
         "at",
         Kind.TEXT,
         meaning=(
-            "Terminal of the signal, written as the backend requires. The handwheel can also be at "
-            "the pendant, such as `pendant.REL_DIAL`."
+            "Terminal of the signal, written as the backend requires. The handwheel can also be "
+            "on the pendant, such as `pendant.REL_DIAL`."
         ),
     ),
     Field(

@@ -29,7 +29,7 @@ _MACHINE = (
         _CHOICE,
         choices=KINDS,
         default="lathe",
-        meaning="Kind of machine. It decides which axes, tables and languages the machine can have.",
+        meaning="Kind of machine. It determines which axes, tables and languages the machine can have.",
     ),
     Field(
         "language",
@@ -47,8 +47,8 @@ _MACHINE = (
         choices=("802d", "808d", "828d", "840d"),
         default="840d",
         meaning=(
-            "SINUMERIK control for which the programs were written; it decides how codes that "
-            "differ between these controls are read."
+            "SINUMERIK control for which the programs were written. It determines how TurnDesk "
+            "reads codes that differ between these controls."
         ),
     ),
     Field(
@@ -77,8 +77,8 @@ _MACHINE = (
         0.001,
         0.2,
         meaning=(
-            "Time before its execution from which a queued setpoint can no longer be changed. A "
-            "feed hold and the end of a jog take effect after this time."
+            "Remaining time before its execution below which a queued setpoint can no longer be "
+            "changed. A feed hold and the end of a jog take effect after this time."
         ),
     ),
     Field(
@@ -112,7 +112,8 @@ _MACHINE = (
         0.0001,
         0.02,
         default=0.001,
-        meaning="Length of a setpoint. At a corner the velocity of an axis may change by `amax` × this time.",
+        meaning="Duration of a setpoint. At a corner the velocity of an axis may change by `amax` × "
+        "this time.",
     ),
 )
 LIMITS = (
@@ -134,7 +135,8 @@ LIMITS = (
         0.1,
         500.0,
         derived=True,
-        meaning="Rapid of a jog. Default: 100 in/min, or `vmax` of the slowest linear axis if that is lower.",
+        meaning="Rapid speed of a jog. Default: 100 in/min, or `vmax` of the slowest linear axis if "
+        "that is lower.",
     ),
     Field(
         "resolution",
@@ -156,8 +158,8 @@ LIMITS = (
         100.0,
         default=31.75,
         meaning=(
-            "Distance that an axis may travel after the last renewal of a jog at `vmax`. `lease_ms` "
-            "is checked against it."
+            "Distance that an axis jogging at `vmax` may travel after the last renewal of the "
+            "jog. TurnDesk checks `lease_ms` against this distance."
         ),
     ),
     Field(
@@ -180,7 +182,7 @@ _STILL = Field(
     0.05,
     2.0,
     default=0.2,
-    meaning="Time after the last setpoint from which `still_window` applies.",
+    meaning="Time after the last setpoint before `still_window` applies.",
 )
 SLIDE = (
     Field(
@@ -189,7 +191,7 @@ SLIDE = (
         Unit.LENGTH,
         -5000.0,
         5000.0,
-        meaning="Lowest and highest position, counted from home (X: a radius). 0 must be within it.",
+        meaning="Lowest and highest position, measured from home (X: a radius). 0 must be within it.",
     ),
     Field(
         "fixed_points",
@@ -199,9 +201,9 @@ SLIDE = (
         5000.0,
         default=(),
         meaning=(
-            "Positions counted from home (X: a radius). Lathe: up to four points to which G75 "
-            "moves, FP=1 to FP=4. Mill: one point, the second datum of M92. Default: none, and G75 or M92 "
-            "is rejected."
+            "Positions measured from home (X: a radius). Lathe: up to four points to which G75 "
+            "moves, FP=1 to FP=4. Mill: one point, the second datum of M92. Default: none, and "
+            "G75 or M92 is rejected."
         ),
     ),
     Field("vmax", _NUMBER, Unit.FEED, 1.0, 1000.0, meaning="Highest speed of the axis."),
@@ -258,8 +260,9 @@ SLIDE = (
         5.0,
         derived=True,
         meaning=(
-            "Largest error at rest. Default: the value of the first linear axis that specifies it, "
-            "or 0.2 mm (at least 4 × `in_pos`, at most `fe_window`)."
+            "Largest position error while the axis is at rest. Default: the value of the first "
+            "linear axis that specifies it, or 0.2 mm (at least 4 × `in_pos`, at most "
+            "`fe_window`)."
         ),
     ),
     _STILL,
@@ -312,7 +315,7 @@ HOME = (
         -1000.0,
         1000.0,
         default=0.0,
-        meaning="Position of home, counted from the mark (switch edge or index pulse).",
+        meaning="Position of home, measured from the reference mark (switch edge or index pulse).",
     ),
 )
 ROTARY_HOME = (
@@ -345,7 +348,7 @@ ROTARY_HOME = (
         -360.0,
         360.0,
         default=0.0,
-        meaning="Position of home, counted from the mark (switch edge or index pulse).",
+        meaning="Position of home, measured from the reference mark (switch edge or index pulse).",
     ),
 )
 THIRD_AXIS_NAMES = (*"ABCUVWY", *(f"{letter}{digit}" for letter in "ABCQUVWY" for digit in range(1, 10)))
@@ -424,7 +427,8 @@ C_AXIS = (
         0.001,
         45.0,
         derived=True,
-        meaning="Largest error at rest. Default: 1° (at least 4 × `in_pos`, at most `fe_window`).",
+        meaning="Largest position error while the axis is at rest. Default: 1° (at least 4 × "
+        "`in_pos`, at most `fe_window`).",
     ),
     _STILL,
     Field(
@@ -454,8 +458,8 @@ C_AXIS = (
         _FLAG,
         default=False,
         meaning=(
-            "true: C has its own drive, and the spindle can turn while C moves. false: the spindle "
-            "drive moves C, so the spindle cannot turn in the meantime."
+            "true: C has its own drive, and the spindle can turn while C moves. false: the "
+            "spindle drive moves C, so the spindle cannot turn while C moves."
         ),
     ),
     Field(
@@ -503,7 +507,7 @@ ROTARY_AXIS = (
         -36000.0,
         36000.0,
         default=(-math.inf, math.inf),
-        meaning="Lowest and highest position, counted from home. 0 must be within it. Default: no limits.",
+        meaning="Lowest and highest position, measured from home. 0 must be within it. Default: no limits.",
     ),
     Field("vmax", _NUMBER, Unit.DEGREES_PER_MINUTE, 0.1, 36000.0, meaning="Highest speed of the axis."),
     Field(
@@ -552,7 +556,8 @@ ROTARY_AXIS = (
         0.0005,
         45.0,
         derived=True,
-        meaning="Largest error at rest. Default: 1° (at least 4 × `in_pos`, at most `fe_window`).",
+        meaning="Largest position error while the axis is at rest. Default: 1° (at least 4 × "
+        "`in_pos`, at most `fe_window`).",
     ),
     _STILL,
     Field(
@@ -614,8 +619,9 @@ _SPINDLE = (
         0.5,
         60.0,
         meaning=(
-            "Time within which the spindle must be at speed, or stopped; after it an alarm stops "
-            "the cycle. It must be longer than the acceleration to the highest speed."
+            "Time within which the spindle must reach its speed or stop. If it does not, an "
+            "alarm stops the cycle. It must be longer than the time to accelerate to the highest "
+            "speed."
         ),
     ),
     Field(
@@ -662,8 +668,8 @@ _SPINDLE = (
         1000.0,
         default=60.0,
         meaning=(
-            "Speed at which the oriented spindle turns to its angle. The proof calculates with it, "
-            "and a faster spindle is alarm 203."
+            "Speed at which the oriented spindle turns to its angle. The proof uses this value, "
+            "and a faster spindle raises alarm 203."
         ),
     ),
     Field(
@@ -674,8 +680,8 @@ _SPINDLE = (
         100000.0,
         default=0.0,
         meaning=(
-            "Power of the spindle drive at the highest speed, from which Shapes proposes the depth "
-            "of cut. Default: 1.5 kW is assumed."
+            "Power of the spindle drive at the highest speed. Shapes uses it to suggest the "
+            "depth of cut. Default: 1.5 kW is assumed."
         ),
     ),
 )
@@ -726,9 +732,10 @@ INTERLOCKS = (
         _FLAG,
         default=True,
         meaning=(
-            "true: a cycle starts only by the input `start`, the output of the two-hand relay, or by "
-            "both palm buttons of a station on the screen. false: Cycle Start on the screen is "
-            "enough. The simulated machine always accepts Cycle Start on the screen."
+            "true: a cycle starts only by the input `start`, the output of the two-hand relay, "
+            "or by both palm buttons of the operator station on the screen. false: Cycle Start "
+            "on the screen is enough. The simulated machine always accepts Cycle Start on the "
+            "screen."
         ),
     ),
     Field(
@@ -814,7 +821,7 @@ CLAMPING = (
         -2000.0,
         2000.0,
         default=0.0,
-        meaning="Z position of the tip of the tailstock center, counted from part zero.",
+        meaning="Z position of the tip of the tailstock center, measured from part zero.",
     ),
 )
 TOOLING = (

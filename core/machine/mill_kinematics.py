@@ -35,7 +35,7 @@ WORKPIECE = (
         -180.0,
         180.0,
         default=0.0,
-        meaning="Rotation of the workpiece about Z against the machine.",
+        meaning="Rotation of the workpiece about Z relative to the machine.",
     ),
 )
 ROTARY = (
@@ -68,8 +68,8 @@ ROTARY = (
         -5000.0,
         5000.0,
         meaning=(
-            "Any point on the axis of rotation: in machine positions for a table, counted from the "
-            "spindle nose for a head."
+            "Any point on the axis of rotation: in machine positions for a table, measured from "
+            "the spindle nose for a head."
         ),
     ),
     Field(

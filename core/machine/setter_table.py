@@ -17,7 +17,7 @@ _FIELDS = (
         Unit.LENGTH,
         -1000.0,
         1000.0,
-        meaning="X position of the middle of the stylus, a radius counted from the spindle axis.",
+        meaning="X position of the middle of the stylus, a radius measured from the spindle axis.",
     ),
     Field(
         "z",
@@ -25,10 +25,15 @@ _FIELDS = (
         Unit.LENGTH,
         -3000.0,
         3000.0,
-        meaning="Z position of the middle of the stylus, counted from part zero.",
+        meaning="Z position of the middle of the stylus, measured from part zero.",
     ),
     Field(
-        "width", Kind.NUMBER, Unit.LENGTH, 0.2, 100.0, meaning="Width of the stylus; of a ball its diameter."
+        "width",
+        Kind.NUMBER,
+        Unit.LENGTH,
+        0.2,
+        100.0,
+        meaning="Width of the stylus, or the diameter of a ball.",
     ),
     Field(
         "overtravel",

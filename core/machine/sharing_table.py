@@ -28,7 +28,8 @@ _FIELDS = (
         "desk",
         Kind.TEXT,
         default="",
-        meaning="Name of this machine among the others, at most 40 characters. Default: `machine.name`.",
+        meaning="Name of this machine in the list of machines, at most 40 characters. Default: "
+        "`machine.name`.",
     ),
     Field(
         "look",
@@ -95,8 +96,8 @@ DRIVER = Driver(
             _FIELDS,
             lambda file: file.values.model(SharingTable, "sharing"),
             rules=_rules,
-            purpose="The place through which machines share their programs: exactly one of `folder`, `git` "
-            "and `postgresql`.",
+            purpose="The location through which machines share their programs. Specify exactly one of "
+            "`folder`, `git` and `postgresql`.",
         ),
     )
 )

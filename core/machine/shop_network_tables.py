@@ -62,8 +62,8 @@ _ANNOUNCE_FIELDS = (
     Field(
         "topic", Kind.TEXT, default="turndesk", meaning="Topic before `/available`, `/state` and `/event`."
     ),
-    Field("user", Kind.TEXT, default="", meaning="User name at the broker."),
-    Field("password", Kind.TEXT, default="", meaning="Password at the broker."),
+    Field("user", Kind.TEXT, default="", meaning="User name for the broker."),
+    Field("password", Kind.TEXT, default="", meaning="Password for the broker."),
     Field(
         "hook", Kind.TEXT, default="", meaning="Web address that receives each event by POST. Default: none."
     ),

@@ -14,39 +14,45 @@ _PART, _PROGRAM = "Checks of the part", "Checks that do not need the stock"
 _HEAD = """\
 # What the proof checks
 
-This page is the reference of the checks. How to read a finding, state stock and tools, and turn a
-check off is in [programming/edit-and-prove.md](programming/edit-and-prove.md).
+This page lists all checks. To read a finding, specify stock and tools, or turn a check off, see
+[programming/edit-and-prove.md](programming/edit-and-prove.md).
 
 {contents}
-It is written from `core/proving/part_checks.py` by `python -m core.proving.checks_page docs/checks.md`.
-Do not edit it. A finding has its check, line, elementary block and remedy.
+This page is generated from `core/proving/part_checks.py` by
+`python -m core.proving.checks_page docs/checks.md`. Do not edit it. Each finding shows its check,
+line, elementary block and remedy.
 
-**Errors and warnings.** A program with an error does not start. On a machine, an error of the part
-rejects Cycle Start if the stock (command line, store or page PART) and the tool shape that it depends
-on are stated. If one of them is assumed, the finding is a warning, which is announced before the
-start.
+**Errors and warnings.** A program with an error does not start. On a machine, an error in a part
+check blocks Cycle Start if the stock and the tool shape on which the check depends are specified.
+The stock is specified on the command line, in the store or on page PART. If the stock or the tool
+shape is assumed, the finding is only a warning, which is announced before the start.
 
-**What is assumed.** TurnDesk assumes stock and tools that you do not state, and reports it. It assumes
-a bar that is slightly larger than what is cut, or a tube where a boring tool begins without a drill.
-It recognizes a tool by the comment next to its `T` or by its moves, with a slim insert and no holder.
+**What is assumed.** TurnDesk assumes the stock and tools that you do not specify, and reports these
+assumptions. The assumed stock is a bar that is slightly larger than the finished contour, or a tube
+if a boring tool cuts before any drill. TurnDesk derives the tool type from the comment next to its
+`T` or from its moves. It assumes a slim insert and no holder.
 
 **What is not checked.** The proof does not check:
 
 - holders and shanks of tools without a shape;
 - a chuck without `[clamping]` in the machine file;
-- the first move of a program, which begins at the axis positions of the moment;
-- everything that moves while the collet is open.
+- the first move of a program, which begins at the current axis positions;
+- any motion while the collet is open.
 
-When a bar is fed, its new front end is where its stop was.
+After a bar feed, the proof assumes that the new front end of the bar is at the position of the bar
+stop.
 
-**Accuracy.** Material is exact to 0.004 mm (.00016 in) along Z and to 0.0015 mm (.00006 in) in radius.
-A rapid that scrapes a cone or a shoulder is found from a depth of 0.033 mm (.0013 in), measured square
-to the surface. Less may pass.
+**Accuracy.** The model of the material is accurate to 0.004 mm (.00016 in) along Z and to 0.0015 mm
+(.00006 in) in radius. A rapid that scrapes a cone or a shoulder is detected if its depth is at
+least 0.033 mm (.0013 in), measured perpendicular to the surface. Shallower scrapes may not be
+detected.
 
-**Turning a check off.** Only a check of the part can be turned off: for one program on the page PART,
-with a reason, or for a machine in its file: `[checks]` with `silenced = ["chip-load", "cuts-air"]`. It
-is never turned off in the text of a program, because the text may go to another machine. Its findings
-are then notes with the reason, and are counted (`silenced` of `prove --json`).
+**Turning a check off.** Only a check of the part can be turned off. To turn it off for one program,
+use page PART and enter a reason. To turn it off for a machine, add, for example,
+`silenced = ["chip-load", "cuts-air"]` to `[checks]` in the machine file. A check cannot be turned
+off in the text of a program, because the text may be used on another machine. The findings of a
+check that is turned off become notes with the reason, and are counted (`silenced` of
+`prove --json`).
 """
 
 

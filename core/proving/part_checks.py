@@ -48,7 +48,7 @@ CHECKS: Mapping[str, Check] = {
     ),
     "holder-into-stock": Check(
         _ERROR,
-        "A holder, shank or boring bar collides with material in rapid.",
+        "A holder, shank or boring bar collides with material during a rapid.",
         "The non-cutting part of a tool outline overlaps material by more than .001 in.",
         "Use a longer or slimmer tool, or another cutting direction.",
     ),
@@ -120,10 +120,10 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A tool feeds into the part while neither the tool nor the spindle turns.",
         (
-            "With no live tool on, a drill, reamer, mill, turning tool or parting blade cuts "
-            "more than .001 in of material while the spindle is stopped, or while it is clamped "
-            "as the C axis after it has turned. Not checked if the machine file has no M code "
-            "for a live tool."
+            "With no live tool running, a drill, reamer, mill, turning tool or parting blade "
+            "cuts more than .001 in of material while the spindle is stopped, or while the "
+            "spindle is clamped as the C axis after turning. Not checked if the machine file has "
+            "no M code for a live tool."
         ),
         "Start the spindle or the live tool before this move.",
     ),
@@ -156,10 +156,10 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         ("A cutting move feeds away from the part, so a cut that seems to be intended is not made."),
         (
-            "A feed move goes away from the part or out past the part face; or no feed move "
-            "between two rapids, or no feed move of a live tool, comes near material; or the "
-            "tool moves in and out alongside the part in rapid without a cut; or a tool that "
-            "reaches the part makes no feed moves; or a drill feeds into an existing hole."
+            "One of these cases applies: a feed move goes away from the part or out past the "
+            "part face; none of the feed moves between two rapids, or of a live tool, comes near "
+            "material; the tool moves in and out alongside the part in rapid without a cut; a "
+            "tool that reaches the part makes no feed moves; a drill feeds into an existing hole."
         ),
         "Look for a missing minus sign (Z.5 for Z-.5) or a missing decimal point (X4 for X.4).",
     ),
@@ -304,11 +304,11 @@ CHECKS: Mapping[str, Check] = {
         _WARNING,
         "One pass is deeper than usual for the insert.",
         (
-            "With specified stock, the mean depth of cut is more than .5 of the cutting "
-            "edge of a C or S insert, .4 for a W insert, .3 for a T or D insert, or .2 for "
-            "a V insert (Widia's limits for medium geometries, without the nose radius; "
-            "CNMG432 if no insert is specified). TurnDesk does not know the stock "
-            "material; a soft material may allow more."
+            "If the stock is specified, the mean depth of cut is more than .5 of the cutting "
+            "edge length of a C or S insert, .4 for a W insert, .3 for a T or D insert, or .2 "
+            "for a V insert (Widia's limits for medium geometries, without the nose radius; "
+            "CNMG432 if no insert is specified). TurnDesk does not know the stock material; a "
+            "soft material may allow more."
         ),
         "Use several passes; look for a missing or wrong digit in X.",
     ),
@@ -316,10 +316,10 @@ CHECKS: Mapping[str, Check] = {
         _ERROR,
         "One pass is deeper than the insert or the boring bar can cut.",
         (
-            "With specified stock and the spindle running, the mean depth of cut is more "
-            "than 2/3 of the cutting edge of a specified C or S insert, half of the edge "
-            "of a W, T or D insert, a quarter of the edge of a V insert, .4 of a round "
-            "insert, or half the diameter of a boring bar."
+            "If the stock is specified and the spindle is running, the mean depth of cut is more "
+            "than 2/3 of the cutting edge length of a specified C or S insert, half of the edge "
+            "length of a W, T or D insert, a quarter of the edge length of a V insert, .4 of a "
+            "round insert, or half the diameter of a boring bar."
         ),
         "Use several passes; look for a missing or wrong digit in X.",
     ),
@@ -371,13 +371,14 @@ CHECKS: Mapping[str, Check] = {
     "thread-in-air": Check(
         _WARNING,
         "The first passes of a thread cut nothing.",
-        "With specified stock, three or more passes stay outside the material.",
+        "If the stock is specified, three or more passes stay outside the material.",
         "Start at the diameter of the first pass; check X at the start of the thread.",
     ),
     "thread-cuts-nothing": Check(
         _ERROR,
         "A thread pass does not touch the part.",
-        "With specified stock, none of the passes with the same lead and the same Z range cuts any material.",
+        "If the stock is specified, none of the passes with the same lead and the same Z "
+        "range cuts any material.",
         "Check X and Z of the thread, and check whether X is a diameter.",
     ),
     "thread-form": Check(
@@ -400,7 +401,7 @@ CHECKS: Mapping[str, Check] = {
             "The feed per revolution differs from the pitch in the tool shape or comment by more "
             "than .08 of the pitch."
         ),
-        "Write the pitch as F, which is 1 divided by the threads per inch.",
+        "Program the pitch as F. The pitch is 1 divided by the number of threads per inch.",
         (TOOL,),
     ),
     "tap-reversal": Check(
@@ -441,9 +442,9 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
         _ERROR,
         "A milling move is programmed while the live tool is off.",
         (
-            "A cutting move of face milling, or of milling around the part, is programmed with "
-            "no live tool running. A cutting move with the spindle locked as the C axis and no "
-            "live tool running is only a warning."
+            "A cutting move for milling the face or milling around the part is programmed with "
+            "no live tool running. If the spindle is locked as the C axis, a cutting move with "
+            "no live tool running is only a warning."
         ),
         "Turn on the live tool with its M code from the machine file.",
     ),
@@ -493,8 +494,8 @@ PROGRAM_CHECKS: Mapping[str, Check] = {
         _WARNING,
         "Some lines of the program are not reached during proving.",
         (
-            "TurnDesk proves both branches of input-dependent calls, block delete and "
-            "loops, within its limits."
+            "The lines were not reached although TurnDesk proves both branches of "
+            "input-dependent calls, block delete and loops, within its limits."
         ),
         "Check the call, or prove the program again with the inputs that lead to the lines not reached.",
     ),

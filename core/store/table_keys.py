@@ -25,7 +25,7 @@ _NUMBER = keys("number | integer | | Number of the tool or offset.")
 CYCLE = """
 key | | Key of the cycle, unique and independent of the clock.
 program | | File name of the program.
-part | | Number of the part among those of the program; 0 if no part was counted.
+part | | Number of the part, counted for this program; 0 if no part was counted.
 started | UTC | Start of the cycle.
 ended | UTC | End of the cycle; null if TurnDesk ended during it.
 seconds | s | Cycle time without stops.
@@ -38,7 +38,7 @@ cycle | | Key of the cycle that was stopped; empty between two cycles.
 program | | File name of the program.
 at | UTC | Start of the stop.
 seconds | s | Length of the stop.
-reason | | Reason of the stop, in the words of the screen.
+reason | | Reason for the stop, as shown on the screen.
 line | | Line of the program; 0 if not available.
 """
 FEATURE = """
@@ -71,11 +71,11 @@ id | | Number of the offset change.
 at | UTC | Time of the change.
 kind | | Table of the offset: tool or secondary.
 number | | Number of the offset.
-x | mm | Wear or correction in X, a radius.
-z | mm | Wear or correction in Z.
+x | mm | Wear or secondary offset in X, a radius.
+z | mm | Wear or secondary offset in Z.
 part | | Number of parts that were made before the change.
-why | | Reason of the change.
-who | | User or part of the program that made the change.
+why | | Reason for the change.
+who | | User or TurnDesk function that made the change.
 was_x | mm | Value in X before the change, a radius.
 was_z | mm | Value in Z before the change.
 """
@@ -84,7 +84,7 @@ number | | Number of the tool.
 limit_parts | | Tool life in parts; 0 means unlimited.
 limit_seconds | s | Tool life in time at feed; 0 means unlimited.
 warn | | Fraction of the tool life at which a warning appears, 0 to 1.
-stops | | 1: no further part starts when the tool life is used up; 0: parts continue.
+stops | | 1: no further part starts when the tool life is used up; 0: production continues.
 parts | | Parts made since the insert was changed.
 seconds | s | Time at feed since the insert was changed.
 """
@@ -94,9 +94,9 @@ at | UTC | Time of the change.
 number | | Number of the tool.
 parts | | Parts that the insert had made.
 seconds | s | Time at feed of the insert.
-why | | Reason of the change.
+why | | Reason for the change.
 kind | | Table of the tool: tool (lathe) or mill tool (mill).
-who | | User or part of the program that made the change.
+who | | User or TurnDesk function that made the change.
 """
 EVENT = """
 at | UTC | Time of the event.
@@ -117,8 +117,8 @@ remark | | Remark.
 master | | Whether the tool is the master tool.
 """
 SECONDARY = """
-x | mm | Correction in X, a radius.
-z | mm | Correction in Z.
+x | mm | Secondary offset in X, a radius.
+z | mm | Secondary offset in Z.
 r | mm | Nose radius.
 """
 ZERO = """
@@ -153,7 +153,7 @@ dr2 | mm | Oversize in corner radius, DR2.
 teeth | | Number of teeth.
 point | deg | Point angle.
 life | min | Tool life; 0 means unlimited.
-stops | | 1: no further part starts when the tool life is used up; 0: parts continue.
+stops | | 1: no further part starts when the tool life is used up; 0: production continues.
 """
 PRESET = """
 x | mm | Machine position of the workpiece zero in X.
@@ -195,7 +195,8 @@ created | string | UTC | Time at which the program was first saved.
     TableKeys(
         "program_versions",
         "",
-        "All saved versions of the programs. The export has the newest version in the folder `programs`.",
+        "All saved versions of the programs. The export contains the newest version in the "
+        "folder `programs`.",
         keys(
             """
 id | integer | | Number of the row.
@@ -224,7 +225,7 @@ last | string | UTC | Time of the last part.
     TableKeys(
         "runs",
         "",
-        "What each program did last.",
+        "The last run and the last proof of each program.",
         keys(
             """
 program | string | | File name of the program.
@@ -252,8 +253,8 @@ planned | number or null | s | Cycle time that the last proof calculated.
     TableKeys(
         "tool_offsets",
         "",
-        "Tool offsets of a lathe. The export has them in inches in `offsets.toml`, with the secondary and "
-        "zero offsets and the tool shapes.",
+        "Tool offsets of a lathe. The export contains them in inches in `offsets.toml`, "
+        "together with the secondary and zero offsets and the tool shapes.",
         (*_NUMBER, *_columns(ToolRow, TOOL, {"nose_radius": "r"})),
     ),
     TableKeys(

@@ -70,9 +70,9 @@ _NODE = (
         high=100_000_000,
         default=0,
         meaning=(
-            "Encoder counts per motor revolution, 4 × the lines, for drives that count speeds in "
-            "rpm. 0: the drive counts speeds in counts/s. For the spindle: counts per spindle "
-            "revolution, needed for threads and C."
+            "Encoder counts per motor revolution, 4 × the lines, for drives that use rpm as "
+            "their unit of speed. 0: the drive uses counts/s. For the spindle: counts per "
+            "spindle revolution, needed for threads and C."
         ),
     ),
 )
@@ -86,10 +86,9 @@ NODE_REFERENCE = TableReference(
 )
 SDO_REFERENCE = TableReference(
     "canopen.sdo.…",
-    "Objects that TurnDesk writes to a node at each start and reads back; the last word of the heading "
-    "is the "
-    'node, or `all` for every drive. The key is index:sub-index, such as `"6007:0"`, with the index in '
-    "hexadecimal; the value is an integer of 32 bits.",
+    "Objects that TurnDesk writes to a node at each start and reads back; the last word "
+    "of the heading is the node, or `all` for every drive. The key is index:sub-index, "
+    'such as `"6007:0"`, with the index in hexadecimal; the value is a 32-bit integer.',
 )
 Objects = tuple[tuple[int, int, int], ...]  # index, sub-index, value: written at every start and read back
 

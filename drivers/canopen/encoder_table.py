@@ -16,8 +16,8 @@ _FIELDS = (
         "node",
         Kind.TEXT,
         meaning=(
-            "Name of the node in [canopen.nodes] that counts: an encoder, or a drive with a second "
-            "encoder input."
+            "Name of the node in [canopen.nodes] that supplies the counts: an encoder, or a "
+            "drive with a second encoder input."
         ),
     ),
     Field(

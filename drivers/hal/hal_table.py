@@ -93,8 +93,8 @@ _FIELDS = (
         Kind.TEXT,
         default="",
         meaning=(
-            "Bit out: on while the inputs of the board are not current. It opens the E-stop chain. "
-            "Required for a board on a cable."
+            "Bit out: on while the inputs of the board are not up to date. It opens the E-stop "
+            "chain. Required for a board on a cable."
         ),
     ),
 )
@@ -468,8 +468,9 @@ DRIVER = Driver(
             ("axes", "spindle"),
             _read,
             _rules,
-            purpose='The connection to LinuxCNC\'s HAL (`backend = "hal"`). "In" and "out" are seen from the '
-            "HAL pin. With [board], a name without a dot is a signal of the generated HAL file.",
+            purpose='The connection to LinuxCNC\'s HAL (`backend = "hal"`). "In" and "out" are the '
+            "directions of the HAL pin. With [board], a name without a dot is a signal of the "
+            "generated HAL file.",
             parts=(
                 TableReference(
                     "hal.axes.…",

@@ -14,7 +14,10 @@ FAMILIES = ("delta-vfdb", "hitachi-wj200", "huanyang")
 _PATH = "spindle.vfd"
 _FIELDS = (
     Field(
-        "family", Kind.CHOICE, choices=FAMILIES, meaning="Family of the inverter, which decides its protocol."
+        "family",
+        Kind.CHOICE,
+        choices=FAMILIES,
+        meaning="Family of the inverter, which determines its protocol.",
     ),
     Field("port", Kind.TEXT, meaning="Serial port of the inverter, such as `/dev/serial/by-id/…`."),
     Field("baud", Kind.WHOLE, low=110, high=1_000_000, default=9600, meaning="Bit rate of the line."),

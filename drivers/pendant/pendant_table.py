@@ -24,7 +24,7 @@ _FIELDS = (
         "serial",
         Kind.TEXT,
         default="",
-        meaning="Serial number, to distinguish two equal devices. Default: any.",
+        meaning="Serial number, to distinguish two identical devices. Default: any.",
     ),
     Field(
         "counts",
@@ -32,8 +32,8 @@ _FIELDS = (
         choices=("steps", "place"),
         default="steps",
         meaning=(
-            '"steps": the wheel reports detents; "place": the wheel reports its position, 0 to 255, '
-            "as a Contour Shuttle does."
+            '"steps": the handwheel reports detents; "place": the handwheel reports its '
+            "position, 0 to 255, as a Contour Shuttle does."
         ),
     ),
 )

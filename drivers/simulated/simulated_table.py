@@ -52,7 +52,7 @@ _FIELDS = (
         low=0,
         high=2**31,
         default=1,
-        meaning="Seed of the random scatter of times; the same seed gives the same run.",
+        meaning="Seed of the random variation of times; the same seed produces the same run.",
     ),
     Field(
         "realtime",
@@ -199,7 +199,7 @@ DRIVER = Driver(
                 ),
                 TableReference(
                     "[sim.tips]",
-                    "A tool tip of the simulated machine, for trying a tool setter. The heading may "
+                    "A tool tip of the simulated machine, for testing a tool setter. The heading may "
                     "occur any number of times.",
                     _TIP,
                 ),

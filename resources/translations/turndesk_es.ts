@@ -485,7 +485,7 @@
     </message>
     <message>
       <location filename="" />
-      <source>Comment that is shown to the operator from its line onward.</source>
+      <source>Comment. The screen shows it to the operator from this line on.</source>
       <translation>Comentario que se muestra al operador desde su línea en adelante.</translation>
     </message>
     <message>
@@ -29385,6 +29385,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>A cutting move for milling the face or milling around the part is programmed with no live tool running. If the spindle is locked as the C axis, a cutting move with no live tool running is only a warning.</source>
+      <translation>Se programa un movimiento de corte de fresado frontal, o de fresado alrededor de la pieza, sin ninguna herramienta motorizada en marcha. Un movimiento de corte con el husillo bloqueado como eje C y sin herramienta motorizada en marcha es solo un aviso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>A cutting move is programmed after M13. This is only a warning if the move is a feed move in any direction other than straight out from the spindle (as in a bar pull), or if the next cycle would start with the collet open.</source>
       <translation>Se programa un movimiento de corte tras M13. Es solo un aviso si el movimiento es un avance en una dirección que no sale en línea recta del husillo (como al jalar la barra), o si el ciclo siguiente empezaría con la pinza abierta.</translation>
     </message>
@@ -29407,11 +29412,6 @@
       <location filename="core/proving/part_checks.py" />
       <source>A cutting move is programmed with the spindle stopped.</source>
       <translation>Se programa un movimiento de corte con el husillo parado.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>A cutting move of face milling, or of milling around the part, is programmed with no live tool running. A cutting move with the spindle locked as the C axis and no live tool running is only a warning.</source>
-      <translation>Se programa un movimiento de corte de fresado frontal, o de fresado alrededor de la pieza, sin ninguna herramienta motorizada en marcha. Un movimiento de corte con el husillo bloqueado como eje C y sin herramienta motorizada en marcha es solo un aviso.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29445,11 +29445,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A feed move goes away from the part or out past the part face; or no feed move between two rapids, or no feed move of a live tool, comes near material; or the tool moves in and out alongside the part in rapid without a cut; or a tool that reaches the part makes no feed moves; or a drill feeds into an existing hole.</source>
-      <translation>Un avance se aleja de la pieza o sale más allá de su cara; o ningún avance entre dos rápidos, o ningún avance de una herramienta motorizada, se acerca al material; o la herramienta entra y sale en rápido junto a la pieza sin ningún corte; o una herramienta que llega a la pieza no hace ningún avance; o una broca avanza en un agujero ya existente.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>A feed move of .1 in or more along Z, next to the stock, stays at least .08 in outside the stock.</source>
       <translation>Un avance de .1 in o más a lo largo de Z, junto al material en bruto, queda al menos .08 in por fuera del material.</translation>
     </message>
@@ -29465,7 +29460,7 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A holder, shank or boring bar collides with material in rapid.</source>
+      <source>A holder, shank or boring bar collides with material during a rapid.</source>
       <translation>Un portaherramientas, un mango o una barra de mandrinar choca con el material en rápido.</translation>
     </message>
     <message>
@@ -29715,6 +29710,26 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>If the stock is specified and the spindle is running, the mean depth of cut is more than 2/3 of the cutting edge length of a specified C or S insert, half of the edge length of a W, T or D insert, a quarter of the edge length of a V insert, .4 of a round insert, or half the diameter of a boring bar.</source>
+      <translation>Con un material en bruto especificado y el husillo girando, la profundidad media de corte es más de 2/3 del filo de una plaquita C o S especificada, la mitad del filo de una plaquita W, T o D, un cuarto del filo de una plaquita V, .4 de una plaquita redonda, o la mitad del diámetro de una barra de mandrinar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>If the stock is specified, none of the passes with the same lead and the same Z range cuts any material.</source>
+      <translation>Con un material en bruto especificado, ninguna de las pasadas del mismo paso y del mismo tramo de Z corta material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>If the stock is specified, the mean depth of cut is more than .5 of the cutting edge length of a C or S insert, .4 for a W insert, .3 for a T or D insert, or .2 for a V insert (Widia's limits for medium geometries, without the nose radius; CNMG432 if no insert is specified). TurnDesk does not know the stock material; a soft material may allow more.</source>
+      <translation>Con un material en bruto especificado, la profundidad media de corte es más de .5 del filo de una plaquita C o S, .4 en una plaquita W, .3 en una T o D, o .2 en una V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 si no se especifica la plaquita). TurnDesk no conoce el material de la pieza; un material blando puede admitir más.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>If the stock is specified, three or more passes stay outside the material.</source>
+      <translation>Con material en bruto especificado, tres o más pasadas quedan fuera del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>Increase the part stick-out, or stop the move earlier.</source>
       <translation>Aumente el voladizo de la pieza, o pare antes el movimiento.</translation>
     </message>
@@ -29775,6 +29790,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>One of these cases applies: a feed move goes away from the part or out past the part face; none of the feed moves between two rapids, or of a live tool, comes near material; the tool moves in and out alongside the part in rapid without a cut; a tool that reaches the part makes no feed moves; a drill feeds into an existing hole.</source>
+      <translation>Un avance se aleja de la pieza o sale más allá de su cara; o ningún avance entre dos rápidos, o ningún avance de una herramienta motorizada, se acerca al material; o la herramienta entra y sale en rápido junto a la pieza sin ningún corte; o una herramienta que llega a la pieza no hace ningún avance; o una broca avanza en un agujero ya existente.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>One pass is deeper than the insert or the boring bar can cut.</source>
       <translation>Una pasada es más profunda de lo que puede cortar la plaquita o la barra de mandrinar.</translation>
     </message>
@@ -29782,6 +29802,11 @@
       <location filename="core/proving/part_checks.py" />
       <source>One pass is deeper than usual for the insert.</source>
       <translation>Una pasada es más profunda de lo habitual para la plaquita.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
+      <source>Program the pitch as F. The pitch is 1 divided by the number of threads per inch.</source>
+      <translation>Escriba como F el paso, que es 1 dividido por los hilos por pulgada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -29945,6 +29970,11 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
+      <source>The lines were not reached although TurnDesk proves both branches of input-dependent calls, block delete and loops, within its limits.</source>
+      <translation>TurnDesk comprueba ambas ramas de las llamadas por entradas, del salto de bloque y de los bucles, dentro de sus límites.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_checks.py" />
       <source>The non-cutting part of a tool outline overlaps material by more than .001 in.</source>
       <translation>La parte no cortante del perfil de una herramienta solapa el material en más de .001 in.</translation>
     </message>
@@ -30035,11 +30065,6 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>TurnDesk proves both branches of input-dependent calls, block delete and loops, within its limits.</source>
-      <translation>TurnDesk comprueba ambas ramas de las llamadas por entradas, del salto de bloque y de los bucles, dentro de sus límites.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
       <source>Two tools have the same offset.</source>
       <translation>Dos herramientas tienen el mismo corrector.</translation>
     </message>
@@ -30085,38 +30110,13 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>With no live tool on, a drill, reamer, mill, turning tool or parting blade cuts more than .001 in of material while the spindle is stopped, or while it is clamped as the C axis after it has turned. Not checked if the machine file has no M code for a live tool.</source>
+      <source>With no live tool running, a drill, reamer, mill, turning tool or parting blade cuts more than .001 in of material while the spindle is stopped, or while the spindle is clamped as the C axis after turning. Not checked if the machine file has no M code for a live tool.</source>
       <translation>Sin ninguna herramienta motorizada encendida, una broca, un escariador, una fresa, una herramienta de torneado o una cuchilla de tronzar corta más de .001 in de material mientras el husillo está parado, o mientras está sujeto como eje C después de haber girado. No se comprueba si el archivo de máquina no tiene código M para una herramienta motorizada.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>With specified stock and the spindle running, the mean depth of cut is more than 2/3 of the cutting edge of a specified C or S insert, half of the edge of a W, T or D insert, a quarter of the edge of a V insert, .4 of a round insert, or half the diameter of a boring bar.</source>
-      <translation>Con un material en bruto especificado y el husillo girando, la profundidad media de corte es más de 2/3 del filo de una plaquita C o S especificada, la mitad del filo de una plaquita W, T o D, un cuarto del filo de una plaquita V, .4 de una plaquita redonda, o la mitad del diámetro de una barra de mandrinar.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>With specified stock, none of the passes with the same lead and the same Z range cuts any material.</source>
-      <translation>Con un material en bruto especificado, ninguna de las pasadas del mismo paso y del mismo tramo de Z corta material.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>With specified stock, the mean depth of cut is more than .5 of the cutting edge of a C or S insert, .4 for a W insert, .3 for a T or D insert, or .2 for a V insert (Widia's limits for medium geometries, without the nose radius; CNMG432 if no insert is specified). TurnDesk does not know the stock material; a soft material may allow more.</source>
-      <translation>Con un material en bruto especificado, la profundidad media de corte es más de .5 del filo de una plaquita C o S, .4 en una plaquita W, .3 en una T o D, o .2 en una V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 si no se especifica la plaquita). TurnDesk no conoce el material de la pieza; un material blando puede admitir más.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>With specified stock, three or more passes stay outside the material.</source>
-      <translation>Con material en bruto especificado, tres o más pasadas quedan fuera del material.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
       <source>Write G77Sn after G96, where n is the maximum rpm for this chuck and bar.</source>
       <translation>Escriba G77Sn después de G96, donde n son las rpm máximas para este plato y esta barra.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/part_checks.py" />
-      <source>Write the pitch as F, which is 1 divided by the threads per inch.</source>
-      <translation>Escriba como F el paso, que es 1 dividido por los hilos por pulgada.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />

@@ -632,7 +632,7 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
         "At the start of a line, skips the line while Block Delete is on.", "/X.55",
             handler="omniturn_statement.statement_of"),
         _letter("()", "(text)",
-        "Comment that is shown to the operator from its line onward.", "X.55(WATCH THE CHUCK)",
+        "Comment. The screen shows it to the operator from this line on.", "X.55(WATCH THE CHUCK)",
             handler="omniturn_statement.statement_of"),
     )),
     ("Machine functions", (

@@ -21,17 +21,18 @@ This page is the reference for all OmniTurn codes. For the language by subject, 
 [programming/omniturn.md](programming/omniturn.md).
 
 {contents}
-It is written from `core/interpreter/omniturn/code_table.py`, which the tests use. Do not edit it.
-Every example goes between these lines, with every tool offset at part zero. What follows `…` goes
-after M30:
+This page is generated from `core/interpreter/omniturn/code_table.py`, which the tests
+also use. Do not edit this page. To run an example, insert it in place of the line `…` in this
+program, with every tool offset at part zero. If the example itself contains `…`, insert its lines
+after `…` after M30:
 
 ```
 {head}…
 {tail}```
 
-M codes that are not listed here belong to the machine file. The list after each code gives the
-limits of its words and the conditions that reject it, with the code of the finding. The finding
-itself gives line, column and remedy.
+M codes that are not listed here are defined in the machine file. The list after each code gives the
+limits of its words and the conditions under which the code is rejected. Each entry ends with the
+code of the finding. The finding itself gives the line, the column and the remedy.
 
 ## Numbers
 
@@ -58,7 +59,7 @@ def _numbers() -> str:
         letters.setdefault((least, most, letter in COUNTING), []).append(letter)
     rows = [
         f"| {' '.join(f'`{letter}`' for letter in those)} | {_shown(least)} | {_shown(most)}"
-        f"{', whole' if whole else ''} |\n"
+        f"{', whole number' if whole else ''} |\n"
         for (least, most, whole), those in letters.items()
     ]
     return "| word | minimum | maximum |\n|---|---|---|\n" + "".join(rows)
@@ -94,7 +95,7 @@ def _rules(entry: Code) -> list[str]:
     ]
     rules += [f"not allowed when {when.value}: `{refusal.code}`" for when, refusal in entry.not_when.items()]
     if entry.further:
-        rules.append("also " + ", ".join(f"`{code}`" for code in sorted(entry.further)))
+        rules.append("other findings: " + ", ".join(f"`{code}`" for code in sorted(entry.further)))
     return rules
 
 
@@ -105,17 +106,24 @@ def _rule(rule: WordRule) -> str:
     if rule.numbered is not None:
         said.append("no number allowed after the word")
     if rule.bare is not None:
-        said.append(f"without a number {_shown(rule.bare)}")
+        said.append(f"{_shown(rule.bare)} if no number follows")
     if rule.nonzero:
         said.append("not 0")
     if rule.least > -inf:
-        most = rule.most.value if isinstance(rule.most, Limit) else _shown(rule.most)
-        least = ("over " if rule.over else "from ") + _shown(rule.least)
-        said.append(f"{least} to {most}" if rule.most != inf else least)
+        said.append(_range(rule))
     if rule.whole:
-        said.append("whole")
+        said.append("whole number")
     codes = dict.fromkeys(f"`{each.code}`" for each in rule.refusals)
     return ", ".join(said) + (f": {', '.join(codes)}" if codes else "")
+
+
+def _range(rule: WordRule) -> str:
+    least, most = _shown(rule.least), rule.most.value if isinstance(rule.most, Limit) else _shown(rule.most)
+    if rule.most == rule.least:
+        return f"must be {least}"
+    if rule.most == inf:
+        return f"greater than {least}" if rule.over else f"{least} or more"
+    return f"greater than {least}, at most {most}" if rule.over else f"{least} to {most}"
 
 
 def _letters(letters: tuple[str, ...]) -> str:
