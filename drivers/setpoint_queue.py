@@ -120,11 +120,7 @@ class SetpointQueue(PieceQueue):
                 "late",
                 reason="too-early",
             )
-        self._check_joint(
-            self.demand_at(start),
-            (pieces[0].p, pieces[0].v),
-            ("the splice point between queued and new setpoints"),
-        )
+        self._check_joint(self.demand_at(start), (pieces[0].p, pieces[0].v))
         self._check_run(segments)
         self.replace(start, pieces)
 
@@ -138,7 +134,7 @@ class SetpointQueue(PieceQueue):
         if gaps.size:
             raise DriverError(
                 Message(
-                    "setpoints have a gap at t = {t_end}; nothing was queued", t_end=f"{t_end[gaps[0]]:.4f}"
+                    "setpoints have a gap at t = {t_end} s; nothing was queued", t_end=f"{t_end[gaps[0]]:.4f}"
                 ),
                 "broken-path",
                 reason="gap",
@@ -148,25 +144,16 @@ class SetpointQueue(PieceQueue):
         )
         if jumps.any():
             row, axis = np.argwhere(jumps)[0]
-            before = Message(
-                ("position {p} at speed {value}/s"),
-                p=f"{p_end[row, axis]:.4f}",
-                value=f"{v_end[row, axis]:.3f}",
-            )
-            after = Message(
-                "position {p} at speed {value}/s",
-                p=f"{segments.p[row + 1, axis]:.4f}",
-                value=f"{segments.v[row + 1, axis]:.3f}",
-            )
-            where = Message(
-                "{axes}: setpoints jump at t = {t_end}", axes=self.axes[axis], t_end=f"{t_end[row]:.4f}"
-            )
             raise DriverError(
                 Message(
-                    "{place} from {before} to {after}; nothing was queued",
-                    place=where,
-                    before=before,
-                    after=after,
+                    "{axis}: setpoints jump at t = {t_end} s from position {position} at speed {speed}/s to "
+                    "position {position2} at speed {speed2}/s; nothing was queued",
+                    axis=self.axes[axis],
+                    t_end=f"{t_end[row]:.4f}",
+                    position=f"{p_end[row, axis]:.4f}",
+                    speed=f"{v_end[row, axis]:.3f}",
+                    position2=f"{segments.p[row + 1, axis]:.4f}",
+                    speed2=f"{segments.v[row + 1, axis]:.3f}",
                 ),
                 "broken-path",
                 reason="jump",
@@ -186,22 +173,20 @@ class SetpointQueue(PieceQueue):
         self,
         old: tuple[tuple[float, ...], tuple[float, ...]],
         new: tuple[tuple[float, ...], tuple[float, ...]],
-        where: str,
     ) -> None:
         """Position and velocity of both sides agree within the tolerance, axis by axis."""
+        templates = (
+            "{axis}: at the splice point between queued and new setpoints, the position jumps from "
+            "{before} to {after}",
+            "{axis}: at the splice point between queued and new setpoints, the velocity jumps from "
+            "{before}/s to {after}/s",
+        )
         limits = (self._tolerance.position, self._tolerance.velocity)
-        for what, limit, one, two in zip(("position", "velocity"), limits, old, new, strict=True):
+        for template, limit, one, two in zip(templates, limits, old, new, strict=True):
             for name, tolerance, before, after in zip(self.axes, limit, one, two, strict=True):
                 if abs(after - before) > tolerance:
                     raise DriverError(
-                        Message(
-                            "{name}: at {place}, the {what} of the setpoints jumps from {before} to {after}",
-                            name=name,
-                            place=where,
-                            what=what,
-                            before=f"{before:.4f}",
-                            after=f"{after:.4f}",
-                        ),
+                        Message(template, axis=name, before=f"{before:.4f}", after=f"{after:.4f}"),
                         reason="jump",
                     )
 

@@ -266,8 +266,8 @@ def _entered(field: Field, text: str) -> Value:
         return _chosen(field, str(value).lower())
     if field.sort in {Sort.METRIC, Sort.ANGLE, Sort.MINUTES}:
         return value  # of a zero offset, or of a mill: the store tells its range
-    if mistake := out_of_range(field, value):
-        raise CommandError(f"{field.name} = {shown(_typed(field, value))} {mistake}", "out-of-range")
+    if mistake := out_of_range(field.name, field, value, _typed(field, value)):
+        raise CommandError(mistake, "out-of-range")
     return value
 
 

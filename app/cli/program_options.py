@@ -90,19 +90,20 @@ def read_source(path: Path, args: argparse.Namespace) -> Source:
     from core.language.source import SourceError, load_source, source_of
 
     dialect = Dialect(args.dialect) if args.dialect else dialect_of(path.name)
-    for option, what in (
-        ("strict", "programs do not contain irregular lines that the control accepts"),
-        ("inputs", ("programs do not read input states")),
+    for option, template in (
+        (
+            "strict",
+            "{path}: --strict is only for OmniTurn programs; {dialect} programs do not contain irregular "
+            "lines that the control accepts",
+        ),
+        (
+            "inputs",
+            "{path}: --inputs is only for OmniTurn programs; {dialect} programs do not read input states",
+        ),
     ):
         if getattr(args, option) and dialect is not Dialect.OMNITURN:
             raise CommandError(
-                Message(
-                    "{path}: --{option} is only for OmniTurn programs; {dialect} {what}",
-                    path=path,
-                    option=option,
-                    dialect=dialect,
-                    what=what,
-                ),
+                Message(template, path=path, dialect=dialect),
                 "omniturn-only",
             )
     try:

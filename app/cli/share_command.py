@@ -31,10 +31,8 @@ def add_parser(subparsers: SubParsers) -> None:
     )
     status = actions.add_parser(
         "status",
-        help=(
-            "show which programs are newer on other controls and which control has which "
-            "version, without changing anything"
-        ),
+        help="show which programs are newer on other controls and which control has which "
+        "version, without changing anything",
     )
     publish = actions.add_parser(
         "publish", help="publish new local versions now and check for new versions on other controls"
@@ -176,10 +174,12 @@ def _take(sharing: Sharing, args: argparse.Namespace) -> int:
     before = sharing.now.families[version.key].here
     name = sharing.take(version)
     _looked(sharing)
-    kept = "; the previous program text was saved as a version" if before else ""
-    said = Message(
-        "{name} is now the version from control {machine}{saved}", name=name, machine=version.desk, saved=kept
+    template = (
+        "{name} is now the version from control {machine}; the previous program text was saved as a version"
+        if before
+        else "{name} is now the version from control {machine}"
     )
+    said = Message(template, name=name, machine=version.desk)
     _say(args, said, {"taken": _of(version), "file": name})
     return EXIT_OK
 
@@ -191,7 +191,7 @@ def _keep(sharing: Sharing, args: argparse.Namespace) -> int:
     sharing.keep(key_of(args.name))
     shared = _looked(sharing)
     wait = (
-        Message(("; the local version is not published yet: {problem}"), problem=shared.trouble)
+        Message("; the local version is not published yet: {problem}", problem=shared.trouble)
         if shared.trouble
         else ""
     )
@@ -238,16 +238,14 @@ def _chosen(shared: Shared, args: argparse.Namespace) -> SharedVersion:
     if args.id:
         found = [each for each in family.versions.values() if each.id.startswith(args.id)]
         if len(found) != 1:
-            which = "no version" if not found else f"{len(found)} versions"
+            template = (
+                "found {count} versions of {name} with an ID that begins with {id}; see turndesk share "
+                "status --json"
+                if found
+                else "no version of {name} has an ID that begins with {id}; see turndesk share status --json"
+            )
             raise CommandError(
-                Message(
-                    "found {which} of {name} with an ID that begins with {name2}; see turndesk share "
-                    "status --json",
-                    which=which,
-                    name=args.name,
-                    name2=args.id,
-                ),
-                "no-one-version",
+                Message(template, count=len(found), name=args.name, id=args.id), "no-one-version"
             )
         return found[0]
     if not family.elsewhere:
@@ -265,10 +263,8 @@ def _chosen(shared: Shared, args: argparse.Namespace) -> SharedVersion:
         )
         raise CommandError(
             Message(
-                (
-                    "other controls have {elsewhere_count} newer versions of {name}: {which}; "
-                    "choose one with --id ID"
-                ),
+                "other controls have {elsewhere_count} newer versions of {name}: {which}; "
+                "choose one with --id ID",
                 name=args.name,
                 elsewhere_count=len(family.elsewhere),
                 which=which,

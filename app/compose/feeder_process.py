@@ -12,6 +12,7 @@ from dataclasses import replace
 from app.compose.backend_entry import NO_PRIORITY, backend_of, has_inverter
 from app.compose.inverter_backend import with_inverter
 from core.machine.machine_model import Machine
+from core.message import Message as Text
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_nodes import CYCLIC, EVENED_OUT
 from drivers.canopen.canopen_table import CanopenTable
@@ -138,12 +139,22 @@ def beat(machine: Machine) -> float:
 
 def without_priority(period: float, late: float) -> str:
     """What a feeder cannot promise whose trial has come so late, in words for the operator."""
-    kept = "arrived in time" if late <= EVENED_OUT * period else "did not arrive in time"
-    return (
-        f"{NO_PRIORITY}, a SYNC every {1000 * period:g} ms is not reliable: in a {TRIAL:g} s "
-        f"test, the SYNC {kept} (at most {1000 * late:.1f} ms late); the path waits for late "
-        "setpoints, and a delay of 10 ms causes an alarm. Give the driver host real-time "
-        'priority (docs/integrator/computer.md), or use mode = "pvt"'
+    template = (
+        "{cause}, a SYNC every {period} ms is not reliable: in a {seconds} s test, the SYNC arrived in time "
+        "(at most {late} ms late); the path waits for late setpoints, and a delay of 10 ms causes an alarm. "
+        'Give the driver host real-time priority (docs/integrator/computer.md), or use mode = "pvt"'
+        if late <= EVENED_OUT * period
+        else "{cause}, a SYNC every {period} ms is not reliable: in a {seconds} s test, the SYNC did not "
+        "arrive in time (at most {late} ms late); the path waits for late setpoints, and a delay of 10 ms "
+        "causes an alarm. Give the driver host real-time priority (docs/integrator/computer.md), or use "
+        'mode = "pvt"'
+    )
+    return Text(
+        template,
+        cause=NO_PRIORITY,
+        period=f"{1000 * period:g}",
+        seconds=f"{TRIAL:g}",
+        late=f"{1000 * late:.1f}",
     )
 
 

@@ -28,16 +28,13 @@ def check_data_folder() -> None:
     folder = data_folder()
     there = next((each for each in (folder, *folder.parents) if each.exists()), folder)
     if there.exists() and not there.is_dir():
-        what = "is" if there == folder else Message("is inside {present}, which is", present=there)
-        raise DataFolderError(
-            Message(
-                "TURNDESK_HOME: {folder} {what} a file, not a folder; set the variable to a folder "
-                "or unset the variable",
-                folder=folder,
-                what=what,
-            ),
-            "not-a-folder",
+        template = (
+            "TURNDESK_HOME: {folder} is a file, not a folder; set TURNDESK_HOME to a folder or unset it"
+            if there == folder
+            else "TURNDESK_HOME: {folder} is inside {present}, which is a file, not a folder; set "
+            "TURNDESK_HOME to a folder or unset it"
         )
+        raise DataFolderError(Message(template, folder=folder, present=there), "not-a-folder")
 
 
 def data_folder() -> Path:

@@ -268,15 +268,8 @@ def _mistake(where: str, field: Field, value: object) -> CodedError | None:
     if field.choices and isinstance(value, str) and value not in field.choices:
         word = unknown(value or '""', field.choices)
         return CodedError(Message("{place} = {word}", place=where, word=word), "unknown-word")
-    mistake = out_of_range(field, _kept(field, value))
-    return (
-        CodedError(
-            Message("{place} = {value} {mistake}", place=where, value=shown(value), mistake=mistake),
-            "out-of-range",
-        )
-        if mistake
-        else None
-    )
+    mistake = out_of_range(where, field, _kept(field, value), value)
+    return CodedError(mistake, "out-of-range") if mistake else None
 
 
 def _fits(field: Field, value: object) -> bool:
@@ -299,6 +292,16 @@ def shown(value: object) -> str:
     return f"{value:g}" if isinstance(value, int | float) else repr(value)
 
 
-def out_of_range(field: Field, value: Value) -> str:
-    """What is wrong with a value (lengths mm), or nothing; NaN is out of every range."""
-    return "" if field.takes(value) else Message("is out of range; expected {range}", range=field.range)
+def out_of_range(name: str, field: Field, value: Value, entered: object) -> str:
+    """Return what is wrong with a value (lengths in mm), or an empty text; NaN is out of every range.
+
+    The text has the name of the value and the value as it was entered.
+    """
+    if field.takes(value):
+        return ""
+    return Message(
+        "{name} = {value} is out of range; expected {range}",
+        name=name,
+        value=shown(entered),
+        range=field.range,
+    )

@@ -36,19 +36,19 @@ FIELDS = (
     "LOWER DEVIATION",
     "CORRECTED BY",
     "TOOL OR OFFSET NUMBER",
-    "SIZE WITH A LARGER OFFSET",
-    "MEASURE EVERY N PARTS (0: NO PLAN)",
+    "EFFECT OF LARGER OFFSET ON SIZE",
+    "MEASURE EVERY N PARTS (0: NEVER)",
     "PARTS PER SAMPLE",
 )
 _OF_OMNITURN = {"CORRECTED BY"}  # its D offsets
 _OF_LATHES = {
     "TOOL OR OFFSET NUMBER",
-    "SIZE WITH A LARGER OFFSET",
+    "EFFECT OF LARGER OFFSET ON SIZE",
 }  # a mill's DL and DR are typed into its tool table
-_TURNED = {"MEASURED", "CORRECTED BY", "SIZE WITH A LARGER OFFSET"}
+_TURNED = {"MEASURED", "CORRECTED BY", "EFFECT OF LARGER OFFSET ON SIZE"}
 _WHOLE = {
     "TOOL OR OFFSET NUMBER": "number",
-    "MEASURE EVERY N PARTS (0: NO PLAN)": "every",
+    "MEASURE EVERY N PARTS (0: NEVER)": "every",
     "PARTS PER SAMPLE": "sample",
 }
 _LENGTHS = {"NOMINAL": "nominal", "UPPER DEVIATION": "high", "LOWER DEVIATION": "low"}
@@ -77,7 +77,7 @@ class Draft:
             return tr("DIAMETER") if feature.kind is FeatureKind.DIAMETER else tr("LENGTH")
         if field == "CORRECTED BY":
             return tr("TOOL WEAR") if feature.by is CorrectedBy.TOOL else tr("SECONDARY OFFSET")
-        if field == "SIZE WITH A LARGER OFFSET":
+        if field == "EFFECT OF LARGER OFFSET ON SIZE":
             return tr("LARGER") if feature.grows > 0 else tr("SMALLER")
         if field in _WHOLE:
             return str(getattr(feature, _WHOLE[field]))

@@ -88,12 +88,12 @@ class PartsWatch:
         self._waits = self.program, on
         persistence = self.desk.counter.persistence
         persistence.save_setting(_key(self.program), on or None)
-        told = (
-            ("the next part cannot start before the required parts are measured")
+        template = (
+            "program {program}: the next part cannot start before the required parts are measured"
             if on
-            else ("the next part can start before the required parts are measured")
+            else "program {program}: the next part can start before the required parts are measured"
         )
-        persistence.note_change(Message("program {program}: {details}", program=self.program, details=told))
+        persistence.note_change(Message(template, program=self.program))
 
     def due(self) -> str:
         """What the prompt line tells besides: what to measure, which insert to change; empty: nothing."""

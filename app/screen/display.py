@@ -93,15 +93,15 @@ def _why(said: str) -> str:
         return "neither DISPLAY nor WAYLAND_DISPLAY is set; start turndesk from a desktop, or set DISPLAY"
     if "uthorization" in said:
         return Message(
-            ("{tried} does not accept this user; start turndesk as the user who is logged in to the desktop"),
+            "{tried} does not accept this user; start turndesk as the user who is logged in to the desktop",
             tried=" and ".join(tried),
         )
-    verb = "responds in time" if said.endswith("no answer") else "answers"
-    return Message(
-        "no display {verb} at {tried}; start the X server or compositor, or correct this setting",
-        verb=verb,
-        tried=" or ".join(tried),
+    template = (
+        "no display responds in time at {tried}; start the X server or compositor, or correct this setting"
+        if said.endswith("no answer")
+        else "no display found at {tried}; start the X server or compositor, or correct this setting"
     )
+    return Message(template, tried=" or ".join(tried))
 
 
 def _missing_library() -> str:

@@ -204,15 +204,12 @@ class _Making:
 
     def _net(self, layer: str) -> Net:
         if not self.nets or self.view is None:
-            where = Message("on layer {layer}", layer=layer) if layer else "for the selected axis"
-            raise DrawingError(
-                Message(
-                    "{drawing} has no contour {place}: choose another layer or axis.",
-                    drawing=self.drawing.name,
-                    place=where,
-                ),
-                "no-contour",
+            template = (
+                "{drawing} has no contour on layer {layer}: choose another layer or axis."
+                if layer
+                else "{drawing} has no contour for the selected axis: choose another layer or axis."
             )
+            raise DrawingError(Message(template, drawing=self.drawing.name, layer=layer), "no-contour")
         number = self.word("CONTOUR", "1")
         if number not in self.choices["CONTOUR"]:
             raise DrawingError(
@@ -233,10 +230,8 @@ class _Making:
             return
         if (wrong := wrong_unit(net, self.view.unit, self.asked.setting.shop.travel)) is not None:
             words = Message(
-                (
-                    "{drawing} is {wrong}, which is too large for this machine. With {wrong2} as "
-                    "its unit, the drawing fits: choose {wrong3}."
-                ),
+                "{drawing} is {wrong}, which is too large for this machine. With {wrong2} as "
+                "its unit, the drawing fits: choose {wrong3}.",
                 drawing=self.drawing.name,
                 wrong=wrong[0],
                 wrong2=wrong[1],

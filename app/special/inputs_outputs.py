@@ -176,7 +176,10 @@ class InputsOutputs(SpecialFunction):
         if not self.desk.refused(Act.OUTPUTS):  # the level may have fallen back meanwhile
             self.desk.post(ForceOutput(name, on))
             self.desk.access.persistence.note_change(
-                Message("output {name} switched {ending} by hand", name=name, ending="on" if on else "off")
+                Message(
+                    "output {name} switched on by hand" if on else "output {name} switched off by hand",
+                    name=name,
+                )
             )
 
     def prompt(self) -> str:

@@ -22,6 +22,7 @@ GAP = 0.02
 _AXIS = 1e-6  # mm
 _CELLS, _IN_A_CELL = 64, 8  # along Z, in which ends and elements are looked for; elements in one
 _SQUARE = 0.02  # cosine
+_NO_BORE = "the contour has no bore at its face. Choose the outside, or another contour."
 _AHEAD = 0.05  # mm along an element, where its direction is taken: of tangent ones the sharper arc is told
 
 
@@ -197,14 +198,14 @@ def inner_side(net: Net, gap: float = GAP) -> list[Element]:
     """From the mouth of a bore along its wall to its end. Raises DrawingError, also where there is none."""
     inside = [n for n in _at_front(net, gap) if net.nodes[n][0] > gap and _goes_in(net, n, gap)]
     if not inside:
-        raise DrawingError("has no bore at its face: choose the outside, or another contour.", "no-bore")
+        raise DrawingError(_NO_BORE, "no-bore")
     start = min(inside, key=lambda n: net.nodes[n][0])
     front = _at_front(net, gap)  # the edge of the mouth, seen behind a section, is no wall
     mouth = {number for number, (a, b) in enumerate(net.ends) if a in front and b in front}
     walked = _walk(net, start, math.radians(90.0), -1.0, gap, mouth)
     outer = _walk(net, _foremost(net, gap), math.radians(270.0), 1.0, gap)
     if walked and any(walked[0] == each for each in outer):
-        raise DrawingError("has no bore at its face: choose the outside, or another contour.", "no-bore")
+        raise DrawingError(_NO_BORE, "no-bore")
     return _checked(net, walked, gap)
 
 
@@ -213,7 +214,8 @@ def _foremost(net: Net, gap: float) -> int:
     front = _at_front(net, gap)
     if not front:
         raise DrawingError(
-            ("has its foremost point in the middle of an arc: end the arc at this point."), "front-in-arc"
+            "the foremost point of the contour is in the middle of an arc. End the arc at this point.",
+            "front-in-arc",
         )
     return min(front, key=lambda n: net.nodes[n][0])
 
@@ -306,20 +308,15 @@ def _elements(net: Net, start: int, way: Iterable[tuple[int, int]]) -> list[Elem
 
 def _checked(net: Net, walked: list[Element], gap: float) -> list[Element]:
     if not walked:
-        raise DrawingError("has no contour on this side: choose another contour.", "no-contour")
+        raise DrawingError("this side has no contour. Choose another contour.", "no-contour")
     _no_crossing(walked)
     for end in (walked[0].start, walked[-1].end):
         if end[0] <= gap and any(abs(z - end[1]) <= gap for z in net.crossings):
             behind = net.reach[1] - end[1]
             raise DrawingError(
-                (
-                    Message(
-                        (
-                            "has a contour that crosses the axis {distance} mm from the face: choose "
-                            "another axis."
-                        ),
-                        distance=f"{behind:.3f}",
-                    )
+                Message(
+                    "the contour crosses the axis {distance} mm from the face. Choose another axis.",
+                    distance=f"{behind:.3f}",
                 ),
                 "crosses-axis",
             )
@@ -333,13 +330,11 @@ def _no_crossing(walked: Sequence[Element]) -> None:
         _, point = first
         behind = walked[0].start[1] - point[1]
         raise DrawingError(
-            (
-                Message(
-                    "has a contour that crosses itself {distance} mm from the face at a diameter of "
-                    "{point} mm: correct the contour at this point.",
-                    distance=f"{behind:.3f}",
-                    point=f"{2 * point[0]:.3f}",
-                )
+            Message(
+                "the contour crosses itself {distance} mm from the face at a diameter of "
+                "{diameter} mm. Correct the contour at this point.",
+                distance=f"{behind:.3f}",
+                diameter=f"{2 * point[0]:.3f}",
             ),
             "crosses-itself",
         )

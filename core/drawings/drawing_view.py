@@ -131,16 +131,12 @@ def line_axis(drawing: Drawing, number: int) -> Axis:
     """The line of this number, from 1, as the axis. Raises DrawingError where there is no such line."""
     if not 1 <= number <= len(drawing.drawn):
         raise DrawingError(
-            (
-                Message(
-                    (
-                        "{drawing} has {drawn_count} lines, but line {number} does not exist: choose "
-                        "an existing line."
-                    ),
-                    drawing=drawing.name,
-                    drawn_count=len(drawing.drawn),
-                    number=number,
-                )
+            Message(
+                "{drawing} has {drawn_count} lines, but line {number} does not exist: choose "
+                "an existing line.",
+                drawing=drawing.name,
+                drawn_count=len(drawing.drawn),
+                number=number,
             ),
             "no-line",
         )
@@ -210,7 +206,7 @@ def contours(drawing: Drawing, view: View, layer: str = "") -> list[Net]:
         above, below = nets(placed, view.gap), nets(turned_about(placed), view.gap)
     except DrawingError as error:
         raise DrawingError(
-            Message("{drawing} {error}", drawing=drawing.name, error=error), error.code
+            Message("{drawing}: {error}", drawing=drawing.name, error=error), error.code
         ) from None
     on_axis = [bool(found) and _touches(found[0], view.gap) for found in (above, below)]
     return below if below and (not above or (on_axis[1] and not on_axis[0])) else above
@@ -240,7 +236,7 @@ def profile(drawing: Drawing, view: View, net: Net, side: Side = Side.OUTSIDE) -
         walked = inner_side(net, view.gap) if side is Side.INSIDE else outer_side(net, view.gap)
     except DrawingError as error:
         raise DrawingError(
-            Message("{drawing} {error}", drawing=drawing.name, error=error), error.code
+            Message("{drawing}: {error}", drawing=drawing.name, error=error), error.code
         ) from None
     low, high, _ = net.reach
     zero = {Zero.FACE: high, Zero.BACK: low, Zero.ORIGIN: 0.0}[view.zero] - view.shift

@@ -61,12 +61,20 @@ def _document(path: Path, data: bytes) -> Document:
     return readfile(path)
 
 
+class _NotFlatError(ValueError):
+    """An entity is not in the plane of the drawing."""
+
+
+def _three_dimensional(name: str) -> DrawingError:
+    text = Message(
+        "{name} is three-dimensional: save a section or a view of the part in one plane.", name=name
+    )
+    return DrawingError(text, "three-dimensional")
+
+
 def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
     if any(kind in _SOLID for kind in left_out):
-        text = Message(
-            "{name} is three-dimensional: save a section or a view of the part in one plane.", name=name
-        )
-        return DrawingError(text, "three-dimensional")
+        return _three_dimensional(name)
     what = ", ".join(sorted(left_out)) if left_out else "nothing"
     text = Message(
         "{name} does not contain any lines or arcs in model space, only {what}: draw the contour with lines.",
@@ -110,15 +118,15 @@ def _read(read: Reader, entity: Any, near: float, name: str) -> Iterator[Element
     try:
         yield from read(entity, near)
     except (ValueError, ArithmeticError, AttributeError, IndexError) as error:
-        if isinstance(error, DrawingError):
-            raise DrawingError(Message("{name} {error}", name=name, error=error), error.code) from None
+        if isinstance(error, _NotFlatError):
+            raise _three_dimensional(name) from None
         what = Message(
-            "a {kind} in {name} on layer {count}",
+            "the {kind} on layer {layer} of {name} is damaged: draw it again.",
             kind=entity.dxftype(),
+            layer=entity.dxf.get("layer", "0"),
             name=name,
-            count=entity.dxf.get("layer", "0"),
         )
-        raise DrawingError(Message("{what} is damaged: draw it again.", what=what), "damaged") from error
+        raise DrawingError(what, "damaged") from error
 
 
 def _centre(layer: str, linetype: str) -> bool:
@@ -153,18 +161,14 @@ def _facing(entity: Any) -> float:
     """1: drawn as it is seen, -1: mirrored; else it does not lie in the plane of the drawing."""
     x, y, z = entity.dxf.get("extrusion", (0.0, 0.0, 1.0))
     if abs(x) > _FLAT or abs(y) > _FLAT:
-        raise DrawingError(
-            "is three-dimensional: save a section or a view of the part in one plane.", "three-dimensional"
-        )
+        raise _NotFlatError
     return 1.0 if z > 0.0 else -1.0
 
 
 def _line(entity: Any, _near: float) -> Iterator[Element]:
     a, b = entity.dxf.start, entity.dxf.end
     if abs(a.z - b.z) > _FLAT:
-        raise DrawingError(
-            "is three-dimensional: save a section or a view of the part in one plane.", "three-dimensional"
-        )
+        raise _NotFlatError
     yield from line((a.x, a.y), (b.x, b.y))
 
 
@@ -194,14 +198,10 @@ def _lwpolyline(entity: Any, _near: float) -> Iterator[Element]:
 
 def _polyline(entity: Any, _near: float) -> Iterator[Element]:
     if not entity.is_2d_polyline and not entity.is_3d_polyline:
-        raise DrawingError(
-            "is three-dimensional: save a section or a view of the part in one plane.", "three-dimensional"
-        )
+        raise _NotFlatError
     places = [each.dxf.location for each in entity.vertices if not each.dxf.flags & 16]
     if entity.is_3d_polyline and max(p.z for p in places) - min(p.z for p in places) > _FLAT:
-        raise DrawingError(
-            "is three-dimensional: save a section or a view of the part in one plane.", "three-dimensional"
-        )
+        raise _NotFlatError
     bulges = [each.dxf.get("bulge", 0.0) for each in entity.vertices if not each.dxf.flags & 16]
     points = [(p.x, p.y, bulge) for p, bulge in zip(places, bulges, strict=True)]
     side = 1.0 if entity.is_3d_polyline else _facing(entity)
@@ -225,9 +225,7 @@ def _ellipse(entity: Any, near: float) -> Iterator[Element]:
 def _spline(entity: Any, near: float) -> Iterator[Element]:
     curve = entity.construction_tool()
     if max(p.z for p in curve.control_points) - min(p.z for p in curve.control_points) > _FLAT:
-        raise DrawingError(
-            "is three-dimensional: save a section or a view of the part in one plane.", "three-dimensional"
-        )
+        raise _NotFlatError
     order = curve.order
     knots = sorted(set(curve.knots()[order - 1 : len(curve.knots()) - order + 1]))
     for begin, end in itertools.pairwise(knots):

@@ -24,13 +24,14 @@ def check_expansion(name: str, root: Key, content: Callable[[Key], Content], spa
     ``spare`` entities are allowed besides: those that the file itself has. Raises DrawingError.
     """
     if _count(name, root, content) > MOST_ELEMENTS + spare:
-        words = Message(
-            "The repeated groups in {name} add up to more than {most_elements} entities",
-            name=name,
-            most_elements=MOST_ELEMENTS,
-        )
         raise DrawingError(
-            Message("{words}: save only the contour of the part.", words=words), "too-many-lines"
+            Message(
+                "The repeated groups in {name} add up to more than {most_elements} entities: "
+                "save only the contour of the part.",
+                name=name,
+                most_elements=MOST_ELEMENTS,
+            ),
+            "too-many-lines",
         )
 
 

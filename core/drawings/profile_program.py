@@ -195,13 +195,13 @@ def _check_tip(tool: ToolShape | None, number: float, setting: Setting) -> None:
     The part would come out too small by the nose radius. Raises DrawingError.
     """
     if tool is not None and not tool.tip and (nose := nose_of(tool)):
-        words = Message(
-            "T{number} has a nose radius of {nose}, but its tool data has no tip quadrant",
-            number=f"{number:.0f}",
-            nose=f"{nose / setting.mm:.4g}",
-        )
         raise DrawingError(
-            (Message("{words}: enter the tip quadrant on the SHAPE page of the tool (F8, F8).", words=words)),
+            Message(
+                "T{number} has a nose radius of {nose}, but its tool data has no tip quadrant: "
+                "enter the tip quadrant on the SHAPE page of the tool (F8, F8).",
+                number=f"{number:.0f}",
+                nose=f"{nose / setting.mm:.4g}",
+            ),
             "no-tip-quadrant",
         )
 

@@ -53,26 +53,28 @@ def in_words(
             "gaps up to {closed} {unit} were closed", closed=plain(profile.closed / mm, places), unit=unit
         )
     for each in made.left:
-        span = Message(
-            "Z {front} to {back}", front=plain(each.front / mm, places), back=plain(each.back / mm, places)
+        yield Message(
+            "Z {front} to {back} is not cut: {why}",
+            front=plain(each.front / mm, places),
+            back=plain(each.back / mm, places),
+            why=each.why,
         )
-        yield Message("{span} is not cut: {why}", span=span, why=each.why)
     if comparison is None:
         yield ("proving did not produce a simulated part, so a comparison with the drawing was not possible")
         return
     for found in comparison.found:
         yield _deviation(found, made.nose_radius, mm, unit, places)
     within = plain(max(comparison.worst, 0.001) / mm, places)
-    what = "the rest of the simulated part" if comparison.found else "the simulated part"
-    yield Message("{what} matches the drawing to within {within} {unit}", what=what, within=within, unit=unit)
+    template = (
+        "elsewhere, the simulated part matches the drawing to within {within} {unit}"
+        if comparison.found
+        else "the simulated part matches the drawing to within {within} {unit}"
+    )
+    yield Message(template, within=within, unit=unit)
 
 
 def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int) -> str:
-    what = "stock remains" if found.most > 0.0 else "too much stock is cut"
     deep = plain(abs(found.most) / mm, places)
-    span = Message(
-        "Z {front} to {back}", front=plain(found.front / mm, places), back=plain(found.back / mm, places)
-    )
     if is_corner(found, nose):
         at = plain(found.back / mm, places)
         return Message(
@@ -81,9 +83,13 @@ def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int)
             unit=unit,
             position=at,
         )
-    return Message(
-        ("{what}: {depth} {unit} on the radius, from {span}"), depth=deep, unit=unit, what=what, span=span
+    template = (
+        "{depth} {unit} of stock remains (measured on the radius) from Z {front} to Z {back}"
+        if found.most > 0.0
+        else "{depth} {unit} too much is cut (measured on the radius) from Z {front} to Z {back}"
     )
+    front, back = (plain(z / mm, places) for z in (found.front, found.back))
+    return Message(template, depth=deep, unit=unit, front=front, back=back)
 
 
 def is_corner(found: Deviation, nose: float) -> bool:

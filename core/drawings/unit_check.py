@@ -30,6 +30,6 @@ def _fits(long: float, radius: float, travel: tuple[float, float]) -> bool:
 
 
 def _too_large(long: float, radius: float, unit: float, most: float) -> str:
-    size, what = (long, "long") if long > most else (2.0 * radius, "across")
+    size, template = (long, "{size} {unit} long") if long > most else (2.0 * radius, "{size} {unit} across")
     mm, name = (25.4, "in") if unit == UNITS["INCH"] else (1.0, "mm")
-    return Message("{size} {name} {what}", size=f"{size / mm:.4g}", name=name, what=what)
+    return Message(template, size=f"{size / mm:.4g}", unit=name)

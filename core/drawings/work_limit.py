@@ -41,5 +41,5 @@ def check_work() -> None:
     spent = time.thread_time() - limit.begun
     limit.watch(spent)
     if spent > limit.seconds:
-        words = "has too many parallel lines. Save only the contour of the part."
+        words = "the drawing has too many parallel lines. Save only the contour of the part."
         raise DrawingError(words, "too-slow")

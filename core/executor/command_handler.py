@@ -310,12 +310,9 @@ class CommandHandler:
         self._context.ports.io.write(command.name, command.on)
         self._context.log(
             "force",
-            (
-                Message(
-                    "{command} switched {ending} manually",
-                    command=command.name,
-                    ending="on" if command.on else "off",
-                )
+            Message(
+                "{output} switched on manually" if command.on else "{output} switched off manually",
+                output=command.name,
             ),
         )
 

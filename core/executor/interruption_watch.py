@@ -176,19 +176,14 @@ class InterruptionWatch:
             return ""
         job = self._status.job
         there = job is None or job.source.dialect is Dialect.OMNITURN
-        how = (
-            "resume at the interrupted line with SEARCHTO (F6), or press Y"
+        template = (
+            "line {line} of {program} was interrupted, and {tool} may still be in the part: resume at the "
+            "interrupted line with SEARCHTO (F6), or press Y and then start at the first line"
             if there
-            else ("jog the tool clear of the part, then press Y")
+            else "line {line} of {program} was interrupted, and {tool} may still be in the part: jog the "
+            "tool clear of the part, press Y, and then start at the first line"
         )
-        return Message(
-            "line {line} of {program} was interrupted, and {tool} may still be in the part: "
-            "{method} and then start at the first line",
-            line=found.line,
-            program=found.program,
-            tool=edge_name(found.tool),
-            method=how,
-        )
+        return Message(template, line=found.line, program=found.program, tool=edge_name(found.tool))
 
     def _over(self, words: str) -> None:
         self._status.interrupted = None

@@ -18,7 +18,6 @@ from core.interpreter.machine_requirements import Need
 from core.interpreter.modal_state import Modal
 from core.interpreter.omniturn.carry_over import RAPID, UNITS, inherited_settings
 from core.language.source import Source
-from core.message import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +109,7 @@ def outdated(job: Job, left: Modal) -> str:
     if job.setup.begin is not None:
         return ""
     if UNITS in job.carries and job.setup.metric != left.metric:
-        return Message("the active unit is now {ending}", ending="mm" if left.metric else "inches")
+        return "the active unit is now mm" if left.metric else "the active unit is now inches"
     if RAPID in job.carries and not math.isclose(job.setup.last_rapid, left.rapid_rate):
         return "the rapid rate has changed"
     return ""

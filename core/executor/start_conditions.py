@@ -235,13 +235,12 @@ def _changed_for_restart(status: ControlStatus, job: Job, begin: Begin, now: Mod
         return "the program was loaded again: search for the line again"
     wanted = begin.checkpoint.modal.collet_closed
     if now.collet_closed != wanted:
-        is_now, must = ("closed", "open") if now.collet_closed else ("open", "closed")
-        return Message(
-            "the collet is {is_now}, but must be {must} at line {line}: change the collet state in MDI",
-            is_now=is_now,
-            must=must,
-            line=begin.line,
+        template = (
+            "the collet is closed, but must be open at line {line}: open the collet in MDI"
+            if now.collet_closed
+            else "the collet is open, but must be closed at line {line}: close the collet in MDI"
         )
+        return Message(template, line=begin.line)
     return unproved(status.job, status.proof)
 
 

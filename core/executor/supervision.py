@@ -76,7 +76,7 @@ class Supervisor:
             if not all(map(math.isfinite, told)):
                 raise AlarmError(
                     "axis",
-                    (Message("{axis}: the drive reports a position that is not a number", axis=axis.name)),
+                    Message("{axis}: the drive reports a position that is not a number", axis=axis.name),
                 )
 
     def _collet_lost(self) -> None:
@@ -143,15 +143,16 @@ class OutputsWatch:
             context.spindle.dropped("DRIVER PROCESS SWITCHED OFF SPINDLE AND OUTPUTS")
         context.outputs.fell(outputs)
         self._known_off |= set(outputs)
-        who = "NO SIGNAL FROM MACHINE" if trip.found else "NO SIGNAL FROM CONTROL"
-        what = "OUTPUTS FOUND ON AND SWITCHED OFF" if trip.found else "SWITCHED OFF"
+        template = (
+            "NO SIGNAL FROM MACHINE FOR {away} S, OUTPUTS FOUND ON AND SWITCHED OFF: {off}"
+            if trip.found
+            else "NO SIGNAL FROM CONTROL FOR {away} S, SWITCHED OFF: {off}"
+        )
         self._disturbed(
             "feeder-tripped",
             Message(
-                "{who} FOR {away} S, {what}: {off}",
-                who=who,
+                template,
                 away=f"{trip.away:.1f}",
-                what=what,
                 off=join_messages(", ", off),
             ),
         )

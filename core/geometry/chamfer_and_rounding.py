@@ -32,8 +32,7 @@ class CornerTooLargeError(CornerError):
 
     def __init__(self, needed: float, *, first: bool) -> None:
         super().__init__(
-            Message("the {choice} is too short", choice="current line" if first else "next line"),
-            "line-too-short",
+            "the line itself is too short" if first else "the next line is too short", "line-too-short"
         )
         self.needed = needed
         self.first = first

@@ -83,26 +83,21 @@ def _entry(shape: ToolShape, letter: str, point: float) -> Iterator[ShapeMistake
 def _tip(shape: ToolShape) -> Iterator[ShapeMistake]:
     if shape.turns_itself and 0 not in TIP_DIRECTIONS[shape.tip]:
         text = Message(
-            (
-                "tip quadrant {tip} does not fit a rotating tool; use 7 (along the spindle), 8 "
-                "(across the spindle) or 6 (from the rear)"
-            ),
+            "tip quadrant {tip} does not fit a rotating tool; use 7 (along the spindle), 8 "
+            "(across the spindle) or 6 (from the rear)",
             tip=shape.tip,
         )
         yield ShapeMistake("tip", text, "not-an-end")
     across = TIP_DIRECTIONS[shape.tip][1]
     if shape.rear and across and not shape.turns_itself and (across > 0) is shape.internal:
-        where, which = ("X−", "3, 4 or 8") if shape.internal else ("X+", "1, 2 or 6")
-        text = Message(
-            (
-                "tip quadrant {tip} is for a front tool; the tip of a rear tool is on the "
-                "{place} side: use quadrant {which}"
-            ),
-            tip=shape.tip,
-            place=where,
-            which=which,
+        template = (
+            "tip quadrant {tip} is for a front tool; the tip of a rear tool is on the X− side: use quadrant "
+            "3, 4 or 8"
+            if shape.internal
+            else "tip quadrant {tip} is for a front tool; the tip of a rear tool is on the X+ side: use "
+            "quadrant 1, 2 or 6"
         )
-        yield ShapeMistake("tip", text, "tool-in-front")
+        yield ShapeMistake("tip", Message(template, tip=shape.tip), "tool-in-front")
 
 
 def _sizes(shape: ToolShape) -> Iterator[ShapeMistake]:
@@ -119,7 +114,7 @@ def _sizes(shape: ToolShape) -> Iterator[ShapeMistake]:
         )
     if shape.turns_itself and shape.stick_out and shape.length > shape.stick_out:
         yield ShapeMistake(
-            "length", ("the cutting length is longer than the stick-out of the tool"), "too-long"
+            "length", "the cutting length is longer than the stick-out of the tool", "too-long"
         )
     if shape.kind is ToolKind.CENTRE_DRILL and shape.diameter and shape.width >= shape.diameter:
         yield ShapeMistake(

@@ -80,7 +80,7 @@ class AirChecks:
             self._tool, self._went_in = tool, None
         fresh, self._fresh = self._fresh, False
         if met and forward < 0 and self._out_of_part(move, cutter, fresh=fresh):
-            yield Found("unmade-cut", ("This move feeds backward out of the part, through material."))
+            yield Found("unmade-cut", "This move feeds backward out of the part, through material.")
         close = bool(met) or self._comes_near(move, cutter, part)
         if drill and fresh and not met and self._is_inside(move):
             self._in_hole = move
@@ -96,7 +96,7 @@ class AirChecks:
             self._air, self._cut_before = 0.0, bool(met)
             return
         if self._outside_stock(move):
-            yield Found("larger-than-stock", ("This move turns a diameter larger than the stock."))
+            yield Found("larger-than-stock", "This move turns a diameter larger than the stock.")
         yield from self._leads_away(move, gone, cutter, part, fresh=fresh)
         yield from self._in_air(move, cutter, part)
         self._cut_before = close
@@ -120,10 +120,14 @@ class AirChecks:
         in_hole, self._in_hole = self._in_hole, None
         self._fed, self._fed_length, self._has_cut = None, 0.0, False
         if in_hole is not None and has_cut:
-            yield Found("unmade-cut", ("A drill feeds into an existing hole."), in_hole)
+            yield Found("unmade-cut", "A drill feeds into an existing hole.", in_hole)
         if fed is not None and not has_cut and length >= _LEAST:
-            what = "Threading moves" if fed.kind is Kind.THREAD else "Feed moves"
-            yield Found("unmade-cut", Message("{what} between two rapids cut only air.", what=what), fed)
+            text = (
+                "Threading moves between two rapids cut only air."
+                if fed.kind is Kind.THREAD
+                else "Feed moves between two rapids cut only air."
+            )
+            yield Found("unmade-cut", text, fed)
 
     def _comes_near(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> bool:
         middle = move.points[len(move.points) // 2]

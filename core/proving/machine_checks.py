@@ -54,25 +54,26 @@ def _beyond(
     scale, unit, places = (1.0, "mm", 3) if block.modal.metric else (1 / MM_PER_INCH, "in", 4)
     if axis.rotary:
         scale, unit, places = 1.0, "degrees", 3
-    radius = " (X as a radius)" if machine.kind == "lathe" else ""
+    template = (
+        "{axis} would move to {position} {unit} from home (X as a radius), {excess} {unit} beyond the travel "
+        "limit of {limit}"
+        if machine.kind == "lathe"
+        else "{axis} would move to {position} {unit} from home, {excess} {unit} beyond the travel limit of "
+        "{limit}"
+    )
     over = abs(at - limit) * scale
     return Diagnostic(
         line=block.line,
         column=1,
         severity=Severity.ERROR,
         code="soft-limit",
-        message=(
-            Message(
-                "{axis} would move to {position} {unit} from home{radius}, {excess} {unit2} beyond the "
-                "travel limit of {limit}",
-                axis=axis.name,
-                position=f"{at * scale:.{places}f}",
-                unit=unit,
-                radius=radius,
-                excess=f"{over:.{places}f}",
-                unit2=unit,
-                limit=f"{limit * scale:.{places}f}",
-            )
+        message=Message(
+            template,
+            axis=axis.name,
+            position=f"{at * scale:.{places}f}",
+            unit=unit,
+            excess=f"{over:.{places}f}",
+            limit=f"{limit * scale:.{places}f}",
         ),
         hint=_hint(machine, dialect, block, axis),
     )
@@ -103,9 +104,7 @@ def c_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic
                 column=1,
                 severity=Severity.ERROR,
                 code="c-is-spindle",
-                message=("C moves while the spindle turns, but on this machine C is the spindle itself"),
-                hint=(
-                    "stop the spindle with M5 first, or use a lathe with a separate C drive "
-                    "(sinumerik-modulo)"
-                ),
+                message="C moves while the spindle turns, but on this machine C is the spindle itself",
+                hint="stop the spindle with M5 first, or use a lathe with a separate C drive "
+                "(sinumerik-modulo)",
             )

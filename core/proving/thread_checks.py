@@ -110,7 +110,7 @@ class ThreadChecks:
             tool, move = uncut
             yield Found(
                 "thread-cuts-nothing",
-                (Message("{tool} does not touch the part in any pass of this thread.", tool=edge_name(tool))),
+                Message("{tool} does not touch the part in any pass of this thread.", tool=edge_name(tool)),
                 move,
             )
 
@@ -136,7 +136,7 @@ class ThreadChecks:
         if self._idle == _IDLE and self.stock_given:
             yield Found(
                 "thread-in-air",
-                (Message("The first {idle} passes of this thread do not touch any material.", idle=_IDLE)),
+                Message("The first {idle} passes of this thread do not touch any material.", idle=_IDLE),
             )
         if shape is not None and shape.kind is ToolKind.THREADING and shape.point:
             angle = shape.point
@@ -144,15 +144,13 @@ class ThreadChecks:
         if deep > _DEEPER * sharp:
             yield Found(
                 "thread-form",
-                (
-                    Message(
-                        "The thread is {depth} deep, but with a lead of {per_rev} and {angle}° its flanks "
-                        "meet at a depth of {sharp}.",
-                        depth=text(deep),
-                        per_rev=text(move.per_rev),
-                        angle=f"{angle:g}",
-                        sharp=text(sharp),
-                    )
+                Message(
+                    "The thread is {depth} deep, but with a lead of {per_rev} and {angle}° its flanks "
+                    "meet at a depth of {sharp}.",
+                    depth=text(deep),
+                    per_rev=text(move.per_rev),
+                    angle=f"{angle:g}",
+                    sharp=text(sharp),
                 ),
             )
         if shape is not None and shape.pitch and shape.kind is ToolKind.THREADING:
@@ -212,14 +210,12 @@ class ThreadChecks:
             text = cut.modal.length_text
             yield Found(
                 "thread-run-up",
-                (
-                    Message(
-                        "The Z axis needs {needed} to stop from the speed for the lead, but the material "
-                        "ends {left} before the end of the pass, so the last turns of the thread have a "
-                        "different lead.",
-                        needed=text(needed),
-                        left=text(max(left, 0.0)),
-                    )
+                Message(
+                    "The Z axis needs {needed} to stop from the speed for the lead, but the material "
+                    "ends {left} before the end of the pass, so the last turns of the thread have a "
+                    "different lead.",
+                    needed=text(needed),
+                    left=text(max(left, 0.0)),
                 ),
                 cut,
             )
@@ -260,13 +256,11 @@ class ThreadChecks:
             text = move.modal.length_text
             yield Found(
                 "tap-pitch",
-                (
-                    Message(
-                        "{tool} feeds {feed} per revolution, but its pitch is {pitch}.",
-                        tool=edge_name(tool),
-                        feed=text(feed),
-                        pitch=text(shape.pitch),
-                    )
+                Message(
+                    "{tool} feeds {feed} per revolution, but its pitch is {pitch}.",
+                    tool=edge_name(tool),
+                    feed=text(feed),
+                    pitch=text(shape.pitch),
                 ),
             )
 
@@ -278,15 +272,17 @@ class ThreadChecks:
                 "tap-reversal", Message("{tool} retracts from the thread at rapid.", tool=edge_name(tool))
             )
         elif fed.rpm * move.rpm > 0.0:
-            words = "the spindle still turns in the tapping direction"
             yield Found(
                 "tap-reversal",
-                Message("{tool} retracts from the thread, but {words}.", tool=edge_name(tool), words=words),
+                Message(
+                    "{tool} retracts from the thread while the spindle still turns in the tapping direction.",
+                    tool=edge_name(tool),
+                ),
             )
         elif not move.rpm:
             yield Found(
                 "tap-reversal",
-                (Message("{tool} retracts from the thread with the spindle stopped.", tool=edge_name(tool))),
+                Message("{tool} retracts from the thread with the spindle stopped.", tool=edge_name(tool)),
             )
         else:
             yield from self._reversed(move, fed, tool)
@@ -313,7 +309,7 @@ class ThreadChecks:
             )
             yield Found(
                 "tap-reversal",
-                Message(("{words}, which is more than a tap holder can compensate for."), words=words),
+                Message("{words}, which is more than a tap holder can compensate for.", words=words),
             )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from core.message import Message
 from core.shapes.bar_lines import Bars, write_bars
 from core.shapes.code_lines import Code
 from core.shapes.shape import Filled, Shape
@@ -35,10 +34,8 @@ def _checks(_filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if setting.called:
         yield Refusal(
             "COUNT",
-            (
-                "A bar feed loop cannot be inside another bar feed loop: write this shape "
-                "before or after the other loop."
-            ),
+            "A bar feed loop cannot be inside another bar feed loop: write this shape "
+            "before or after the other loop.",
         )
 
 
@@ -64,10 +61,8 @@ def _tail(filled: Filled) -> tuple[str, ...]:
 
 LOOP = Shape(
     "BAR LOOP",
-    (
-        "feeds the bar to a stop and repeats the following lines for a number of "
-        "parts; these lines make the part"
-    ),
+    "feeds the bar to a stop and repeats the following lines for a number of "
+    "parts; these lines make the part",
     (
         Field("COUNT", "PARTS", Kind.COUNT, None, most=100_000),
         Field("LONG", "BAR LENGTH PER PART + CUT-OFF", Kind.LENGTH),
@@ -87,11 +82,11 @@ LOOP = Shape(
 def no_chuck(setting: Setting, word: str) -> Iterator[Refusal]:
     """A machine on which a SINUMERIK program cannot open the chuck; told at this field."""
     if setting.shop.chuck is None:
-        words = (
+        yield Refusal(
+            word,
             "This machine has no M codes that open and close the chuck: assign two M codes "
-            "to the output named collet"
+            "to the output named collet under [m_codes] in the machine file.",
         )
-        yield Refusal(word, Message("{words} under [m_codes] in the machine file.", words=words))
 
 
 def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:

@@ -125,37 +125,29 @@ def _groove_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if wide > long + 1e-9:
         yield Refusal(
             "LONG",
-            (
-                Message(
-                    "The groove is {long} wide, but the blade is {wide} wide: use a narrower blade.",
-                    long=f"{long:g}",
-                    wide=f"{wide:g}",
-                )
+            Message(
+                "The groove is {long} wide, but the blade is {wide} wide: use a narrower blade.",
+                long=f"{long:g}",
+                wide=f"{wide:g}",
             ),
         )
     if inside and bottom <= top:
         yield Refusal(
             "BOTTOM",
-            (
-                Message(
-                    "A groove in a bore of {top} is cut outward, so bottom diameter {bottom} is too small.",
-                    top=f"{top:g}",
-                    bottom=f"{bottom:g}",
-                )
+            Message(
+                "A groove in a bore of {top} is cut outward, so bottom diameter {bottom} is too small.",
+                top=f"{top:g}",
+                bottom=f"{bottom:g}",
             ),
         )
     if not inside and bottom >= top:
         yield Refusal(
             "BOTTOM",
-            (
-                Message(
-                    (
-                        "The groove bottom diameter {bottom} must be less than {top}, the diameter at "
-                        "which the groove starts."
-                    ),
-                    bottom=f"{bottom:g}",
-                    top=f"{top:g}",
-                )
+            Message(
+                "The groove bottom diameter {bottom} must be less than {top}, the diameter at "
+                "which the groove starts.",
+                bottom=f"{bottom:g}",
+                top=f"{top:g}",
             ),
         )
     yield from reach(filled, setting, abs(top - bottom) / 2.0, "BOTTOM")
@@ -172,29 +164,20 @@ def _groove_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if inside and over > top:
         yield Refusal(
             "OVER",
-            (
-                Message(
-                    (
-                        "Diameter {excess} is more than the bore diameter of {top}, so the tool has "
-                        "nothing to clear: enter 0."
-                    ),
-                    excess=f"{over:g}",
-                    top=f"{top:g}",
-                )
+            Message(
+                "Diameter {excess} is more than the bore diameter of {top}, so the tool has "
+                "nothing to clear: enter 0.",
+                excess=f"{over:g}",
+                top=f"{top:g}",
             ),
         )
     if not inside and 0.0 < over < top:
         yield Refusal(
             "OVER",
-            (
-                Message(
-                    (
-                        "Diameter {excess} is less than diameter {top}, so the tool has nothing to "
-                        "clear: enter 0."
-                    ),
-                    excess=f"{over:g}",
-                    top=f"{top:g}",
-                )
+            Message(
+                "Diameter {excess} is less than diameter {top}, so the tool has nothing to clear: enter 0.",
+                excess=f"{over:g}",
+                top=f"{top:g}",
             ),
         )
     yield from _slant_checks(filled, abs(top - bottom) / 2.0)
@@ -207,19 +190,22 @@ def _slant_checks(filled: Filled, deep: float) -> Iterator[Refusal]:
     for word in ("FANGLE", "CANGLE"):
         if filled.n(word) < 0.0:
             yield Refusal(
-                word, ("A blade cannot reach under a wall that overhangs the groove: enter 0 or more.")
+                word, "A blade cannot reach under a wall that overhangs the groove: enter 0 or more."
             )
             return
     if not any(_slants(filled)):
         return
     bottom = long - deep * sum(_slants(filled))
     if bottom < wide - 1e-9:
-        words = Message(
-            "With these walls, the groove bottom is {bottom} wide, but the blade is {wide} wide",
-            bottom=f"{bottom:.4g}",
-            wide=f"{wide:g}",
+        yield Refusal(
+            "LONG",
+            Message(
+                "With these walls, the groove bottom is {bottom} wide, but the blade is {wide} "
+                "wide: use a narrower blade, or check the angles.",
+                bottom=f"{bottom:.4g}",
+                wide=f"{wide:g}",
+            ),
         )
-        yield Refusal("LONG", Message("{words}: use a narrower blade, or check the angles.", words=words))
     if filled.n("EDGE"):
         yield Refusal("EDGE", "Edges of sloped walls cannot be chamfered here: enter 0.")
 
@@ -252,10 +238,8 @@ def _several(values: Values) -> bool:
 
 GROOVE = Shape(
     "GROOVE",
-    (
-        "one or more grooves on the outside, in a bore or with a rear tool, with "
-        "chamfered edges and square or sloped walls"
-    ),
+    "one or more grooves on the outside, in a bore or with a rear tool, with "
+    "chamfered edges and square or sloped walls",
     (
         tool_field(ToolKind.GROOVING),
         Field("SIDE", "SIDE", Kind.CHOICE, FRONT, (FRONT, REAR, INSIDE)),
@@ -317,34 +301,26 @@ def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("DN") == 1.0:
         yield Refusal(
             "DN",
-            (
-                "D1 is the cutting corner of the blade: enter the D number of the other "
-                "corner, or 0 to use G1 instead of CYCLE93."
-            ),
+            "D1 is the cutting corner of the blade: enter the D number of the other "
+            "corner, or 0 to use G1 instead of CYCLE93.",
         )
     if filled.t("SIDE") == REAR:
         yield Refusal(
             "SIDE",
-            (
-                "CYCLE93 does not support a tool at negative X: use G1 by entering 0 as the D number "
-                "of the other blade corner."
-            ),
+            "CYCLE93 does not support a tool at negative X: use G1 by entering 0 as the D number "
+            "of the other blade corner.",
         )
     if filled.n("EDGE"):
         yield Refusal(
             "EDGE",
-            (
-                "CYCLE93 cannot chamfer these edges: enter 0 for the chamfer, or use G1 by entering "
-                "0 as the D number of the other blade corner."
-            ),
+            "CYCLE93 cannot chamfer these edges: enter 0 for the chamfer, or use G1 by entering "
+            "0 as the D number of the other blade corner.",
         )
     if any(_slants(filled)):
         yield Refusal(
             "FANGLE",
-            (
-                "CYCLE93 can cut only square walls here: enter 0 for the slope, or use G1 by "
-                "entering 0 as the D number of the other blade corner."
-            ),
+            "CYCLE93 can cut only square walls here: enter 0 for the slope, or use G1 by "
+            "entering 0 as the D number of the other blade corner.",
         )
 
 

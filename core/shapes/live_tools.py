@@ -70,13 +70,11 @@ def _cross_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if deep > across:
         yield Refusal(
             "DEEP",
-            (
-                Message(
-                    "Depth {depth} is more than the diameter of {across}: the drill would come out on the "
-                    "far side.",
-                    depth=f"{deep:g}",
-                    across=f"{across:g}",
-                )
+            Message(
+                "Depth {depth} is more than the diameter of {across}: the drill would come out on the "
+                "far side.",
+                depth=f"{deep:g}",
+                across=f"{across:g}",
             ),
         )
     if filled.n("COUNT") > 1 and abs(filled.n("STEP")) * filled.n("COUNT") > 360.0 + 1e-6:
@@ -108,7 +106,7 @@ def _cross_sketch(_filled: Filled) -> Sketch:
 
 CROSS = Shape(
     "CROSS DRILL",
-    ("radial holes around the part, drilled with the spindle stopped in position"),
+    "radial holes around the part, drilled with the spindle stopped in position",
     (
         tool_field(ToolKind.DRILL, ToolKind.END_MILL),
         Field("SIDE", "SIDE", Kind.CHOICE, FRONT, (FRONT, REAR)),
@@ -164,32 +162,28 @@ def _flats_checks(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
     if across >= stock:
         yield Refusal(
             "ACROSS",
-            (
-                Message(
-                    "{across} across flats is not less than the part diameter of {stock}, so nothing is cut.",
-                    across=f"{across:g}",
-                    stock=f"{stock:g}",
-                )
+            Message(
+                "{across} across flats is not less than the part diameter of {stock}, so nothing is cut.",
+                across=f"{across:g}",
+                stock=f"{stock:g}",
             ),
         )
     corner = across / math.cos(math.pi / many) if many > 2 else 0.0
     if many > 2 and corner > stock + 1e-9 and filled.t("CORNERS") == "SHARP":
-        words = Message(
-            (
-                "{many} flats at {across} across flats have corners at diameter {corner}, but "
-                "the part diameter is {stock}"
-            ),
-            many=many,
-            across=f"{across:g}",
-            corner=f"{corner:.4f}",
-            stock=f"{stock:g}",
-        )
         yield Refusal(
-            "ACROSS", Message("{words}: enter a smaller value, or set CORNERS to ROUND.", words=words)
+            "ACROSS",
+            Message(
+                "{many} flats at {across} across flats have corners at diameter {corner}, but "
+                "the part diameter is {stock}: enter a smaller value, or set CORNERS to ROUND.",
+                many=many,
+                across=f"{across:g}",
+                corner=f"{corner:.4f}",
+                stock=f"{stock:g}",
+            ),
         )
     if filled.n("DEEP") > filled.n("LONG"):
         yield Refusal(
-            "DEEP", ("The depth per pass is more than the length of the flats: enter a smaller depth.")
+            "DEEP", "The depth per pass is more than the length of the flats: enter a smaller depth."
         )
 
 
@@ -224,7 +218,7 @@ def _flats_sketch(filled: Filled) -> Sketch:
 
 FLATS = Shape(
     "MILL FLATS",
-    ("flats or a hexagon on the end of the part, in the XC plane"),
+    "flats or a hexagon on the end of the part, in the XC plane",
     (
         tool_field(ToolKind.END_MILL),
         Field("DIA", "CUTTER DIAMETER", Kind.DIAMETER, _across, marked=True),
@@ -268,24 +262,20 @@ def _slot_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("DEEP") > filled.n("FROM") / 2.0:
         yield Refusal(
             "DEEP",
-            (
-                Message(
-                    (
-                        "Depth {number} goes past the spindle centerline of a part {number2} in "
-                        "diameter: enter a smaller depth."
-                    ),
-                    number=f"{filled.n('DEEP'):g}",
-                    number2=f"{filled.n('FROM'):g}",
-                )
+            Message(
+                "Depth {number} goes past the spindle centerline of a part {number2} in "
+                "diameter: enter a smaller depth.",
+                number=f"{filled.n('DEEP'):g}",
+                number2=f"{filled.n('FROM'):g}",
             ),
         )
     if not filled.n("LONG") and not filled.n("TURN"):
         yield Refusal(
-            "LONG", ("The slot has no length: enter its length along Z, or its angle around the part.")
+            "LONG", "The slot has no length: enter its length along Z, or its angle around the part."
         )
     if filled.n("PASS") > filled.n("DEEP"):
         yield Refusal(
-            "PASS", ("The depth per pass is more than the slot depth: enter a smaller depth per pass.")
+            "PASS", "The depth per pass is more than the slot depth: enter a smaller depth per pass."
         )
     yield from too_deep(filled, setting)
 
@@ -308,7 +298,7 @@ def _slot_sketch(_filled: Filled) -> Sketch:
 
 SLOT = Shape(
     "MILL SLOT",
-    ("a keyway along Z, around the part or on a helix, in the ZC plane"),
+    "a keyway along Z, around the part or on a helix, in the ZC plane",
     (
         tool_field(ToolKind.END_MILL),
         Field("DIA", "CUTTER DIAMETER", Kind.DIAMETER, _across, marked=True),
@@ -335,20 +325,18 @@ SLOT = Shape(
 def _live_checks(checks: Checks) -> Checks:
     def checked(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         if not setting.shop.third_axis:
-            yield Refusal("T", ("This machine has no third axis that holds and turns the part."))
+            yield Refusal("T", "This machine has no third axis that holds and turns the part.")
         elif setting.shop.third_axis.startswith("Y") and filled.shape.name != CROSS.name:
-            words = (
-                "The third axis of this machine is named Y, but the plane of this shape needs a "
-                "separate Y axis"
-            )
-            yield Refusal("T", Message("{words}: mill this shape on another machine.", words=words))
-        elif not setting.shop.live_output:
-            words = "This machine has no output that drives a live tool"
             yield Refusal(
                 "T",
-                Message(
-                    "{words}: define an output named live under [io.out] in the machine file.", words=words
-                ),
+                "The third axis of this machine is named Y, but the plane of this shape needs a separate Y "
+                "axis: mill this shape on another machine.",
+            )
+        elif not setting.shop.live_output:
+            yield Refusal(
+                "T",
+                "This machine has no output that drives a live tool: define an output named "
+                "live under [io.out] in the machine file.",
             )
         yield from checks(filled, setting)
 

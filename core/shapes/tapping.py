@@ -79,53 +79,42 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         most = _COARSEST * 25.4 / setting.mm
         yield Refusal(
             "PITCH",
-            (
-                Message(
-                    "A pitch of {pitch} is more than the largest feed, {maximum}: cut the thread with G33.",
-                    pitch=f"{pitch:g}",
-                    maximum=f"{most:g}",
-                )
+            Message(
+                "A pitch of {pitch} is more than the largest feed, {maximum}: cut the thread with G33.",
+                pitch=f"{pitch:g}",
+                maximum=f"{most:g}",
             ),
         )
     if filled.n("SHORT") >= filled.n("DEEP") and not _rigid(filled.values):
         yield Refusal(
             "SHORT",
-            (
-                Message(
-                    "The tap would stop {number} short of depth {number2}, so nothing is cut.",
-                    number=f"{filled.n('SHORT'):g}",
-                    number2=f"{filled.n('DEEP'):g}",
-                )
+            Message(
+                "The tap would stop {number} short of depth {number2}, so nothing is cut.",
+                number=f"{filled.n('SHORT'):g}",
+                number2=f"{filled.n('DEEP'):g}",
             ),
         )
     speed = pitch * filled.n("RPM") * setting.mm / 25.4
     if speed > 300.0:
         yield Refusal(
             "RPM",
-            (
-                Message(
-                    (
-                        "At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: "
-                        "enter a lower speed."
-                    ),
-                    number=f"{filled.n('RPM'):g}",
-                    speed=f"{speed:.0f}",
-                )
+            Message(
+                "At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: "
+                "enter a lower speed.",
+                number=f"{filled.n('RPM'):g}",
+                speed=f"{speed:.0f}",
             ),
         )
     shape, name = setting.tool(filled.n("T")), f"T{filled.n('T'):.0f}"
     if shape is not None and shape.pitch and abs(shape.pitch / setting.mm - pitch) > 0.01 * pitch:
-        words = Message(
-            "The tool data of {name} specifies a pitch of {pitch}",
-            name=name,
-            pitch=f"{shape.pitch / setting.mm:.5g}",
-        )
         yield Refusal(
             "T",
             Message(
-                "{words}, but this thread has a pitch of {pitch}: use another tap.",
-                words=words,
-                pitch=f"{pitch:.5g}",
+                "The tool data of {name} specifies a pitch of {pitch}, but this thread has a "
+                "pitch of {needed}: use another tap.",
+                name=name,
+                pitch=f"{shape.pitch / setting.mm:.5g}",
+                needed=f"{pitch:.5g}",
             ),
         )
     yield from too_deep(filled, setting)
@@ -213,21 +202,19 @@ def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if not _rigid(filled.values):
         return
     if not setting.shop.spindle_is_c:
-        words = "The spindle of this machine cannot be positioned and turned in sync with Z"
-        yield Refusal("HOLDER", Message("{words}: use a floating tap holder.", words=words))
+        yield Refusal(
+            "HOLDER",
+            "The spindle of this machine cannot be positioned and turned in sync with Z: "
+            "use a floating tap holder.",
+        )
     elif filled.n("RPM") > setting.shop.c_rpm:
         most = f"{setting.shop.c_rpm:g}"
         yield Refusal(
             "RPM",
-            (
-                Message(
-                    (
-                        "A rigid tap turns with the C axis, which reaches {maximum} rpm: enter "
-                        "{maximum2} or less."
-                    ),
-                    maximum=most,
-                    maximum2=most,
-                )
+            Message(
+                "A rigid tap turns with the C axis, which reaches {maximum} rpm: enter {maximum2} or less.",
+                maximum=most,
+                maximum2=most,
             ),
         )
 

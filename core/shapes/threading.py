@@ -288,40 +288,35 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if inside and root <= crest:
         yield Refusal(
             "ROOT",
-            (
-                Message(
-                    (
-                        "An internal thread is cut outward, so the diameter at the last pass, {root}, "
-                        "must be larger than the diameter before threading, {crest}."
-                    ),
-                    root=f"{root:g}",
-                    crest=f"{crest:g}",
-                )
+            Message(
+                "An internal thread is cut outward, so the diameter at the last pass, {root}, "
+                "must be larger than the diameter before threading, {crest}.",
+                root=f"{root:g}",
+                crest=f"{crest:g}",
             ),
         )
     if not inside and root >= crest:
         yield Refusal(
             "ROOT",
-            (
-                Message(
-                    (
-                        "An external thread is cut inward, so the diameter at the last pass, {root}, "
-                        "must be smaller than the diameter before threading, {crest}."
-                    ),
-                    root=f"{root:g}",
-                    crest=f"{crest:g}",
-                )
+            Message(
+                "An external thread is cut inward, so the diameter at the last pass, {root}, "
+                "must be smaller than the diameter before threading, {crest}.",
+                root=f"{root:g}",
+                crest=f"{crest:g}",
             ),
         )
     sharp = pitch / 2.0 / math.tan(math.radians(flank_angle(filled.values, setting) / 2.0))
     if filled_depth(filled) > 1.02 * sharp:
-        words = Message(
-            "The thread is {filled} deep, but at a pitch of {pitch} its flanks meet at a depth of {sharp}",
-            filled=f"{filled_depth(filled):.4f}",
-            pitch=f"{pitch:.5g}",
-            sharp=f"{sharp:.4f}",
+        yield Refusal(
+            "ROOT",
+            Message(
+                "The thread is {filled} deep, but at a pitch of {pitch} its flanks meet at a "
+                "depth of {sharp}. Check both diameters.",
+                filled=f"{filled_depth(filled):.4f}",
+                pitch=f"{pitch:.5g}",
+                sharp=f"{sharp:.4f}",
+            ),
         )
-        yield Refusal("ROOT", Message("{words}. Check both diameters.", words=words))
     if setting.dialect is Dialect.OMNITURN:
         yield from _lead_checks(filled, setting)
     pulls = filled.t("PULL") == YES or filled.shape.field("RELIEF") is None
@@ -336,14 +331,15 @@ def _flank_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     """Passes that come in flatter than the flank cut away what the last one leaves."""
     angle, flank = filled.n("INFEED"), flank_angle(filled.values, setting) / 2.0
     if angle > flank + 1e-9:
-        words = Message(
-            "An infeed angle of {angle}° is more than the flank angle of {flank}°, so the first "
-            "passes would cut into the flank",
-            angle=f"{angle:g}",
-            flank=f"{flank:g}",
-        )
         yield Refusal(
-            "INFEED", Message("{words}. Enter {flank} or less.", words=words, flank=f"{math.floor(flank):g}")
+            "INFEED",
+            Message(
+                "An infeed angle of {angle}° is more than the flank angle of {flank}°, so the "
+                "first passes would cut into the flank. Enter {limit} or less.",
+                angle=f"{angle:g}",
+                flank=f"{flank:g}",
+                limit=f"{math.floor(flank):g}",
+            ),
         )
 
 
@@ -353,12 +349,10 @@ def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if inch > _COARSE[2]:
         yield Refusal(
             "PITCH",
-            (
-                Message(
-                    "A lead of {lead} is more than the maximum that the control can cut, {coarse}.",
-                    lead=f"{lead:g}",
-                    coarse=f"{_COARSE[2] / setting.mm * 25.4:g}",
-                )
+            Message(
+                "A lead of {lead} is more than the maximum that the control can cut, {coarse}.",
+                lead=f"{lead:g}",
+                coarse=f"{_COARSE[2] / setting.mm * 25.4:g}",
             ),
         )
     speed = inch * filled.n("RPM")
@@ -366,16 +360,12 @@ def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         slow = math.floor(300.0 / inch)
         yield Refusal(
             "RPM",
-            (
-                Message(
-                    (
-                        "At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: "
-                        "enter S{slow} or less."
-                    ),
-                    number=f"{filled.n('RPM'):g}",
-                    speed=f"{speed:.0f}",
-                    slow=slow,
-                )
+            Message(
+                "At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: "
+                "enter S{slow} or less.",
+                number=f"{filled.n('RPM'):g}",
+                speed=f"{speed:.0f}",
+                slow=slow,
             ),
         )
     turns = math.sqrt(filled_depth(filled) / max(first_depth(filled), 1e-9))
@@ -398,12 +388,10 @@ def _relief(filled: Filled) -> Iterator[Refusal]:
     elif relief < 1.5 * lead:
         yield Refusal(
             "RELIEF",
-            (
-                Message(
-                    "A relief width of {relief} is less than {lead}, which is 1.5 times the lead.",
-                    relief=f"{relief:g}",
-                    lead=f"{1.5 * lead:.4g}",
-                )
+            Message(
+                "A relief width of {relief} is less than {lead}, which is 1.5 times the lead.",
+                relief=f"{relief:g}",
+                lead=f"{1.5 * lead:.4g}",
             ),
         )
 
@@ -422,13 +410,13 @@ def _by_sheet(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         )
         yield Refusal("T", words)
     if shape.pitch and abs(shape.pitch / setting.mm - filled.n("PITCH")) > 0.02 * filled.n("PITCH"):
-        words = Message(
-            "{name} is made for a pitch of {pitch}", name=name, pitch=f"{shape.pitch / setting.mm:.5g}"
-        )
         yield Refusal(
             "T",
             Message(
-                "{words}, not {number}: use another insert.", words=words, number=f"{filled.n('PITCH'):.5g}"
+                "{name} is made for a pitch of {pitch}, not {needed}: use another insert.",
+                name=name,
+                pitch=f"{shape.pitch / setting.mm:.5g}",
+                needed=f"{filled.n('PITCH'):.5g}",
             ),
         )
     if filled.t("SIDE") == INSIDE and shape.diameter and shape.diameter / setting.mm > filled.n("CREST"):
@@ -458,12 +446,10 @@ def unknown_name(filled: Filled, _setting: Setting) -> Iterator[Refusal]:
     elif filled.shape.field("CLASS") is not None and allowed and tolerance not in allowed:
         yield Refusal(
             "CLASS",
-            (
-                Message(
-                    "CLASS {tolerance} is not valid: choose one of {allowed}.",
-                    tolerance=tolerance,
-                    allowed=", ".join(allowed),
-                )
+            Message(
+                "CLASS {tolerance} is not valid: choose one of {allowed}.",
+                tolerance=tolerance,
+                allowed=", ".join(allowed),
             ),
         )
 

@@ -143,10 +143,8 @@ def _contour_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         for at, (before, here) in enumerate(pairwise(there), 2):
             if here[0] > before[0] + 1e-9:
                 text_ = Message(
-                    (
-                        "Point {position} runs back toward the face, but roughing can move only toward "
-                        "the chuck along Z."
-                    ),
+                    "Point {position} runs back toward the face, but roughing can move only toward "
+                    "the chuck along Z.",
                     position=at,
                 )
                 yield Refusal(row_word(at), text_)
@@ -170,18 +168,11 @@ def _falls_at_once(there: Sequence[tuple[float, float]], *, inside: bool) -> Ite
     """Roughing comes back across a contour that leads into the metal from its first point on."""
     side = -1.0 if inside else 1.0
     if len(there) > 1 and there[1][0] < there[0][0] - SAME and side * (there[0][1] - there[1][1]) > SAME:
-        words = (
-            "The contour cuts deeper directly after its first point, and roughing cannot "
-            "return past that point"
-        )
         yield Refusal(
             row_word(1),
-            (
-                Message(
-                    "{words}: add a point before the first point, at the same Z and at the lowest X.",
-                    words=words,
-                )
-            ),
+            "The contour cuts deeper directly after its first point, and roughing cannot "
+            "return past that point: add a point before the first point, at the same Z and "
+            "at the lowest X.",
         )
 
 
@@ -189,10 +180,8 @@ def _compensated(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("COMP") and setting.called and setting.dialect is Dialect.OMNITURN:
         yield Refusal(
             "COMP",
-            (
-                "G41 does not work in a subroutine, and a bar feed loop runs this shape in a "
-                "subroutine: enter 0."
-            ),
+            "G41 does not work in a subroutine, and a bar feed loop runs this shape in a "
+            "subroutine: enter 0.",
         )
 
 
@@ -203,13 +192,10 @@ def _cutting_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if rough and leave >= rough:
         yield Refusal(
             "LEAVE",
-            (
-                Message(
-                    "A finishing allowance of {leave} is more than a pass of {rough}: enter a smaller "
-                    "allowance.",
-                    leave=f"{leave:g}",
-                    rough=f"{rough:g}",
-                )
+            Message(
+                "A finishing allowance of {leave} is more than a pass of {rough}: enter a smaller allowance.",
+                leave=f"{leave:g}",
+                rough=f"{rough:g}",
             ),
         )
     stock, end = _stock_and_end({**filled.shape.extent(filled.rows), **filled.values})
@@ -221,13 +207,16 @@ def _too_deep(filled: Filled, setting: Setting, word: str, deep: float) -> Itera
     """Refuse a pass that is deeper than the insert takes."""
     most = most_depth(setting, filled.n("T"))
     if deep > most + SAME:
-        words = Message(
-            "A pass would be {depth} deep, but the insert of T{number} allows a depth of only {maximum}",
-            depth=f"{deep:.4g}",
-            number=f"{filled.n('T'):.0f}",
-            maximum=f"{most:.4g}",
+        yield Refusal(
+            word,
+            Message(
+                "A pass would be {depth} deep, but the insert of T{number} allows a depth of "
+                "only {maximum}: enter a smaller depth of cut.",
+                depth=f"{deep:.4g}",
+                number=f"{filled.n('T'):.0f}",
+                maximum=f"{most:.4g}",
+            ),
         )
-        yield Refusal(word, Message("{words}: enter a smaller depth of cut.", words=words))
 
 
 def _turn(filled: Filled, setting: Setting, code: Code) -> None:
@@ -255,7 +244,7 @@ def _outside(values: Values) -> bool:
 
 TURN = Shape(
     "TURN",
-    ("a profile of points, corners and arcs, with or without roughing"),
+    "a profile of points, corners and arcs, with or without roughing",
     (
         tool_field(ToolKind.TURNING, ToolKind.BORING),
         Field("SIDE", "SIDE", Kind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
@@ -311,15 +300,10 @@ def _face_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("TO") >= filled.n("FROM"):
         yield Refusal(
             "TO",
-            (
-                Message(
-                    (
-                        "Facing starts at diameter {number} and runs inward: end diameter {number2} "
-                        "must be less."
-                    ),
-                    number=f"{filled.n('FROM'):g}",
-                    number2=f"{filled.n('TO'):g}",
-                )
+            Message(
+                "Facing starts at diameter {number} and runs inward: end diameter {number2} must be less.",
+                number=f"{filled.n('FROM'):g}",
+                number2=f"{filled.n('TO'):g}",
             ),
         )
     yield from too_fast(filled, setting)
@@ -343,7 +327,7 @@ def _face_sketch(_filled: Filled) -> Sketch:
 
 FACE = Shape(
     "FACE",
-    ("the end of the part faced square, in one or more passes"),
+    "the end of the part faced square, in one or more passes",
     (
         tool_field(ToolKind.TURNING),
         Field("FROM", "START DIAMETER", Kind.DIAMETER, bar),
@@ -383,17 +367,15 @@ def _taper(filled: Filled, setting: Setting, code: Code) -> None:
 def _taper_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.n("LARGE") < filled.n("SMALL"):
         yield Refusal(
-            "LARGE", ("The taper gets smaller toward the chuck, so a turning tool would run into the stock.")
+            "LARGE", "The taper gets smaller toward the chuck, so a turning tool would run into the stock."
         )
     if filled.n("FROM") and filled.n("LARGE") > filled.n("FROM") + 1e-9:
         yield Refusal(
             "LARGE",
-            (
-                Message(
-                    "Diameter {number} is more than the stock diameter of {number2}.",
-                    number=f"{filled.n('LARGE'):g}",
-                    number2=f"{filled.n('FROM'):g}",
-                )
+            Message(
+                "Diameter {number} is more than the stock diameter of {number2}.",
+                number=f"{filled.n('LARGE'):g}",
+                number2=f"{filled.n('FROM'):g}",
             ),
         )
     yield from _compensated(filled, setting)
@@ -419,7 +401,7 @@ _USUAL_CONTOUR = (_ROUGH, _LEAVE, _RFEED, feed_field(Work.FINISH))
 
 TAPER = Shape(
     "TAPER TURN",
-    ("a taper defined by two diameters, or by one diameter and an angle"),
+    "a taper defined by two diameters, or by one diameter and an angle",
     (
         tool_field(ToolKind.TURNING),
         Field("FROM", "STOCK DIAMETER", Kind.DIAMETER, bar, zero=True),
@@ -457,16 +439,11 @@ def _edge_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.t("SIDE") == OUTSIDE and 2.0 * edge > across + 1e-9:
         yield Refusal(
             "EDGE",
-            (
-                Message(
-                    (
-                        "An edge size of {edge} is more than half of diameter {across}: enter "
-                        "{across2} or less."
-                    ),
-                    edge=f"{edge:g}",
-                    across=f"{across:g}",
-                    across2=f"{across / 2:g}",
-                )
+            Message(
+                "An edge size of {edge} is more than half of diameter {across}: enter {across2} or less.",
+                edge=f"{edge:g}",
+                across=f"{across:g}",
+                across2=f"{across / 2:g}",
             ),
         )
     yield from _compensated(filled, setting)
@@ -485,7 +462,7 @@ def _edge_sketch(filled: Filled) -> Sketch:
 
 EDGE = Shape(
     "EDGE TURN",
-    ("a chamfer or a radius on an edge, on the outside or in a bore"),
+    "a chamfer or a radius on an edge, on the outside or in a bore",
     (
         tool_field(ToolKind.TURNING, ToolKind.BORING),
         Field("SIDE", "SIDE", Kind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
@@ -518,50 +495,41 @@ def _bore_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if hole >= across:
         yield Refusal(
             "HOLE",
-            (
-                Message(
-                    "A hole of {hole} is not less than the bore diameter of {across}, so nothing is cut.",
-                    hole=f"{hole:g}",
-                    across=f"{across:g}",
-                )
+            Message(
+                "A hole of {hole} is not less than the bore diameter of {across}, so nothing is cut.",
+                hole=f"{hole:g}",
+                across=f"{across:g}",
             ),
         )
     if filled.n("EDGE") >= deep:
         yield Refusal(
             "EDGE",
-            (
-                Message(
-                    "The chamfer is at least as long as the bore depth of {depth}: enter a smaller chamfer.",
-                    depth=f"{deep:g}",
-                )
+            Message(
+                "The chamfer is at least as long as the bore depth of {depth}: enter a smaller chamfer.",
+                depth=f"{deep:g}",
             ),
         )
     tool = setting.tool(filled.n("T"))
     if tool is not None and tool.diameter and tool.diameter > hole * setting.mm:
-        words = Message(
-            "The boring bar of T{number} has a diameter of {diameter}, but the hole diameter is {hole}",
-            number=f"{filled.n('T'):.0f}",
-            diameter=f"{tool.diameter / setting.mm:.4g}",
-            hole=f"{hole:g}",
-        )
         yield Refusal(
             "T",
             Message(
-                "{words}, so the bar does not fit; drill a larger hole, or use a smaller boring bar.",
-                words=words,
+                "The boring bar of T{number} has a diameter of {diameter}, but the hole "
+                "diameter is {hole}, so the bar does not fit; drill a larger hole, or use a "
+                "smaller boring bar.",
+                number=f"{filled.n('T'):.0f}",
+                diameter=f"{tool.diameter / setting.mm:.4g}",
+                hole=f"{hole:g}",
             ),
         )
     if tool is not None and tool.stick_out and tool.stick_out < deep * setting.mm:
-        words = Message(
-            "The reach of T{number} is only {stick_out}",
-            number=f"{filled.n('T'):.0f}",
-            stick_out=f"{tool.stick_out / setting.mm:.4g}",
-        )
         yield Refusal(
             "DEEP",
             Message(
-                "{words}, but the bore is {depth} deep: use a longer boring bar.",
-                words=words,
+                "The reach of T{number} is only {stick_out}, but the bore is {depth} deep: use "
+                "a longer boring bar.",
+                number=f"{filled.n('T'):.0f}",
+                stick_out=f"{tool.stick_out / setting.mm:.4g}",
                 depth=f"{deep:g}",
             ),
         )
@@ -585,7 +553,7 @@ def _bore_sketch(_filled: Filled) -> Sketch:
 
 BORE = Shape(
     "BORE",
-    ("a drilled hole bored to a diameter, with a chamfer at the mouth of the hole"),
+    "a drilled hole bored to a diameter, with a chamfer at the mouth of the hole",
     (
         tool_field(ToolKind.BORING),
         Field("HOLE", "HOLE DIAMETER", Kind.DIAMETER),

@@ -79,16 +79,12 @@ def too_fast(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         most = f"{setting.shop.max_rpm:g}"
         yield Refusal(
             "RPM",
-            (
-                Message(
-                    (
-                        "S{revolutions} is more than the {maximum} rpm limit of this spindle: enter "
-                        "{maximum2} or less."
-                    ),
-                    revolutions=f"{turns:g}",
-                    maximum=most,
-                    maximum2=most,
-                )
+            Message(
+                "S{revolutions} is more than the {maximum} rpm limit of this spindle: enter "
+                "{maximum2} or less.",
+                revolutions=f"{turns:g}",
+                maximum=most,
+                maximum2=most,
             ),
         )
 
@@ -110,10 +106,13 @@ def too_deep(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     """DEEP beyond what the flutes of the tool reach by its sheet."""
     shape, deep = setting.tool(filled.n("T")), filled.n("DEEP")
     if shape is not None and shape.length and deep > shape.length / setting.mm + 1e-9:
-        words = Message(
-            "Depth {depth} is more than the flute length of T{number}, which is {length}",
-            depth=f"{deep:g}",
-            number=f"{filled.n('T'):.0f}",
-            length=f"{shape.length / setting.mm:.4g}",
+        yield Refusal(
+            "DEEP",
+            Message(
+                "Depth {depth} is more than the flute length of T{number}, which is {length}: "
+                "use a longer tool.",
+                depth=f"{deep:g}",
+                number=f"{filled.n('T'):.0f}",
+                length=f"{shape.length / setting.mm:.4g}",
+            ),
         )
-        yield Refusal("DEEP", Message("{words}: use a longer tool.", words=words))

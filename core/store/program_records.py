@@ -20,11 +20,9 @@ def check_name(name: str) -> None:
     clean = name.strip() == name and name not in ("", ".", "..")
     if not clean or not name.isprintable() or _FORBIDDEN & set(name) or len(name.encode()) > _NAME_BYTES:
         raise StoreError(
-            (
-                Message(
-                    "{name} is not a valid program name; use letters, digits, periods, dashes and spaces",
-                    name=f"{name!r}",
-                )
+            Message(
+                "{name} is not a valid program name; use letters, digits, periods, dashes and spaces",
+                name=f"{name!r}",
             ),
             "invalid-name",
         )
@@ -81,28 +79,22 @@ def load(connection: sqlite3.Connection, name: str, version: int | None) -> byte
         (name, version, version),
     ).fetchone()
     if row is None:
-        which = "" if version is None else Message(" version {version}", version=version)
-        raise StoreError(
-            Message(
-                "the data store has no program {name}{which}; see the list of programs and versions",
-                name=f"{name!r}",
-                which=which,
-            ),
-            "no-program",
+        template = (
+            "the data store has no program {name}; see the list of programs and versions"
+            if version is None
+            else "the data store has no version {version} of program {name}; see the list of programs and "
+            "versions"
         )
+        raise StoreError(Message(template, name=f"{name!r}", version=version), "no-program")
     number, text, digest = row
     if not _is_whole(text, digest):
         shown = _in_line(number)
         raise StoreError(
-            (
-                Message(
-                    (
-                        "{name} version {value} does not match its checksum; load another version or "
-                        "restore a backup"
-                    ),
-                    name=f"{name!r}",
-                    value=shown,
-                )
+            Message(
+                "{name} version {value} does not match its checksum; load another version or "
+                "restore a backup",
+                name=f"{name!r}",
+                value=shown,
             ),
             "damaged-version",
         )

@@ -60,7 +60,7 @@ def _times(values: Values) -> Iterator[Finding]:
             yield Finding(
                 "canopen.heartbeat_ms",
                 f"{1000 * beat:g}",
-                ("the heartbeat time must be at least twice sync_ms"),
+                "the heartbeat time must be at least twice sync_ms",
             )
     if values.says("canopen.mode", "pvt") and values.has("canopen.record_ms", "machine.commit_ms"):
         yield from _queue(values.number("canopen.record_ms"), values.number("machine.commit_ms"), values)
@@ -76,10 +76,8 @@ def _queue(record: float, commit: float, values: Values) -> Iterator[Finding]:
     least = _RECORDS * record + _RESTART
     if values.says("machine.backend", "canopen") and commit < least - 1e-9:
         expected = Message(
-            (
-                "the time must be at least {minimum} ms to cover a restart and the {records} "
-                "PVT records queued in the drives"
-            ),
+            "the time must be at least {minimum} ms to cover a restart and the {records} "
+            "PVT records queued in the drives",
             minimum=f"{1000 * least:g}",
             records=_RECORDS,
         )
@@ -98,10 +96,8 @@ def _families(file: FileReading) -> Iterator[Finding]:
         known = family or said(file, f"{path}.eds")
         if values.says("canopen.mode", "pvt") and (not known or (family and family not in QUEUED)):
             why = Message(
-                (
-                    'the drive must be {queued}, because mode "pvt" needs a drive with a queue; '
-                    'with other drives, use "csp", "ip" or "pp"'
-                ),
+                'the drive must be {queued}, because mode "pvt" needs a drive with a queue; '
+                'with other drives, use "csp", "ip" or "pp"',
                 queued=queued,
             )
             yield Finding(f"{path}.drive", written(family) if family else "", why)
@@ -109,10 +105,8 @@ def _families(file: FileReading) -> Iterator[Finding]:
         if family in IN_RPM and values.has(counts) and values.number(counts) == 0:
             title = PROFILES[family].title
             why = Message(
-                (
-                    "this entry is missing; {title} reports speeds in rpm, so enter 4 × the "
-                    "encoder pulses per revolution"
-                ),
+                "this entry is missing; {title} reports speeds in rpm, so enter 4 × the "
+                "encoder pulses per revolution",
                 title=title,
             )
             yield Finding(counts, "", why)
@@ -202,10 +196,8 @@ def _heartbeat(file: FileReading) -> Iterator[Finding]:
             if watched != host or patience < 2 * beat:
                 best = host << 16 | round(3000 * beat)
                 expected = Message(
-                    (
-                        "this entry monitors node {watched} with a timeout of {patience} ms; enter "
-                        "{best} to monitor the host with a timeout of 3 heartbeats"
-                    ),
+                    "this entry monitors node {watched} with a timeout of {patience} ms; enter "
+                    "{best} to monitor the host with a timeout of 3 heartbeats",
                     watched=watched,
                     patience=f"{1000 * patience:g}",
                     best=best,
@@ -231,20 +223,18 @@ def _drives(file: FileReading) -> Iterator[Finding]:
             yield Finding(
                 f"{NODES}.{axis}",
                 "",
-                Message(("this entry is missing; axis {axis} needs a drive{own}"), axis=axis, own=own),
+                Message("this entry is missing; axis {axis} needs a drive{own}", axis=axis, own=own),
             )
         if values.has(method) and values.number(method) == 0:
             yield Finding(
                 method,
                 "",
-                (
-                    "this entry is missing; enter the number of the drive's homing method (1 or 2 for "
-                    "homing on a limit switch)"
-                ),
+                "this entry is missing; enter the number of the drive's homing method (1 or 2 for "
+                "homing on a limit switch)",
             )
     if values.says("spindle.driver", "cia402") and SPINDLE not in nodes:
         yield Finding(
-            f"{NODES}.spindle", "", ('this entry is missing; spindle.driver = "cia402" needs a drive')
+            f"{NODES}.spindle", "", 'this entry is missing; spindle.driver = "cia402" needs a drive'
         )
 
 
@@ -285,10 +275,8 @@ def _outside(file: FileReading) -> Iterator[Finding]:
                 needed = round(ends[sub - 1] / count)
                 if signed > needed if sub == 1 else signed < needed:
                     why = Message(
-                        (
-                            "this software limit allows less travel than {path}, which needs a limit of "
-                            "{needed} counts"
-                        ),
+                        "this software limit allows less travel than {path}, which needs a limit of "
+                        "{needed} counts",
                         path=path,
                         needed=needed,
                     )
@@ -314,11 +302,12 @@ def _wrong_terminal(file: FileReading, text: str, *, output: bool, analog: bool)
     terminal = can_terminal(text)
     sample = "401.6401.1" if analog else "401.6200.1.0" if output else "401.6000.1.0"
     if terminal is None or (terminal.bit < 0) != analog:
-        return Message(
-            'the address must consist of node, object, sub-index{ending}, such as "{sample}"',
-            ending="" if analog else " and bit",
-            sample=sample,
+        template = (
+            'the address must consist of node, object and sub-index, such as "{sample}"'
+            if analog
+            else 'the address must consist of node, object, sub-index and bit, such as "{sample}"'
         )
+        return Message(template, sample=sample)
     modules = module_names(file)
     plain = terminal.node == PLAIN_MODULE
     profile = (MODULE if modules else 0) if plain else profile_of(file, terminal.node)
@@ -338,7 +327,7 @@ def _wrong_terminal(file: FileReading, text: str, *, output: bool, analog: bool)
     most = _WORDS if analog else _BYTES
     if terminal.index != wanted or not 1 <= terminal.sub <= most:
         return Message(
-            ("the address must contain object {expected} with sub-index 1…{maximum}"),
+            "the address must contain object {expected} with sub-index 1…{maximum}",
             expected=f"{wanted:04X}",
             maximum=most,
         )

@@ -386,7 +386,7 @@ class Setup:
             ) from error
         except SdoCommunicationError as error:
             why = self._bus.trouble or Message("{error}; check cable, power and node number", error=error)
-            raise DriverError(f"{where}: {why}", "drive-silent") from error
+            raise DriverError(Message("{place}: {why}", place=where, why=why), "drive-silent") from error
         except KeyError as error:
             raise DriverError(
                 Message("{place} is not in the node's object dictionary; check its EDS file", place=where),

@@ -248,11 +248,12 @@ class Drive402:
     def _emergency(self, error: EmcyError) -> None:
         if error.code & 0xFF00:
             what = Message(
-                "{description} (EMCY {code})",
+                "{name}: {description} (EMCY {code})",
+                name=self.name,
                 description=error.get_desc().lower() or "drive error",
                 code=f"{error.code:04X}",
             )
-            self._wrong(f"{self.name}: {what}", "following" if error.code == _FOLLOWING else "axis")
+            self._wrong(what, "following" if error.code == _FOLLOWING else "axis")
 
 
 def _mapped(entry: Entry) -> tuple[int, int]:

@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
+from core.message import Message as Text
 from core.ports import ALL_UNKNOWN, Clock, DriverError, Fault, FloatArray, TrippedError, Unknown, code_of
 from drivers.feeder.feeder_messages import NOTHING, VERSION, Message, fault_of, text, texts
 from drivers.reopening import Opening
@@ -147,7 +148,8 @@ class Line:
         none to start.
         """
         if self._again is None:
-            raise DriverError(f"{self.fault}; restart TurnDesk", code_of(self.fault, "feeder-gone"))
+            words = Text("{fault}; restart TurnDesk", fault=self.fault)
+            raise DriverError(words, code_of(self.fault, "feeder-gone"))
         self.fault, self._opening = "", self._again()
 
     def greet(self) -> Mapping[str, object]:
@@ -155,8 +157,12 @@ class Line:
         hello = self.ask(Message({"do": "hello"}, NOTHING)).head
         if hello.get("version") != VERSION:
             raise DriverError(
-                f"the driver host uses version {hello.get('version')}, but TurnDesk uses version "
-                f"{VERSION}: exit TurnDesk, complete the installation, then start TurnDesk again"
+                Text(
+                    "the driver host uses version {version}, but TurnDesk uses version {expected}: exit "
+                    "TurnDesk, complete the installation, then start TurnDesk again",
+                    version=hello.get("version"),
+                    expected=VERSION,
+                )
             )
         return hello
 

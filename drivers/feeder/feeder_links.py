@@ -7,6 +7,7 @@ import socket
 import time
 from contextlib import suppress
 
+from core.message import Message as Text
 from core.ports import DriverError
 from drivers.feeder.feeder_messages import Inbox, Message, packed, text
 from drivers.feeder.feeder_server import Feeder
@@ -64,11 +65,16 @@ class SocketLink:
             return self._answer(limit)
         except TimeoutError as error:
             raise DriverError(
-                f"no response from the driver host for {limit:g} s; the axes stop on their path",
+                Text(
+                    "no response from the driver host for {seconds} s; the axes stop on their path",
+                    seconds=f"{limit:g}",
+                ),
                 "feeder-silent",
             ) from error
         except OSError as error:
-            raise DriverError(f"the driver host has ended ({error.strerror})", "feeder-gone") from error
+            raise DriverError(
+                Text("the driver host has ended ({cause})", cause=error.strerror), "feeder-gone"
+            ) from error
 
     def hang_up(self) -> None:
         """Both directions end, whoever waits on it."""

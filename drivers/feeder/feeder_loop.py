@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from functools import partial
 
+from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
 from drivers.feeder.feeder_messages import Inbox, packed
@@ -29,8 +30,10 @@ def real_time(priority: int = PRIORITY) -> list[str]:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
     except (OSError, AttributeError) as error:
         return [
-            f"the driver host runs without real-time priority ({_why(error)}); "
-            "see docs/integrator/computer.md"
+            Message(
+                "the driver host runs without real-time priority ({cause}); see docs/integrator/computer.md",
+                cause=_why(error),
+            )
         ]
     return []
 
@@ -58,14 +61,22 @@ def keep_memory() -> list[str]:
     try:
         libc = ctypes.CDLL(None, use_errno=True)
         if libc.mlockall(_CURRENT if limit else _CURRENT | _FUTURE) != 0:
-            return [f"the driver host's memory is not locked ({os.strerror(ctypes.get_errno())})"]
+            return [_not_locked(os.strerror(ctypes.get_errno()))]
     except (OSError, AttributeError) as error:
-        return [f"the driver host's memory is not locked ({_why(error)})"]
-    told = (
-        "only the driver host's present memory is locked; memory allocated later is not "
-        f"locked (memlock limit {limit >> 20} MB)"
-    )
-    return [told] if limit else []
+        return [_not_locked(_why(error))]
+    if not limit:
+        return []
+    return [
+        Message(
+            "only the driver host's present memory is locked; memory allocated later is not locked "
+            "(memlock limit {limit} MB)",
+            limit=limit >> 20,
+        )
+    ]
+
+
+def _not_locked(cause: str) -> str:
+    return Message("the driver host's memory is not locked ({cause})", cause=cause)
 
 
 def _memory_limit() -> int:

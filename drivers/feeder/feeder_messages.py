@@ -9,6 +9,7 @@ from typing import NamedTuple, get_args
 
 import numpy as np
 
+from core.message import Message as Text
 from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, Segments, code_of
 
 _LENGTHS = struct.Struct("<II")  # of the head, of the numbers, in bytes
@@ -106,7 +107,9 @@ def number(head: Mapping[str, object], key: str) -> float:
     value = head.get(key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _HUGE:
         raise DriverError(
-            f"the driver host received an invalid number for {key}", "feeder-silent", reason="no-number"
+            Text("the driver host received an invalid number for {key}", key=key),
+            "feeder-silent",
+            reason="no-number",
         )
     return float(value)
 

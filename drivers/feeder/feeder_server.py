@@ -8,6 +8,7 @@ from functools import cache, partial
 
 import numpy as np
 
+from core.message import Message as Text
 from core.ports import DriverError, MachinePorts, StationState, Stop, Trip, TrippedError, at_rest
 from drivers.feeder.feeder_messages import (
     NOTHING,
@@ -43,10 +44,8 @@ def act(ports: MachinePorts, head: Mapping[str, object]) -> None:
     order = acts.get(text(head, "what"))
     if order is None:
         raise DriverError(
-            (
-                "the driver host does not recognize this command; check that the driver host "
-                "and TurnDesk have the same version"
-            ),
+            "the driver host does not recognize this command; check that the driver host "
+            "and TurnDesk have the same version",
             reason="unknown-order",
         )
     order()
@@ -62,7 +61,12 @@ def use_hand(hands: object | None, head: Mapping[str, object]) -> object:
         return use(*values)
     except TypeError as error:
         raise DriverError(
-            f"the simulated operator station does not support {name} with {values}", reason="wrong-values"
+            Text(
+                "the simulated operator station does not support {name} with {values}",
+                name=name,
+                values=values,
+            ),
+            reason="wrong-values",
         ) from error
 
 
@@ -98,7 +102,8 @@ def _how(word: str) -> Stop:
         return Stop(word)
     except ValueError as error:
         raise DriverError(
-            f"the driver host does not recognize the stop command {word!r}", reason="unknown-stop"
+            Text("the driver host does not recognize the stop command '{word}'", word=word),
+            reason="unknown-stop",
         ) from error
 
 
@@ -125,7 +130,10 @@ class TripGuard:
             text(message.head, "do") in _MOVES or what == "home" or turns or switches
         ):
             raise TrippedError(
-                f"the driver host received no messages for {self.tripped.away:.2f} s and stopped the machine"
+                Text(
+                    "the driver host received no messages for {seconds} s and stopped the machine",
+                    seconds=f"{self.tripped.away:.2f}",
+                )
             )
         if what in {"run", "coast", "orient", "release"}:
             self._turns = turns
@@ -249,10 +257,8 @@ class Feeder:
         answer = self._answers.get(what)
         if answer is None:
             return _refused(
-                (
-                    "the driver host does not recognize this request; check that the driver host "
-                    "and TurnDesk have the same version"
-                ),
+                "the driver host does not recognize this request; check that the driver host "
+                "and TurnDesk have the same version",
                 "unknown-request",
             )
         try:
@@ -310,7 +316,10 @@ class Feeder:
         if slept > max(self._latest, LATE):
             self._latest = slept
             self._note(
-                f"the driver host woke up {1000 * slept:.0f} ms late; check that it has real-time priority"
+                Text(
+                    "the driver host woke up {late} ms late; check that it has real-time priority",
+                    late=f"{1000 * slept:.0f}",
+                )
             )
         if seconds > AWAY:
             self._trip(seconds, spindle=self._resting())
@@ -343,7 +352,8 @@ class Feeder:
     def _hear(self) -> None:
         now = self._ports.clock.now()
         if now - self._heard > self._longest:
-            self._note(f"no messages from TurnDesk for {now - self._heard:.2f} s")
+            silent = f"{now - self._heard:.2f}"
+            self._note(Text("no messages from TurnDesk for {seconds} s", seconds=silent))
             self._guard.back_after(now - self._heard)
         self._heard = now
         self._parted = False
@@ -352,7 +362,13 @@ class Feeder:
         """Outputs that nobody renews do not wait for the slides to rest."""
         for name, longest in self._refresh.items():
             if silent > longest and self._ports.io.outputs().get(name):
-                self._note(f"{name} was switched off: no messages from TurnDesk for {silent:.2f} s")
+                self._note(
+                    Text(
+                        "{output} was switched off: no messages from TurnDesk for {seconds} s",
+                        output=name,
+                        seconds=f"{silent:.2f}",
+                    )
+                )
                 self._carefully(partial(self._ports.io.write, name, False))
                 self._guard.fell(silent, name)
 
@@ -382,7 +398,7 @@ class Feeder:
             try:
                 step()
             except DriverError as error:
-                self._note(f"error while stopping: {error}")
+                self._note(Text("error while stopping: {error}", error=error))
 
     def _note(self, what: str) -> None:
         self._notes = [*self._notes[-_NOTES:], what]

@@ -177,19 +177,23 @@ class GrblMachine:
             return []
         return [
             Message(
-                (
-                    "{names}: homing is disabled in the controller ($22=0). If the axis has "
-                    "switches, set $22 to 3; otherwise add method = 37 to home = {{ … }} of the "
-                    "axis, so that Home uses the current position"
-                ),
+                "{names}: homing is disabled in the controller ($22=0). If the axis has "
+                "switches, set $22 to 3; otherwise add method = 37 to home = {{ … }} of the "
+                "axis, so that Home uses the current position",
                 names=" and ".join(names),
             )
         ]
 
     def _warnings(self) -> list[str]:
-        outputs = {name: self.io.lacking(name) for name in self.controller.config.outputs}
-        told = _grouped("output", {name: why for name, why in outputs.items() if why})
-        told += _grouped("input", self.inputs.lacking())
+        config = self.controller.config
+        outputs = {
+            f"{name} ({each.terminal})": self.io.lacking(name) for name, each in config.outputs.items()
+        }
+        told = _grouped(outputs, "output {names}: {reason}", "outputs {names}: {reason}")
+        inputs = {
+            f"{name} ({config.inputs[name].terminal})": why for name, why in self.inputs.lacking().items()
+        }
+        told += _grouped(inputs, "input {names}: {reason}", "inputs {names}: {reason}")
         told += self._unlike() + self._homes()
         estop = self.controller.config.inputs.get(ESTOP)
         if estop is not None and estop.terminal == HARDWARE:
@@ -202,15 +206,13 @@ class GrblMachine:
         return told
 
 
-def _grouped(what: str, lacking: Mapping[str, str]) -> list[str]:
-    """One sentence for all with the same reason, which is told behind the terminal."""
+def _grouped(lacking: Mapping[str, str], one: str, several: str) -> list[str]:
+    """Return one sentence for all names that have the same reason; a name without a reason is left out."""
     reasons: dict[str, list[str]] = {}
-    for name, why in lacking.items():
-        terminal, _, reason = why.partition(" ")
-        reasons.setdefault(reason, []).append(f"{name} ({terminal})")
+    for name, reason in lacking.items():
+        if reason:
+            reasons.setdefault(reason, []).append(name)
     return [
-        f"{what} {names[0]} {reason}"
-        if len(names) == 1
-        else Message("{what}s {names}: each {reason}", what=what, names=", ".join(names), reason=reason)
+        Message(one if len(names) == 1 else several, names=", ".join(names), reason=reason)
         for reason, names in reasons.items()
     ]

@@ -79,20 +79,18 @@ def modes(c: Controller) -> Script:
     missing = [mode for mode in grblhal_codes.MODES if mode not in told and mode not in grblhal_codes.SILENT]
     kept = [word for word in told if _stem(word) in grblhal_codes.CURES]
     if missing or kept:
-        lathe = "; check that the controller is in lathe mode ($32=2)" if "G8" in missing else ""
+        template = (
+            "{wrong}; the controller reports [GC:{details}]; check that the controller is in lathe mode "
+            "($32=2)"
+            if "G8" in missing
+            else "{wrong}; the controller reports [GC:{details}]"
+        )
         wrong = (
             Message("the controller does not stay in mode {missing}", missing=" ".join(missing))
             if missing
             else Message("the controller stays in mode {saved}", saved=" ".join(kept))
         )
-        raise ScriptError(
-            Message(
-                "{wrong}; the controller reports [GC:{details}]{lathe}",
-                wrong=wrong,
-                details=" ".join(told),
-                lathe=lathe,
-            )
-        )
+        raise ScriptError(Message(template, wrong=wrong, details=" ".join(told)))
 
 
 def _stem(word: str) -> str:
@@ -120,9 +118,14 @@ def demand(c: Controller, identity: Identity) -> None:
     estop = c.config.inputs.get(ESTOP)
     if estop is not None and not identity.has_pin(estop.terminal.removeprefix("pn.")):
         raise ScriptError(
-            f"the controller's board has no input {estop.terminal} for the E-stop: it tells"
-            f" [SIGNALS:{identity.signals}]. Use a board or firmware that has one; where the E-stop cuts the"
-            f' power by itself and tells nobody, say io.in.estop = {{ at = "{HARDWARE}" }}',
+            Message(
+                "the controller's board does not have the input {terminal} for the E-stop: it reports "
+                "[SIGNALS:{signals}]. Use a board or firmware that has this input; if the E-stop only cuts "
+                'the power, write io.in.estop = {{ at = "{hardware}" }}',
+                terminal=estop.terminal,
+                signals=identity.signals,
+                hardware=HARDWARE,
+            ),
             "controller-estop",
         )
 
@@ -412,7 +415,7 @@ def recover(c: Controller) -> Script:
     yield from full_report(c)
     if _door(c):
         raise ScriptError(
-            Message(("{door}: close the door, then press Reset"), door=grblhal_codes.DOOR), "door"
+            Message("{door}: close the door, then press Reset", door=grblhal_codes.DOOR), "door"
         )
     number = _alarm_of(c)
     if number == grblhal_codes.HOMING_REQUIRED:

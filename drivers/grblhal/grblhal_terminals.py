@@ -55,19 +55,12 @@ class GrblInputs:
             if name == ESTOP and wired.terminal == HARDWARE:
                 continue
             if port is None and not wired.terminal.startswith(_PIN):
-                missing[name] = Message(
-                    "{terminal} is neither a pin nor an auxiliary input", terminal=wired.terminal
-                )
+                missing[name] = "the terminal is neither a pin nor an auxiliary input"
             elif port is None and not self._c.has_pin(wired.terminal.removeprefix(_PIN)):
-                missing[name] = Message(
-                    "{terminal} is not an input of the controller's board",
-                    terminal=wired.terminal,
-                )
+                missing[name] = "the controller's board does not have this input"
             elif port is not None and port >= have:
                 missing[name] = Message(
-                    "{terminal} is not among the controller's {have} auxiliary inputs",
-                    terminal=wired.terminal,
-                    have=have,
+                    "the terminal does not exist; the controller has {count} auxiliary inputs", count=have
                 )
         return missing
 
@@ -150,8 +143,15 @@ class GrblIO:
             )
         why = self.lacking(name)
         if on and why:
+            terminal = self._c.config.outputs[name].terminal
             raise DriverError(
-                Message("output {name} cannot be switched: {why}", name=name, why=why), "output"
+                Message(
+                    "output {name} ({terminal}) cannot be switched: {why}",
+                    name=name,
+                    terminal=terminal,
+                    why=why,
+                ),
+                "output",
             )
         if self.outputs().get(name, on) is not on:
             self._sent[name] = not on  # whatever it was told before: to be said, as soon as it listens
@@ -170,15 +170,13 @@ class GrblIO:
         terminal = self._c.config.outputs[name].terminal
         if terminal in _COOLANT:
             mist = self._c.identity is not None and _MIST in self._c.identity.letters
-            return (
-                "" if terminal != "mist" or mist else ("mist is not supported by the controller's firmware")
-            )
+            return "" if terminal != "mist" or mist else "the controller's firmware does not support mist"
         have = self._c.identity.outputs if self._c.identity is not None else 0
         port = terminal.removeprefix("out.")
         if port.isdecimal() and int(port) < have:
             return ""
         return Message(
-            "{terminal} is not among the controller's {have} auxiliary outputs", terminal=terminal, have=have
+            "the terminal does not exist; the controller has {count} auxiliary outputs", count=have
         )
 
     def able(self) -> frozenset[str]:

@@ -218,7 +218,7 @@ class HalAxes:
         self._need_power()
         if self.homing is not None:
             raise DriverError(
-                Message(("{name} is homing; wait until homing is complete"), name=self.homing.name),
+                Message("{name} is homing; wait until homing is complete", name=self.homing.name),
                 reason="homing",
             )
         self._check(segments)
@@ -430,24 +430,23 @@ class HalAxes:
         for n in self._driven:
             axis = self.config.axes[n]
             if abs(segments.v[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
-                why, reason = (
-                    Message("setpoints exceed the speed limit of {vmax}/s", vmax=f"{axis.vmax:.1f}"),
-                    "too-fast",
+                text = Message(
+                    "{axis}: setpoints exceed the speed limit of {vmax}/s; nothing was queued",
+                    axis=axis.name,
+                    vmax=f"{axis.vmax:.1f}",
                 )
+                reason = "too-fast"
             elif axis.travel is not None and self._homed[n] and not self._inside(segments, n, axis.travel):
-                why = Message(
-                    "setpoints are outside the travel range {travel}…{travel2}",
-                    travel=f"{axis.travel[0]:.2f}",
-                    travel2=f"{axis.travel[1]:.2f}",
+                text = Message(
+                    "{axis}: setpoints are outside the travel range {low}…{high}; nothing was queued",
+                    axis=axis.name,
+                    low=f"{axis.travel[0]:.2f}",
+                    high=f"{axis.travel[1]:.2f}",
                 )
                 reason = "leaves-travel"
             else:
                 continue
-            raise DriverError(
-                Message("{axis}: {why}; nothing was queued", axis=axis.name, why=why),
-                "drive-limits",
-                reason=reason,
-            )
+            raise DriverError(text, "drive-limits", reason=reason)
 
     def _inside(self, segments: Segments, n: int, travel: tuple[float, float]) -> bool:
         low, high = min(travel[0], self._actual[n]), max(travel[1], self._actual[n])

@@ -15,6 +15,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
+from core.message import Message
 from core.ports import DriverError
 from drivers.hal.bridge.hal_bridge import BridgeAxis, BridgeConfig
 from drivers.hal.bridge.packets import Head, number, pack, text, unpack
@@ -152,7 +153,9 @@ class HalSession:
         try:
             machine = config.file.read_text(encoding="utf-8")
         except (OSError, UnicodeError) as error:
-            raise DriverError(f"{config.file}: the HAL file cannot be read: {error}") from error
+            raise DriverError(
+                Message("{file}: the HAL file cannot be read: {error}", file=config.file, error=error)
+            ) from error
         folder, session = self._folder, session_text(machine, border, config.thread, str(config.file))
         (folder / "bridge.json").write_text(
             json.dumps(_told(config, border, folder, fd, zero, only_check=only_check)), encoding="utf-8"
@@ -179,17 +182,27 @@ class HalSession:
         while True:
             head = self._first_words(deadline)
             if why := text(head, "error"):
-                raise DriverError(f"HAL: {why}", "hal-setup")
+                raise DriverError(Message("HAL: {why}", why=why), "hal-setup")
             if isinstance(said := head.get("verdicts"), list):
                 self.verdicts = tuple(Verdict(*each) for each in said)
                 wrong = [each for each in self.verdicts if each.trouble]
                 if only_check:
                     return
                 if wrong:
-                    more = f" (and {len(wrong) - 1} more)" if len(wrong) > 1 else ""
-                    raise DriverError(
-                        f"{wrong[0].path} = {wrong[0].pin}: {wrong[0].trouble}{more}", "hal-setup"
+                    template = (
+                        "{path} = {pin}: {fault} (and {count} more)"
+                        if len(wrong) > 1
+                        else "{path} = {pin}: {fault}"
                     )
+                    first = wrong[0]
+                    words = Message(
+                        template,
+                        path=first.path,
+                        pin=first.pin,
+                        fault=first.trouble,
+                        count=len(wrong) - 1,
+                    )
+                    raise DriverError(words, "hal-setup")
             elif head.get("ready") is True:
                 with suppress(OSError, AttributeError):  # an old kernel: its silence tells, later
                     self._bridge = os.pidfd_open(int(number(head, "pid")))
@@ -212,9 +225,15 @@ class HalSession:
             if not data:
                 with suppress(subprocess.TimeoutExpired):
                     self._halrun.wait(3.0)
-                raise DriverError(f"halrun ended during startup: {self._said() or _MUTE}", "hal-setup")
+                words = Message("halrun ended during startup: {output}", output=self._said() or _MUTE)
+                raise DriverError(words, "hal-setup")
             return unpack(data)[0]
-        raise DriverError(f"HAL did not start within {_START:g} s: {self._said() or _MUTE}", "hal-setup")
+        words = Message(
+            "HAL did not start within {seconds} s: {output}",
+            seconds=f"{_START:g}",
+            output=self._said() or _MUTE,
+        )
+        raise DriverError(words, "hal-setup")
 
     def _said(self) -> str:
         """What halrun has said last that is worth telling."""
@@ -238,7 +257,9 @@ class HalSession:
         except BlockingIOError as error:
             raise DriverError("the HAL bridge no longer accepts data", "hal-silent") from error
         except OSError as error:
-            raise DriverError(f"the HAL bridge has ended ({error.strerror})", "hal-bridge") from error
+            raise DriverError(
+                Message("the HAL bridge has ended ({cause})", cause=error.strerror), "hal-bridge"
+            ) from error
 
     def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:
         """Every packet that has come. Raises DriverError when the bridge has ended."""

@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable
 from enum import Enum
 
+from core.message import Message
 from core.ports import DriverError, Fault
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_link import HalLink
@@ -158,7 +159,7 @@ class HalSpindleC:
 
     def _fail(self, why: str) -> None:
         self._let_go()
-        self._axes.fault = self._axes.fault or Fault(f"C: {why}", "c-coupling")
+        self._axes.fault = self._axes.fault or Fault(Message("C: {why}", why=why), "c-coupling")
 
     def _late(self, longest: float) -> bool:
         return self._axes.now() > self._since + longest

@@ -83,19 +83,15 @@ _FIELDS = (
         "charge_pump",
         Kind.TEXT,
         default="",
-        meaning=(
-            "Bit in: changes in every period while TurnDesk, the bridge and HAL run; for a charge "
-            "pump or watchdog relay."
-        ),
+        meaning="Bit in: changes in every period while TurnDesk, the bridge and HAL run; for a charge "
+        "pump or watchdog relay.",
     ),
     Field(
         "link_fault",
         Kind.TEXT,
         default="",
-        meaning=(
-            "Bit out: on while the inputs of the board are not up to date. It opens the E-stop "
-            "chain. Required for a board on a cable."
-        ),
+        meaning="Bit out: on while the inputs of the board are not up to date. It opens the E-stop "
+        "chain. Required for a board on a cable.",
     ),
 )
 
@@ -334,7 +330,11 @@ def _all_axes(file: FileReading) -> Iterator[Finding]:
         if on and axis == "C" and there:
             yield from _spindle_as_c(file)
         if on and not there and not isinstance(file.raw(_AXES), str):
-            yield Finding(f"{_AXES}.{axis}", "", f"missing; axis {axis} needs {{ command, feedback }}")
+            yield Finding(
+                f"{_AXES}.{axis}",
+                "",
+                Message("missing; axis {axis} needs {{ command, feedback }}", axis=axis),
+            )
 
 
 def _spindle_as_c(file: FileReading) -> Iterator[Finding]:
@@ -390,10 +390,8 @@ def _orients(file: FileReading) -> Iterator[Finding]:
             yield Finding(
                 path,
                 "",
-                (
-                    "missing; this pin is required because spindle.oriented specifies that HAL "
-                    "orients the spindle"
-                ),
+                "missing; this pin is required because spindle.oriented specifies that HAL "
+                "orients the spindle",
             )
 
 
@@ -415,23 +413,19 @@ def _homes(file: FileReading) -> Iterator[Finding]:
             continue
         offset = f"axis.{axis}.home.offset"
         if method in _OFF_LIMIT and values.has(offset) and values.number(offset) * _OFF_LIMIT[method] <= 0.0:
-            side = "above" if _OFF_LIMIT[method] > 0 else "below"
-            expected = Message(
-                (
-                    "expected a home offset {side} 0, because at home the axis must be clear of "
-                    "the limit switch"
-                ),
-                side=side,
+            expected = (
+                "expected a home offset above 0, because at home the axis must be clear of the limit switch"
+                if _OFF_LIMIT[method] > 0
+                else "expected a home offset below 0, because at home the axis must be clear of the limit "
+                "switch"
             )
             yield Finding(offset, "", expected)
         other = _same_switch(file, axis)
         off = _OFF_SWITCH.get(method, 0.0)
         if other and off and values.has(offset) and values.number(offset) * off <= 0.0:
             expected = Message(
-                (
-                    "expected a home offset {side} 0, because {other} uses the same switch, so the axis "
-                    "must be clear of the switch at home"
-                ),
+                "expected a home offset {side} 0, because {other} uses the same switch, so the axis "
+                "must be clear of the switch at home",
                 side="above" if off > 0 else "below",
                 other=other,
             )
@@ -474,11 +468,9 @@ DRIVER = Driver(
             parts=(
                 TableReference(
                     "hal.axes.…",
-                    (
-                        "HAL pins of one axis; the last word of the heading is the axis name. "
-                        "Positions are in mm (X: a radius) or degrees. The homing method decides which "
-                        "switches are required."
-                    ),
+                    "HAL pins of one axis; the last word of the heading is the axis name. "
+                    "Positions are in mm (X: a radius) or degrees. The homing method decides which "
+                    "switches are required.",
                     _AXIS,
                 ),
                 TableReference("hal.spindle", "HAL pins of the spindle.", _TURNS),

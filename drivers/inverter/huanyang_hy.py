@@ -67,7 +67,11 @@ class HuanyangHy:
         top = self._parameter(5)
         if top < number(highest):
             known.append(
-                f"PD005 ends at {top / 100:g} Hz, the highest speed needs {highest:g} Hz; change one of them"
+                Message(
+                    "PD005 is {top} Hz, but the highest speed needs {highest} Hz; change one of these values",
+                    top=f"{top / 100:g}",
+                    highest=f"{highest:g}",
+                )
             )
         return known
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from core.message import Message
 from core.ports import Clock, DriverError, Fault, FaultCode
 from drivers.inverter.inverter_family import Family, Look
-from drivers.inverter.inverter_obedience import PRESS, STANDS, Obedience
+from drivers.inverter.inverter_obedience import STANDS, Obedience, with_stop
 from drivers.inverter.modbus_rtu import NoAnswerError, RefusedError
 from drivers.serial_line import WireError
 
@@ -226,14 +226,14 @@ class Attendant:
         if self._family is not None:
             self._family.close()
         self._family, self._told = None, None
-        self._latch(f"{why}: {PRESS}" if self._may_turn() else why, "inverter-silent")
+        self._latch(with_stop(why) if self._may_turn() else why, "inverter-silent")
 
     def _supervise(self) -> None:
         """Nothing seen for too long is trouble, also when nothing was wanted of it."""
         never = self.seen is None and self._clock.now() >= self.grace
         if (never or self.silent_for >= LOST) and not self.trouble:
             why = self.missed or "no response from inverter"
-            self._latch(f"{why}: {PRESS}" if self._may_turn() else why, "inverter-silent")
+            self._latch(with_stop(why) if self._may_turn() else why, "inverter-silent")
 
     def _may_turn(self) -> bool:
         return self._want != 0.0 or self.seen is None or self.seen.look.output > 0.0

@@ -13,6 +13,11 @@ _FALLS = 0.005  # part of its speed by which it must have fallen at least once a
 PRESS = "PRESS E-STOP"
 
 
+def with_stop(why: str) -> str:
+    """Return the fault with the request to press the E-stop."""
+    return Message("{why}: {press}", why=why, press=PRESS)
+
+
 class Obedience:
     """``judge`` each look; ``command`` when another command goes out.
 
@@ -56,7 +61,7 @@ class Obedience:
 
     def _wrong(self, look: Look) -> str:
         why = self._standing(look) if self._asked == 0.0 else self._understood(look) or self._turning(look)
-        return f"{why}: {PRESS}" if why else ""
+        return with_stop(why) if why else ""
 
     def _standing(self, look: Look) -> str:
         if look.output > STANDS and (look.run or not self._falls(look)):

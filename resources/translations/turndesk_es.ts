@@ -3590,61 +3590,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>cannot be used in MDI, because it needs a G92 on the next line and MDI runs only one line</source>
-      <translation>no se puede usar en MDI, porque necesita un G92 en la línea siguiente y MDI ejecuta sólo una línea</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>cannot be used in MDI, because plane switching needs more than one line</source>
-      <translation>no se puede usar en MDI, porque un cambio de plano necesita más de una línea</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>cannot call a subroutine in MDI; subroutine calls are possible only in a program</source>
-      <translation>no puede llamar una subrutina en MDI; las llamadas a subrutinas sólo son posibles en un programa</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>cannot cut a contour in MDI, because a contour needs more than one line</source>
-      <translation>no puede cortar un contorno en MDI, porque un contorno necesita más de una línea</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>cannot define a subroutine in MDI; subroutines are possible only in a program</source>
-      <translation>no puede definir una subrutina en MDI; las subrutinas sólo son posibles en un programa</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>cannot end a contour in MDI, because no contour was started</source>
-      <translation>no puede terminar un contorno en MDI, porque no se empezó ninguno</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>cannot end a loop in MDI, because no loop was started</source>
-      <translation>no puede terminar un bucle en MDI, porque no se empezó ninguno</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>cannot end a subroutine in MDI, because no subroutine was started</source>
-      <translation>no puede terminar una subrutina en MDI, porque no se empezó ninguna</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>cannot end nose compensation in MDI, because nose compensation needs more than one line</source>
-      <translation>no puede terminar la compensación de punta en MDI, porque la compensación necesita más de una línea</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>cannot start a loop in MDI; a loop needs more than one line, with LF at the end</source>
-      <translation>no puede empezar un bucle en MDI; un bucle necesita más de una línea, con LF al final</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>cannot start nose compensation in MDI, because nose compensation needs more than one line</source>
-      <translation>no puede empezar la compensación de punta en MDI, porque la compensación necesita más de una línea</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>chained transformations are not supported</source>
       <translation>no se admiten transformaciones encadenadas</translation>
     </message>
@@ -4120,6 +4065,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>the C axis turns</source>
+      <translation>gira el eje C</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>the address contains characters that are not allowed in an address</source>
       <translation>la dirección contiene caracteres no permitidos en una dirección</translation>
     </message>
@@ -4425,8 +4375,58 @@
     </message>
     <message>
       <location filename="" />
+      <source>{code} cannot be used in MDI, because plane switching needs more than one line.</source>
+      <translation>{code} no se puede usar en MDI, porque un cambio de plano necesita más de una línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>{code} cannot call a subroutine in MDI; subroutine calls are possible only in a program.</source>
+      <translation>{code} no puede llamar una subrutina en MDI; las llamadas a subrutinas sólo son posibles en un programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>{code} cannot cut a contour in MDI, because a contour needs more than one line.</source>
+      <translation>{code} no puede cortar un contorno en MDI, porque un contorno necesita más de una línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>{code} cannot define a subroutine in MDI; subroutines are possible only in a program.</source>
+      <translation>{code} no puede definir una subrutina en MDI; las subrutinas solo son posibles en un programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>{code} cannot end nose compensation in MDI, because nose compensation needs more than one line.</source>
+      <translation>{code} no puede terminar la compensación de punta en MDI, porque la compensación necesita más de una línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>{code} cannot run while nose compensation is active.</source>
       <translation>{code} no puede correr con la compensación de punta activa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>{code} cannot start a loop in MDI; a loop needs more than one line, with LF at the end.</source>
+      <translation>{code} no puede empezar un bucle en MDI; un bucle necesita más de una línea, con LF al final.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>{code} cannot start nose compensation in MDI, because nose compensation needs more than one line.</source>
+      <translation>{code} no puede empezar la compensación de punta en MDI, porque la compensación necesita más de una línea.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>{code} ends a contour, but no contour was started.</source>
+      <translation>{code} termina un contorno, pero no se empezó ninguno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>{code} ends a loop, but no loop was started.</source>
+      <translation>{code} termina un bucle, pero no se empezó ninguno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>{code} ends a subroutine, but no subroutine was started.</source>
+      <translation>{code} termina una subrutina, pero no se empezó ninguna.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4437,6 +4437,11 @@
       <location filename="" />
       <source>{code} needs Z, the bottom of the hole.</source>
       <translation>{code} necesita Z, el fondo del barreno.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>{code} needs a G92 on the next line, but MDI runs only one line.</source>
+      <translation>{code} necesita un G92 en la línea siguiente, pero MDI ejecuta sólo una línea.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4995,13 +5000,13 @@
     </message>
     <message>
       <location filename="app/desk/data_folder.py" />
-      <source>TURNDESK_HOME: {folder} {what} a file, not a folder; set the variable to a folder or unset the variable</source>
-      <translation>TURNDESK_HOME: {folder} {what} un archivo, no una carpeta; indique una carpeta en la variable o anule la variable</translation>
+      <source>TURNDESK_HOME: {folder} is a file, not a folder; set TURNDESK_HOME to a folder or unset it</source>
+      <translation>TURNDESK_HOME: {folder} es un archivo, no una carpeta; indique una carpeta en TURNDESK_HOME o anule la variable</translation>
     </message>
     <message>
       <location filename="app/desk/data_folder.py" />
-      <source>is inside {present}, which is</source>
-      <translation>está dentro de {present}, que es</translation>
+      <source>TURNDESK_HOME: {folder} is inside {present}, which is a file, not a folder; set TURNDESK_HOME to a folder or unset it</source>
+      <translation>TURNDESK_HOME: {folder} está dentro de {present}, que es un archivo, no una carpeta; indique una carpeta en TURNDESK_HOME o anule la variable</translation>
     </message>
     <message>
       <location filename="app/desk/data_folder.py" />
@@ -10210,6 +10215,11 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
+      <source>EFFECT OF LARGER OFFSET ON SIZE</source>
+      <translation>EFECTO DE MÁS CORRECTOR EN LA MEDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
       <source>ENTER: CHANGE FEATURE   F2: NEW FEATURE   ESC: BACK TO LIST</source>
       <translation>ENTER: CAMBIAR CARACTERÍSTICA   F2: NUEVA   ESC: VOLVER A LA LISTA</translation>
     </message>
@@ -10250,8 +10260,8 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
-      <source>MEASURE EVERY N PARTS (0: NO PLAN)</source>
-      <translation>MEDIR CADA N PIEZAS (0: SIN PLAN)</translation>
+      <source>MEASURE EVERY N PARTS (0: NEVER)</source>
+      <translation>MEDIR CADA N PIEZAS (0: NUNCA)</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -10302,11 +10312,6 @@
       <location filename="app/quality/features_section.py" />
       <source>SECONDARY OFFSET</source>
       <translation>CORRECTOR SECUNDARIO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>SIZE WITH A LARGER OFFSET</source>
-      <translation>MEDIDA CON UN CORRECTOR MAYOR</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -10445,18 +10450,13 @@
     </message>
     <message>
       <location filename="app/quality/parts_watch.py" />
-      <source>program {program}: {details}</source>
-      <translation>programa {program}: {details}</translation>
+      <source>program {program}: the next part can start before the required parts are measured</source>
+      <translation>programa {program}: la pieza siguiente puede empezar antes de medir las piezas requeridas</translation>
     </message>
     <message>
       <location filename="app/quality/parts_watch.py" />
-      <source>the next part can start before the required parts are measured</source>
-      <translation>la próxima pieza puede empezar antes de medir las piezas requeridas</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_watch.py" />
-      <source>the next part cannot start before the required parts are measured</source>
-      <translation>la pieza siguiente no puede empezar antes de medir las piezas requeridas</translation>
+      <source>program {program}: the next part cannot start before the required parts are measured</source>
+      <translation>programa {program}: la pieza siguiente no puede empezar antes de medir las piezas requeridas</translation>
     </message>
     <message>
       <location filename="app/quality/plots_view.py" />
@@ -13020,23 +13020,18 @@
     </message>
     <message>
       <location filename="app/shapes/drawing_plan.py" />
-      <source>for the selected axis</source>
-      <translation>para el eje elegido</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
-      <source>on layer {layer}</source>
-      <translation>en la capa {layer}</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
       <source>{drawing} does not specify its unit: choose MM or INCH.</source>
       <translation>{drawing} no indica su unidad: elija MM o PULGADAS.</translation>
     </message>
     <message>
       <location filename="app/shapes/drawing_plan.py" />
-      <source>{drawing} has no contour {place}: choose another layer or axis.</source>
-      <translation>{drawing} no tiene ningún contorno {place}: elija otra capa u otro eje.</translation>
+      <source>{drawing} has no contour for the selected axis: choose another layer or axis.</source>
+      <translation>{drawing} no tiene ningún contorno para el eje elegido: elija otra capa u otro eje.</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/drawing_plan.py" />
+      <source>{drawing} has no contour on layer {layer}: choose another layer or axis.</source>
+      <translation>{drawing} no tiene ningún contorno en la capa {layer}: elija otra capa u otro eje.</translation>
     </message>
     <message>
       <location filename="app/shapes/drawing_plan.py" />
@@ -13865,8 +13860,13 @@
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
-      <source>output {name} switched {ending} by hand</source>
-      <translation>salida {name} conmutada a mano: {ending}</translation>
+      <source>output {name} switched off by hand</source>
+      <translation>salida {name} apagada a mano</translation>
+    </message>
+    <message>
+      <location filename="app/special/inputs_outputs.py" />
+      <source>output {name} switched on by hand</source>
+      <translation>salida {name} encendida a mano</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />
@@ -16675,28 +16675,28 @@
     </message>
     <message>
       <location filename="core/drawings/contour_walk.py" />
-      <source>has a contour that crosses itself {distance} mm from the face at a diameter of {point} mm: correct the contour at this point.</source>
-      <translation>tiene un contorno que se cruza a sí mismo a {distance} mm de la cara, en un diámetro de {point} mm: corrija el contorno en ese punto.</translation>
+      <source>the contour crosses itself {distance} mm from the face at a diameter of {diameter} mm. Correct the contour at this point.</source>
+      <translation>el contorno se cruza a sí mismo a {distance} mm de la cara, en un diámetro de {diameter} mm. Corrija el contorno en ese punto.</translation>
     </message>
     <message>
       <location filename="core/drawings/contour_walk.py" />
-      <source>has a contour that crosses the axis {distance} mm from the face: choose another axis.</source>
-      <translation>tiene un contorno que cruza el eje a {distance} mm de la cara: elija otro eje.</translation>
+      <source>the contour crosses the axis {distance} mm from the face. Choose another axis.</source>
+      <translation>el contorno cruza el eje a {distance} mm de la cara. Elija otro eje.</translation>
     </message>
     <message>
       <location filename="core/drawings/contour_walk.py" />
-      <source>has its foremost point in the middle of an arc: end the arc at this point.</source>
-      <translation>tiene su punto más adelantado en medio de un arco: termine el arco en ese punto.</translation>
+      <source>the contour has no bore at its face. Choose the outside, or another contour.</source>
+      <translation>el contorno no tiene agujero en su cara. Elija el exterior u otro contorno.</translation>
     </message>
     <message>
       <location filename="core/drawings/contour_walk.py" />
-      <source>has no bore at its face: choose the outside, or another contour.</source>
-      <translation>no tiene agujero en su cara: elija el exterior u otro contorno.</translation>
+      <source>the foremost point of the contour is in the middle of an arc. End the arc at this point.</source>
+      <translation>el punto más adelantado del contorno está en medio de un arco. Termine el arco en ese punto.</translation>
     </message>
     <message>
       <location filename="core/drawings/contour_walk.py" />
-      <source>has no contour on this side: choose another contour.</source>
-      <translation>no tiene contorno en este lado: elija otro contorno.</translation>
+      <source>this side has no contour. Choose another contour.</source>
+      <translation>este lado no tiene contorno. Elija otro contorno.</translation>
     </message>
     <message>
       <location filename="core/drawings/drawing.py" />
@@ -16780,13 +16780,8 @@
     </message>
     <message>
       <location filename="core/drawings/dxf_reader.py" />
-      <source>a {kind} in {name} on layer {count}</source>
-      <translation>un {kind} de {name} en la capa {count}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>is three-dimensional: save a section or a view of the part in one plane.</source>
-      <translation>es tridimensional: guarde una sección o una vista de la pieza en un plano.</translation>
+      <source>the {kind} on layer {layer} of {name} is damaged: draw it again.</source>
+      <translation>el elemento {kind} de la capa {layer} de {name} está dañado: dibújelo otra vez.</translation>
     </message>
     <message>
       <location filename="core/drawings/dxf_reader.py" />
@@ -16809,29 +16804,19 @@
       <translation>{path} es un dibujo DWG: guárdelo como DXF.</translation>
     </message>
     <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>{what} is damaged: draw it again.</source>
-      <translation>{what} está dañado: dibújelo otra vez.</translation>
-    </message>
-    <message>
       <location filename="core/drawings/expansion.py" />
       <source>A repeated group in {name} contains itself: save only the contour of the part.</source>
       <translation>Un grupo repetido de {name} se contiene a sí mismo: guarde solo el contorno de la pieza.</translation>
     </message>
     <message>
       <location filename="core/drawings/expansion.py" />
-      <source>The repeated groups in {name} add up to more than {most_elements} entities</source>
-      <translation>Los grupos repetidos de {name} suman más de {most_elements} entidades</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/expansion.py" />
-      <source>{words}: save only the contour of the part.</source>
-      <translation>{words}: guarde solo el contorno de la pieza.</translation>
+      <source>The repeated groups in {name} add up to more than {most_elements} entities: save only the contour of the part.</source>
+      <translation>Los grupos repetidos de {name} suman más de {most_elements} entidades: guarde solo el contorno de la pieza.</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_program.py" />
-      <source>T{number} has a nose radius of {nose}, but its tool data has no tip quadrant</source>
-      <translation>T{number} tiene un radio de punta de {nose}, pero sus datos de herramienta no tienen cuadrante de punta</translation>
+      <source>T{number} has a nose radius of {nose}, but its tool data has no tip quadrant: enter the tip quadrant on the SHAPE page of the tool (F8, F8).</source>
+      <translation>T{number} tiene un radio de punta de {nose}, pero sus datos de herramienta no tienen cuadrante de punta: introduzca el cuadrante de punta en la página FORMA de la herramienta (F8, F8).</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_program.py" />
@@ -16849,14 +16834,14 @@
       <translation>la ranura es más estrecha que la cuchilla de {wide} mm</translation>
     </message>
     <message>
-      <location filename="core/drawings/profile_program.py" />
-      <source>{words}: enter the tip quadrant on the SHAPE page of the tool (F8, F8).</source>
-      <translation>{words}: introduzca el cuadrante de punta en la página FORMA de la herramienta (F8, F8).</translation>
+      <location filename="core/drawings/profile_words.py" />
+      <source>Z {front} to {back} is not cut: {why}</source>
+      <translation>Z {front} a {back} no se corta: {why}</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>Z {front} to {back}</source>
-      <translation>Z {front} a {back}</translation>
+      <source>elsewhere, the simulated part matches the drawing to within {within} {unit}</source>
+      <translation>en el resto, la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -16875,18 +16860,8 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>stock remains</source>
-      <translation>queda material</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>the rest of the simulated part</source>
-      <translation>el resto de la pieza simulada</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>the simulated part</source>
-      <translation>la pieza simulada</translation>
+      <source>the simulated part matches the drawing to within {within} {unit}</source>
+      <translation>la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -16895,8 +16870,8 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>too much stock is cut</source>
-      <translation>se corta demasiado material</translation>
+      <source>{depth} {unit} of stock remains (measured on the radius) from Z {front} to Z {back}</source>
+      <translation>quedan {depth} {unit} de material (medidos en el radio) de Z {front} a Z {back}</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -16905,23 +16880,13 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
+      <source>{depth} {unit} too much is cut (measured on the radius) from Z {front} to Z {back}</source>
+      <translation>se cortan {depth} {unit} de más (medidos en el radio) de Z {front} a Z {back}</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/profile_words.py" />
       <source>{edge} must have nose radius {radius} {unit} and tip quadrant {quadrant}</source>
       <translation>{edge} debe tener radio de punta {radius} {unit} y cuadrante de punta {quadrant}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{span} is not cut: {why}</source>
-      <translation>{span} no se corta: {why}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{what} matches the drawing to within {within} {unit}</source>
-      <translation>{what} coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{what}: {depth} {unit} on the radius, from {span}</source>
-      <translation>{what}: {depth} {unit} en el radio, de {span}</translation>
     </message>
     <message>
       <location filename="core/drawings/svg_reader.py" />
@@ -16969,9 +16934,19 @@
       <translation>el contorno tiene una pendiente demasiado fuerte para el útil</translation>
     </message>
     <message>
+      <location filename="core/drawings/unit_check.py" />
+      <source>{size} {unit} across</source>
+      <translation>{size} {unit} de diámetro</translation>
+    </message>
+    <message>
+      <location filename="core/drawings/unit_check.py" />
+      <source>{size} {unit} long</source>
+      <translation>{size} {unit} de largo</translation>
+    </message>
+    <message>
       <location filename="core/drawings/work_limit.py" />
-      <source>has too many parallel lines. Save only the contour of the part.</source>
-      <translation>tiene demasiadas líneas paralelas. Guarde solo el contorno de la pieza.</translation>
+      <source>the drawing has too many parallel lines. Save only the contour of the part.</source>
+      <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
     </message>
     <message>
       <location filename="core/executor/changed_offsets.py" />
@@ -17120,13 +17095,18 @@
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
-      <source>{command} switched {ending} manually</source>
-      <translation>{command} {ending} a mano</translation>
+      <source>{name}: outputs can be switched manually only when the machine is at rest, not in state {state}</source>
+      <translation>{name}: las salidas sólo se conmutan a mano con la máquina en reposo, no en el estado {state}</translation>
     </message>
     <message>
       <location filename="core/executor/command_handler.py" />
-      <source>{name}: outputs can be switched manually only when the machine is at rest, not in state {state}</source>
-      <translation>{name}: las salidas sólo se conmutan a mano con la máquina en reposo, no en el estado {state}</translation>
+      <source>{output} switched off manually</source>
+      <translation>{output} apagada a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/command_handler.py" />
+      <source>{output} switched on manually</source>
+      <translation>{output} encendida a mano</translation>
     </message>
     <message>
       <location filename="core/executor/commanded_outputs.py" />
@@ -17385,23 +17365,18 @@
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
-      <source>jog the tool clear of the part, then press Y</source>
-      <translation>saque la herramienta de la pieza a mano, después pulse la tecla Y</translation>
+      <source>line {line} of {program} was interrupted, and {tool} may still be in the part: jog the tool clear of the part, press Y, and then start at the first line</source>
+      <translation>la línea {line} de {program} se interrumpió y {tool} puede estar todavía en la pieza: aleje la herramienta de la pieza con el jog, pulse Y y luego arranque en la primera línea</translation>
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
-      <source>line {line} of {program} was interrupted, and {tool} may still be in the part: {method} and then start at the first line</source>
-      <translation>la línea {line} de {program} se interrumpió y {tool} puede estar todavía en la pieza: {method} y luego arranque en la primera línea</translation>
+      <source>line {line} of {program} was interrupted, and {tool} may still be in the part: resume at the interrupted line with SEARCHTO (F6), or press Y and then start at the first line</source>
+      <translation>la línea {line} de {program} se interrumpió y {tool} puede estar todavía en la pieza: reanude en la línea interrumpida con SEARCHTO (F6), o pulse Y y luego arranque en la primera línea</translation>
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
       <source>no interrupted program is waiting for confirmation</source>
       <translation>ningún programa interrumpido espera confirmación</translation>
-    </message>
-    <message>
-      <location filename="core/executor/interruption_watch.py" />
-      <source>resume at the interrupted line with SEARCHTO (F6), or press Y</source>
-      <translation>continúe en la línea interrumpida con BUSCAR A (F6), o pulse la tecla Y</translation>
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
@@ -17415,8 +17390,13 @@
     </message>
     <message>
       <location filename="core/executor/job.py" />
-      <source>the active unit is now {ending}</source>
-      <translation>la unidad activa es ahora {ending}</translation>
+      <source>the active unit is now inches</source>
+      <translation>la unidad activa es ahora pulgadas</translation>
+    </message>
+    <message>
+      <location filename="core/executor/job.py" />
+      <source>the active unit is now mm</source>
+      <translation>la unidad activa es ahora mm</translation>
     </message>
     <message>
       <location filename="core/executor/job.py" />
@@ -17900,8 +17880,13 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
-      <source>the collet is {is_now}, but must be {must} at line {line}: change the collet state in MDI</source>
-      <translation>la pinza está {is_now}, pero debe estar {must} en la línea {line}: cambie el estado de la pinza en MDI</translation>
+      <source>the collet is closed, but must be open at line {line}: open the collet in MDI</source>
+      <translation>la pinza está cerrada, pero debe estar abierta en la línea {line}: abra la pinza en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_conditions.py" />
+      <source>the collet is open, but must be closed at line {line}: close the collet in MDI</source>
+      <translation>la pinza está abierta, pero debe estar cerrada en la línea {line}: cierre la pinza en MDI</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -18005,23 +17990,13 @@
     </message>
     <message>
       <location filename="core/executor/supervision.py" />
-      <source>NO SIGNAL FROM CONTROL</source>
-      <translation>SIN SEÑAL DEL CONTROL</translation>
+      <source>NO SIGNAL FROM CONTROL FOR {away} S, SWITCHED OFF: {off}</source>
+      <translation>SIN SEÑAL DEL CONTROL DURANTE {away} S, SE APAGÓ: {off}</translation>
     </message>
     <message>
       <location filename="core/executor/supervision.py" />
-      <source>NO SIGNAL FROM MACHINE</source>
-      <translation>SIN SEÑAL DE LA MÁQUINA</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>OUTPUTS FOUND ON AND SWITCHED OFF</source>
-      <translation>SALIDAS ENCONTRADAS CONECTADAS Y DESCONECTADAS</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>SWITCHED OFF</source>
-      <translation>DESCONECTADO</translation>
+      <source>NO SIGNAL FROM MACHINE FOR {away} S, OUTPUTS FOUND ON AND SWITCHED OFF: {off}</source>
+      <translation>SIN SEÑAL DE LA MÁQUINA DURANTE {away} S, SALIDAS HALLADAS ENCENDIDAS Y APAGADAS: {off}</translation>
     </message>
     <message>
       <location filename="core/executor/supervision.py" />
@@ -18047,11 +18022,6 @@
       <location filename="core/executor/supervision.py" />
       <source>{output} TURNS ON</source>
       <translation>SE ENCIENDE {output}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>{who} FOR {away} S, {what}: {off}</source>
-      <translation>{who} DURANTE {away} S, {what}: {off}</translation>
     </message>
     <message>
       <location filename="core/executor/thread_path.py" />
@@ -18195,16 +18165,6 @@
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
-      <source>current line</source>
-      <translation>línea actual</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/chamfer_and_rounding.py" />
-      <source>next line</source>
-      <translation>línea siguiente</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>no arc of this radius is tangent to both moves within their length</source>
       <translation>ningún arco de ese radio es tangente a los dos movimientos dentro de su longitud</translation>
     </message>
@@ -18220,8 +18180,18 @@
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
+      <source>the line itself is too short</source>
+      <translation>la línea misma es demasiado corta</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>the next line goes straight back along the previous line</source>
       <translation>la línea siguiente regresa sobre la línea anterior</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/chamfer_and_rounding.py" />
+      <source>the next line is too short</source>
+      <translation>la línea siguiente es demasiado corta</translation>
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
@@ -18237,11 +18207,6 @@
       <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>the two moves have the same direction</source>
       <translation>los dos movimientos tienen la misma dirección</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/chamfer_and_rounding.py" />
-      <source>the {choice} is too short</source>
-      <translation>el {choice} es demasiado corto</translation>
     </message>
     <message>
       <location filename="core/geometry/contour_offset.py" />
@@ -20490,11 +20455,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
-      <source>an arc</source>
-      <translation>un arco</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
       <source>no move follows the corner</source>
       <translation>no sigue ningún movimiento a la esquina</translation>
     </message>
@@ -20510,11 +20470,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
-      <source>not a straight line</source>
-      <translation>no una recta</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
       <source>the contour ends at this corner</source>
       <translation>el contorno termina en esta esquina</translation>
     </message>
@@ -20525,8 +20480,13 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
-      <source>the corner needs {needed} of {which}, but only {left} remains</source>
-      <translation>la esquina necesita {needed} de {which}, pero sólo quedan {left}</translation>
+      <source>the corner needs {needed} of the next move, but only {left} remains</source>
+      <translation>la esquina necesita {needed} del movimiento siguiente, pero sólo quedan {left}</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/corners.py" />
+      <source>the corner needs {needed} of this move, but only {left} remains</source>
+      <translation>la esquina necesita {needed} de este movimiento, pero sólo quedan {left}</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
@@ -20540,23 +20500,18 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
-      <source>the next move</source>
-      <translation>el movimiento siguiente</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/corners.py" />
       <source>the next move is an arc</source>
       <translation>el movimiento siguiente es un arco</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
-      <source>the next move, on line {line}, is {what}</source>
-      <translation>el movimiento siguiente, en la línea {line}, es {what}</translation>
+      <source>the next move, on line {line}, is an arc</source>
+      <translation>el movimiento siguiente, en la línea {line}, es un arco</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
-      <source>this move</source>
-      <translation>este movimiento</translation>
+      <source>the next move, on line {line}, is not a straight line</source>
+      <translation>el movimiento siguiente, en la línea {line}, no es una recta</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/corners.py" />
@@ -20735,8 +20690,13 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/feeds.py" />
-      <source>The spindle is stopped, but the move uses {why}.</source>
-      <translation>El husillo está parado, pero el movimiento usa {why}.</translation>
+      <source>The spindle is stopped, but the move uses constant surface speed.</source>
+      <translation>El husillo está parado, pero el movimiento usa velocidad de corte constante.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/feeds.py" />
+      <source>The spindle is stopped, but the move uses feed per revolution.</source>
+      <translation>El husillo está parado, pero el movimiento usa avance por vuelta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/feeds.py" />
@@ -20747,16 +20707,6 @@
       <location filename="core/interpreter/omniturn/feeds.py" />
       <source>Write F on this line or an earlier line.</source>
       <translation>Escriba F en esta línea o en una anterior.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
-      <source>constant surface speed</source>
-      <translation>velocidad superficial constante</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/feeds.py" />
-      <source>feed per revolution</source>
-      <translation>avance por vuelta</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/follow_ups.py" />
@@ -20905,13 +20855,13 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>/ skips a program line and has no meaning in MDI</source>
-      <translation>/ salta una línea del programa y no significa nada en MDI</translation>
+      <source>/ skips a program line and has no meaning in MDI.</source>
+      <translation>/ salta una línea del programa y no significa nada en MDI.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/mdi_line.py" />
-      <source>{radius} rounds the corner with the next move, but MDI runs only one line</source>
-      <translation>{radius} redondea la esquina con el movimiento siguiente, pero MDI ejecuta sólo una línea</translation>
+      <source>{radius} rounds the corner with the next move, but MDI runs only one line.</source>
+      <translation>{radius} redondea la esquina con el movimiento siguiente, pero MDI ejecuta sólo una línea.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
@@ -20985,6 +20935,26 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>The approach starts {value} from the part, which is less than the nose radius of {nose}.</source>
+      <translation>La entrada empieza a {value} de la pieza, que es menos que el radio de punta de {nose}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>The approach starts {value} from the part, which is less than twice the nose radius of {nose}.</source>
+      <translation>La entrada empieza a {value} de la pieza, que es menos que el doble del radio de punta de {nose}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>The departure ends {value} from the part, which is less than the nose radius of {nose}.</source>
+      <translation>La salida termina a {value} de la pieza, que es menos que el radio de punta de {nose}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
+      <source>The departure ends {value} from the part, which is less than twice the nose radius of {nose}.</source>
+      <translation>La salida termina a {value} de la pieza, que es menos que el doble del radio de punta de {nose}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>The departure, the last move before G40, has zero length.</source>
       <translation>La salida, el último movimiento antes de G40, tiene longitud cero.</translation>
     </message>
@@ -21017,11 +20987,6 @@
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>The {lead} move is {length} long, which is less than the nose radius of {nose}.</source>
       <translation>El movimiento de {lead} mide {length}, que es menos que el radio de punta de {nose}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>The {lead} {choice} at a distance of {value} from the part</source>
-      <translation>La {lead} {choice} a una distancia de {value} de la pieza</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
@@ -21077,16 +21042,6 @@
       <location filename="core/interpreter/omniturn/nose_compensation.py" />
       <source>{what} is not allowed while G{state} is active.</source>
       <translation>{what} no está permitido con G{state} activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>{what}. This distance is less than the nose radius of {nose}.</source>
-      <translation>{what}. Esta distancia es menor que el radio de punta de {nose}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/nose_compensation.py" />
-      <source>{what}. This distance is less than twice the nose radius of {nose}.</source>
-      <translation>{what}. Esta distancia es menor que el doble del radio de punta de {nose}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_book.py" />
@@ -21320,48 +21275,43 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>This line {what}.</source>
-      <translation>Esta línea {what}.</translation>
+      <source>This line contains two M codes.</source>
+      <translation>Esta línea contiene dos códigos M.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
+      <source>This line contains two codes of the same group ({group}).</source>
+      <translation>Esta línea contiene dos códigos del mismo grupo ({group}).</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
+      <source>This line contains {flow} without {letter}.</source>
+      <translation>Esta línea contiene {flow} sin {letter}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
+      <source>This line contains {letter} twice.</source>
+      <translation>Esta línea contiene {letter} dos veces.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
+      <source>This line contains {word}, but {flow} must be alone on a line.</source>
+      <translation>Esta línea contiene {word}, pero {flow} debe ir solo en una línea.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
+      <source>This line contains {word}, which no code on the line uses.</source>
+      <translation>Esta línea contiene {word}, que ningún código de la línea usa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
+      <source>This line has '/' before {flow}, which cannot be skipped because the rest of the program needs it.</source>
+      <translation>Esta línea tiene '/' antes de {flow}, que no se puede saltar porque el resto del programa lo necesita.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
       <source>Write (~PLXC) or (~PLZC) alone on a line.</source>
       <translation>Escriba (~PLXC) o (~PLZC) solo en una línea.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>contains two M codes</source>
-      <translation>contiene dos códigos M</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>contains two codes of the same group ({word})</source>
-      <translation>contiene dos códigos del mismo grupo ({word})</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>contains {flow} without {letter}</source>
-      <translation>contiene {flow} sin {letter}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>contains {letter} twice</source>
-      <translation>contiene {letter} dos veces</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>contains {word}, but {flow} must be alone on a line</source>
-      <translation>contiene {word}, pero {flow} debe ir solo en una línea</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>contains {word}, which no code on the line uses</source>
-      <translation>contiene {word}, que ningún código de la línea usa</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>has '/' before {flow}, which cannot be skipped because the rest of the program needs it</source>
-      <translation>tiene '/' antes de {flow}, que no se puede saltar porque el resto del programa lo necesita</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
@@ -21865,48 +21815,33 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_lines.py" />
+      <source>Line {line} is after the end of the program.</source>
+      <translation>La línea {line} está después del final del programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/restart_lines.py" />
       <source>Line {line} is empty.</source>
       <translation>La línea {line} está vacía.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_lines.py" />
-      <source>Line {line} {why}</source>
-      <translation>La línea {line} {why}</translation>
+      <source>Line {line} is in the section of (~PLXC) or (~PLZC) that begins on line {begin}.</source>
+      <translation>La línea {line} está en la sección de (~PLXC) o (~PLZC) que empieza en la línea {begin}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_lines.py" />
-      <source>is after the end of the program.</source>
-      <translation>está después del final del programa.</translation>
+      <source>Line {line} is part of the contour that begins on line {begin}.</source>
+      <translation>La línea {line} forma parte del contorno que empieza en la línea {begin}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_lines.py" />
-      <source>is in subroutine {number}.</source>
-      <translation>está en la subrutina {number}.</translation>
+      <source>Line {line} is part of the corner that begins on line {begin}.</source>
+      <translation>La línea {line} forma parte de la esquina que empieza en la línea {begin}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/restart_lines.py" />
-      <source>is inside the loop from line {start} to line {end}.</source>
-      <translation>está dentro del bucle de la línea {start} a la línea {end}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/restart_lines.py" />
-      <source>is inside the plane switching with (~PLXC) or (~PLZC) that begins on line {done}.</source>
-      <translation>está dentro del cambio de plano con (~PLXC) o (~PLZC) que empieza en la línea {done}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/restart_lines.py" />
-      <source>is part of the contour that begins on line {start}.</source>
-      <translation>forma parte del contorno que empieza en la línea {start}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/restart_lines.py" />
-      <source>is part of the corner that begins on line {begun}.</source>
-      <translation>forma parte de la esquina que empieza en la línea {begun}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/restart_lines.py" />
-      <source>uses the nose compensation that begins on line {nose}.</source>
-      <translation>usa la compensación de punta que empieza en la línea {nose}.</translation>
+      <source>Line {line} uses the nose compensation that begins on line {begin}.</source>
+      <translation>La línea {line} usa la compensación de punta que empieza en la línea {begin}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
@@ -22215,16 +22150,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
-      <source>moves along Z</source>
-      <translation>se mueve a lo largo de Z</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
-      <source>uses the spindle for turning or tapping</source>
-      <translation>usa el husillo para tornear o roscar</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>{call} accepts {names_count} parameters, but the call passes {arguments_count}.</source>
       <translation>{call} admite {names_count} parámetros, pero la llamada pasa {arguments_count}.</translation>
     </message>
@@ -22235,8 +22160,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
-      <source>{call} {what}, but {plane} is active.</source>
-      <translation>{call} {what}, pero {plane} está activo.</translation>
+      <source>{call} moves along Z, but {plane} is active.</source>
+      <translation>{call} se mueve a lo largo de Z, pero {plane} está activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>{call} uses the spindle for turning or tapping, but {plane} is active.</source>
+      <translation>{call} usa el husillo para tornear o roscar, pero {plane} está activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
@@ -22865,11 +22795,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>the plane is rotated with RPL=, not with axis words</source>
-      <translation>el plano se gira con RPL=, no con palabras de eje</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>unknown axis: this machine has no third axis.</source>
       <translation>eje desconocido: esta máquina no tiene tercer eje.</translation>
     </message>
@@ -22895,11 +22820,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>{word} with {key}: on a lathe, {what}.</source>
-      <translation>{word} con {key}: en un torno, {what}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>{word}: a factor must be between 0.001 and 1000.</source>
       <translation>{word}: un factor debe estar entre 0.001 y 1000.</translation>
     </message>
@@ -22907,6 +22827,11 @@
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
       <source>{word}: an offset must be a plain number.</source>
       <translation>{word}: un desplazamiento debe ser un número simple.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
+      <source>{word}: on a lathe, {key} rotates the plane with RPL=, not with axis words.</source>
+      <translation>{word}: en un torno, {key} gira el plano con RPL=, no con palabras de eje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
@@ -22945,8 +22870,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/parameter_passing.py" />
-      <source>{count} parameter{ending}</source>
-      <translation>{count} parámetro{ending}</translation>
+      <source>{count} parameter</source>
+      <translation>{count} parámetro</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/parameter_passing.py" />
+      <source>{count} parameters</source>
+      <translation>{count} parámetros</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/parameter_passing.py" />
@@ -23105,8 +23035,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
-      <source>a thread is cut</source>
-      <translation>se corta una rosca</translation>
+      <source>a thread is cut while G{code} is active.</source>
+      <translation>se corta una rosca con G{code} activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
@@ -23125,8 +23055,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
-      <source>the C axis turns</source>
-      <translation>gira el eje C</translation>
+      <source>the C axis turns while G{code} is active.</source>
+      <translation>el eje C gira con G{code} activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
@@ -23167,11 +23097,6 @@
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
       <source>with KONT, the distance from the {end} point to the end of the contour is less than the nose radius.</source>
       <translation>con KONT, la distancia entre el punto de {end} y el extremo del contorno es menor que el radio de punta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/radius_compensation.py" />
-      <source>{what} while G{code} is active.</source>
-      <translation>{what} con G{code} activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
@@ -23485,11 +23410,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>C has a separate drive</source>
-      <translation>C tiene un accionamiento aparte</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>Close the collet first.</source>
       <translation>Cierre antes la pinza.</translation>
     </message>
@@ -23555,23 +23475,28 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>the machine has no C axis</source>
-      <translation>la máquina no tiene eje C</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
       <source>the speed limit</source>
       <translation>el límite de velocidad</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>the spindle of this machine cannot be oriented because {why} and the machine file does not enable orientation by the spindle drive.</source>
-      <translation>el husillo de esta máquina no se puede orientar porque {why} y el archivo de máquina no habilita la orientación con el accionamiento del husillo.</translation>
+      <source>the spindle of this machine cannot be oriented because C has a separate drive and the machine file does not enable orientation by the spindle drive.</source>
+      <translation>el husillo de esta máquina no se puede orientar porque C tiene un accionamiento propio y el archivo de máquina no habilita la orientación con el accionamiento del husillo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
-      <source>the spindle of this machine is not a C axis because {why}; the spindle drive can only turn the spindle to an angle.</source>
-      <translation>el husillo de esta máquina no es un eje C porque {why}; su accionamiento sólo puede girar el husillo a un ángulo.</translation>
+      <source>the spindle of this machine cannot be oriented because the machine has no C axis and the machine file does not enable orientation by the spindle drive.</source>
+      <translation>el husillo de esta máquina no se puede orientar porque la máquina no tiene eje C y el archivo de máquina no habilita la orientación con el accionamiento del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>the spindle of this machine is not a C axis because C has a separate drive; the spindle drive can only turn the spindle to an angle.</source>
+      <translation>el husillo de esta máquina no es un eje C porque C tiene un accionamiento propio; el accionamiento del husillo sólo puede girar el husillo a un ángulo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
+      <source>the spindle of this machine is not a C axis because the machine has no C axis; the spindle drive can only turn the spindle to an angle.</source>
+      <translation>el husillo de esta máquina no es un eje C porque la máquina no tiene eje C; el accionamiento del husillo sólo puede girar el husillo a un ángulo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/spindle_and_dwell.py" />
@@ -24390,8 +24315,13 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
-      <source>{name} {form} is for {place} undercuts, but the cutting edge of the tool is for {other} undercuts</source>
-      <translation>{name} {form} es para gargantas {place}, pero el filo de la herramienta es para gargantas {other}</translation>
+      <source>{name} {form} is for inside undercuts, but the cutting edge of the tool is for outside undercuts</source>
+      <translation>{name} {form} es para gargantas interiores, pero el filo de la herramienta es para gargantas exteriores</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
+      <source>{name} {form} is for outside undercuts, but the cutting edge of the tool is for inside undercuts</source>
+      <translation>{name} {form} es para gargantas exteriores, pero el filo de la herramienta es para gargantas interiores</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/variables.py" />
@@ -26075,8 +26005,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/path_block.py" />
-      <source>Unexpected word in {article} {form} block</source>
-      <translation>Palabra inesperada en {article} bloque {form}</translation>
+      <source>Unexpected word in this {form} block</source>
+      <translation>Palabra inesperada en este bloque {form}</translation>
     </message>
     <message>
       <location filename="core/language/klartext/path_block.py" />
@@ -26220,8 +26150,13 @@
     </message>
     <message>
       <location filename="core/language/klartext/plane_block.py" />
-      <source>{missing} {verb} missing</source>
-      <translation>{missing}: falta {verb}</translation>
+      <source>{missing} are missing</source>
+      <translation>faltan {missing}</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/plane_block.py" />
+      <source>{missing} is missing</source>
+      <translation>Falta {missing}</translation>
     </message>
     <message>
       <location filename="core/language/klartext/plane_block.py" />
@@ -26627,11 +26562,6 @@
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>Write the unit after the name.</source>
       <translation>Escriba la unidad después del nombre.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
-      <source>{missing} is missing</source>
-      <translation>Falta {missing}</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -27575,8 +27505,13 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/call_arguments.py" />
-      <source>The argument list {what}</source>
-      <translation>La lista de argumentos {what}</translation>
+      <source>The argument list contains text that is not an argument</source>
+      <translation>La lista de argumentos contiene texto que no es un argumento</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/call_arguments.py" />
+      <source>The argument list has no closing parenthesis</source>
+      <translation>La lista de argumentos no tiene paréntesis de cierre</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/call_arguments.py" />
@@ -27597,16 +27532,6 @@
       <location filename="core/language/sinumerik/call_arguments.py" />
       <source>Write PROC NAME(VAR REAL LIST[3]).</source>
       <translation>Escriba PROC NAME(VAR REAL LIST[3]).</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/call_arguments.py" />
-      <source>contains text that is not an argument</source>
-      <translation>contiene texto que no es un argumento</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/call_arguments.py" />
-      <source>has no closing parenthesis</source>
-      <translation>no tiene paréntesis de cierre</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/control_differences.py" />
@@ -28840,8 +28765,13 @@
     </message>
     <message>
       <location filename="core/part/shape_rules.py" />
-      <source>tip quadrant {tip} is for a front tool; the tip of a rear tool is on the {place} side: use quadrant {which}</source>
-      <translation>el cuadrante de punta {tip} es de una herramienta delantera; la punta de una trasera está en el lado {place}: use el cuadrante {which}</translation>
+      <source>tip quadrant {tip} is for a front tool; the tip of a rear tool is on the X+ side: use quadrant 1, 2 or 6</source>
+      <translation>el cuadrante de punta {tip} es de una herramienta delantera; la punta de una trasera está en el lado X+: use el cuadrante 1, 2 o 6</translation>
+    </message>
+    <message>
+      <location filename="core/part/shape_rules.py" />
+      <source>tip quadrant {tip} is for a front tool; the tip of a rear tool is on the X− side: use quadrant 3, 4 or 8</source>
+      <translation>el cuadrante de punta {tip} es de una herramienta delantera; la punta de una trasera está en el lado X−: use el cuadrante 3, 4 u 8</translation>
     </message>
     <message>
       <location filename="core/part/stock_forms.py" />
@@ -28935,8 +28865,8 @@
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
-      <source>Feed moves</source>
-      <translation>Los movimientos de avance</translation>
+      <source>Feed moves between two rapids cut only air.</source>
+      <translation>Los movimientos de avance entre dos rápidos sólo cortan aire.</translation>
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
@@ -28965,18 +28895,13 @@
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
-      <source>Threading moves</source>
-      <translation>Los movimientos de roscado</translation>
+      <source>Threading moves between two rapids cut only air.</source>
+      <translation>Los movimientos de roscado entre dos rápidos sólo cortan aire.</translation>
     </message>
     <message>
       <location filename="core/proving/air_checks.py" />
       <source>Tools have fed through air for {long_air} s up to this move.</source>
       <translation>Las herramientas han avanzado en el aire durante {long_air} s hasta este movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>{what} between two rapids cut only air.</source>
-      <translation>{what} entre dos rápidos solo cortan aire.</translation>
     </message>
     <message>
       <location filename="core/proving/assumed_tools.py" />
@@ -29325,11 +29250,6 @@
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
-      <source> (X as a radius)</source>
-      <translation> (X como radio)</translation>
-    </message>
-    <message>
-      <location filename="core/proving/machine_checks.py" />
       <source>C moves while the spindle turns, but on this machine C is the spindle itself</source>
       <translation>C se mueve mientras gira el husillo, pero en esta máquina C es el propio husillo</translation>
     </message>
@@ -29350,8 +29270,13 @@
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
-      <source>{axis} would move to {position} {unit} from home{radius}, {excess} {unit2} beyond the travel limit of {limit}</source>
-      <translation>{axis} se movería a {position} {unit} de la referencia{radius}, {excess} {unit2} más allá del límite de carrera de {limit}</translation>
+      <source>{axis} would move to {position} {unit} from home (X as a radius), {excess} {unit} beyond the travel limit of {limit}</source>
+      <translation>{axis} se movería a {position} {unit} de la referencia (X como radio), {excess} {unit} más allá del límite de carrera de {limit}</translation>
+    </message>
+    <message>
+      <location filename="core/proving/machine_checks.py" />
+      <source>{axis} would move to {position} {unit} from home, {excess} {unit} beyond the travel limit of {limit}</source>
+      <translation>{axis} se movería a {position} {unit} de la referencia, {excess} {unit} más allá del límite de carrera de {limit}</translation>
     </message>
     <message>
       <location filename="core/proving/machine_checks.py" />
@@ -30360,11 +30285,6 @@
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
-      <source>the spindle still turns in the tapping direction</source>
-      <translation>el husillo sigue girando en el sentido de roscado</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
       <source>{tool} cuts a thread {depth} deep on the radius, but its pitch is only {pitch}.</source>
       <translation>{tool} corta una rosca de {depth} de profundidad en el radio, pero su paso es solo {pitch}.</translation>
     </message>
@@ -30390,13 +30310,13 @@
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
-      <source>{tool} retracts from the thread with the spindle stopped.</source>
-      <translation>{tool} se retira de la rosca con el husillo parado.</translation>
+      <source>{tool} retracts from the thread while the spindle still turns in the tapping direction.</source>
+      <translation>{tool} sale de la rosca mientras el husillo gira todavía en el sentido de roscado.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
-      <source>{tool} retracts from the thread, but {words}.</source>
-      <translation>{tool} se retira de la rosca, pero {words}.</translation>
+      <source>{tool} retracts from the thread with the spindle stopped.</source>
+      <translation>{tool} se retira de la rosca con el husillo parado.</translation>
     </message>
     <message>
       <location filename="core/proving/thread_checks.py" />
@@ -30895,18 +30815,13 @@
     </message>
     <message>
       <location filename="core/shapes/bar_work.py" />
-      <source>This machine has no M codes that open and close the chuck: assign two M codes to the output named collet</source>
-      <translation>Esta máquina no tiene códigos M que abran y cierren el plato: asigne dos códigos M a la salida llamada collet</translation>
+      <source>This machine has no M codes that open and close the chuck: assign two M codes to the output named collet under [m_codes] in the machine file.</source>
+      <translation>Esta máquina no tiene códigos M que abran y cierren el plato: asigne dos códigos M a la salida llamada collet bajo [m_codes] en el archivo de máquina.</translation>
     </message>
     <message>
       <location filename="core/shapes/bar_work.py" />
       <source>feeds the bar to a stop and repeats the following lines for a number of parts; these lines make the part</source>
       <translation>saca la barra hasta un tope y repite las líneas siguientes para varias piezas; esas líneas hacen la pieza</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/bar_work.py" />
-      <source>{words} under [m_codes] in the machine file.</source>
-      <translation>{words} bajo [m_codes] en el archivo de máquina.</translation>
     </message>
     <message>
       <location filename="core/shapes/blade.py" />
@@ -31280,18 +31195,13 @@
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>With these walls, the groove bottom is {bottom} wide, but the blade is {wide} wide</source>
-      <translation>Con estas paredes, el fondo de la ranura mide {bottom} de ancho, pero la cuchilla mide {wide}</translation>
+      <source>With these walls, the groove bottom is {bottom} wide, but the blade is {wide} wide: use a narrower blade, or check the angles.</source>
+      <translation>Con estas paredes, el fondo de la ranura mide {bottom} de ancho, pero la cuchilla mide {wide}: use una cuchilla más estrecha, o revise los ángulos.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
       <source>one or more grooves on the outside, in a bore or with a rear tool, with chamfered edges and square or sloped walls</source>
       <translation>una o varias ranuras por fuera, en un interior o con herramienta trasera, con chaflanes y paredes rectas o inclinadas</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/grooving.py" />
-      <source>{words}: use a narrower blade, or check the angles.</source>
-      <translation>{words}: use una cuchilla más estrecha, o revise los ángulos.</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
@@ -31390,13 +31300,13 @@
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
-      <source>The third axis of this machine is named Y, but the plane of this shape needs a separate Y axis</source>
-      <translation>El tercer eje de esta máquina se llama Y, pero el plano de esta forma necesita un eje Y separado</translation>
+      <source>The third axis of this machine is named Y, but the plane of this shape needs a separate Y axis: mill this shape on another machine.</source>
+      <translation>El tercer eje de esta máquina se llama Y, pero el plano de esta forma necesita un eje Y separado: frese esta forma en otra máquina.</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
-      <source>This machine has no output that drives a live tool</source>
-      <translation>Esta máquina no tiene una salida que mueva una herramienta motorizada</translation>
+      <source>This machine has no output that drives a live tool: define an output named live under [io.out] in the machine file.</source>
+      <translation>Esta máquina no tiene una salida que mueva una herramienta motorizada: defina una salida llamada live bajo [io.out] en el archivo de máquina.</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
@@ -31425,28 +31335,13 @@
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
-      <source>{many} flats at {across} across flats have corners at diameter {corner}, but the part diameter is {stock}</source>
-      <translation>{many} caras con {across} entre caras tienen esquinas en el diámetro {corner}, pero el diámetro de la pieza es {stock}</translation>
+      <source>{many} flats at {across} across flats have corners at diameter {corner}, but the part diameter is {stock}: enter a smaller value, or set CORNERS to ROUND.</source>
+      <translation>{many} caras con {across} entre caras tienen esquinas en el diámetro {corner}, pero el diámetro de la pieza es {stock}: introduzca un valor menor, o ponga las esquinas en ROUND.</translation>
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
       <source>{number} holes at {number2}° go around the part more than once: enter a smaller angle.</source>
       <translation>{number} agujeros a {number2}° dan más de una vuelta a la pieza: introduzca un ángulo menor.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/live_tools.py" />
-      <source>{words}: define an output named live under [io.out] in the machine file.</source>
-      <translation>{words}: defina una salida llamada live bajo [io.out] en el archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/live_tools.py" />
-      <source>{words}: enter a smaller value, or set CORNERS to ROUND.</source>
-      <translation>{words}: introduzca un valor menor, o ponga las esquinas en ROUND.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/live_tools.py" />
-      <source>{words}: mill this shape on another machine.</source>
-      <translation>{words}: frese esta forma en otra máquina.</translation>
     </message>
     <message>
       <location filename="core/shapes/parting.py" />
@@ -31595,8 +31490,8 @@
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
-      <source>The spindle of this machine cannot be positioned and turned in sync with Z</source>
-      <translation>El husillo de esta máquina no se puede posicionar y girar en sincronía con Z</translation>
+      <source>The spindle of this machine cannot be positioned and turned in sync with Z: use a floating tap holder.</source>
+      <translation>El husillo de esta máquina no se puede posicionar y girar en sincronía con Z: use un portamachos con compensación.</translation>
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
@@ -31605,8 +31500,8 @@
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
-      <source>The tool data of {name} specifies a pitch of {pitch}</source>
-      <translation>Los datos de herramienta de {name} indican un paso de {pitch}</translation>
+      <source>The tool data of {name} specifies a pitch of {pitch}, but this thread has a pitch of {needed}: use another tap.</source>
+      <translation>Los datos de herramienta de {name} indican un paso de {pitch}, pero esta rosca tiene un paso de {needed}: use otro macho.</translation>
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
@@ -31627,16 +31522,6 @@
       <location filename="core/shapes/tapping.py" />
       <source>{series} cannot be tapped here: cut the thread with G33.</source>
       <translation>{series} no se puede roscar aquí con macho: corte la rosca con G33.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/tapping.py" />
-      <source>{words}, but this thread has a pitch of {pitch}: use another tap.</source>
-      <translation>{words}, pero esta rosca tiene un paso de {pitch}: use otro macho.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/tapping.py" />
-      <source>{words}: use a floating tap holder.</source>
-      <translation>{words}: use un portamachos con compensación.</translation>
     </message>
     <message>
       <location filename="core/shapes/templates.py" />
@@ -31700,8 +31585,8 @@
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
-      <source>An infeed angle of {angle}° is more than the flank angle of {flank}°, so the first passes would cut into the flank</source>
-      <translation>Un ángulo de penetración de {angle}° es más que el del flanco, {flank}°, así que las primeras pasadas cortarían el flanco</translation>
+      <source>An infeed angle of {angle}° is more than the flank angle of {flank}°, so the first passes would cut into the flank. Enter {limit} or less.</source>
+      <translation>Un ángulo de penetración de {angle}° es más que el del flanco, {flank}°, así que las primeras pasadas cortarían el flanco. Introduzca {limit} o menos.</translation>
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
@@ -31755,8 +31640,8 @@
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
-      <source>The thread is {filled} deep, but at a pitch of {pitch} its flanks meet at a depth of {sharp}</source>
-      <translation>La rosca tiene {filled} de hondo, pero con un paso de {pitch} sus flancos se juntan a {sharp} de hondo</translation>
+      <source>The thread is {filled} deep, but at a pitch of {pitch} its flanks meet at a depth of {sharp}. Check both diameters.</source>
+      <translation>La rosca tiene {filled} de hondo, pero con un paso de {pitch} sus flancos se juntan a {sharp} de hondo. Revise los dos diámetros.</translation>
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
@@ -31805,28 +31690,13 @@
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
-      <source>{name} is made for a pitch of {pitch}</source>
-      <translation>{name} está hecha para un paso de {pitch}</translation>
+      <source>{name} is made for a pitch of {pitch}, not {needed}: use another insert.</source>
+      <translation>{name} está hecha para un paso de {pitch}, no {needed}: use otra plaquita.</translation>
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
       <source>{series} does not include size {size}: choose a size with the arrows.</source>
       <translation>{series} no incluye la medida {size}: elija una medida con las flechas.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/threading.py" />
-      <source>{words}, not {number}: use another insert.</source>
-      <translation>{words}, no {number}: use otra plaquita.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/threading.py" />
-      <source>{words}. Check both diameters.</source>
-      <translation>{words}. Revise los dos diámetros.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/threading.py" />
-      <source>{words}. Enter {flank} or less.</source>
-      <translation>{words}. Introduzca {flank} o menos.</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
@@ -31840,8 +31710,8 @@
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
-      <source>A pass would be {depth} deep, but the insert of T{number} allows a depth of only {maximum}</source>
-      <translation>Una pasada tendría {depth} de profundidad, pero la plaquita de T{number} solo admite una profundidad de {maximum}</translation>
+      <source>A pass would be {depth} deep, but the insert of T{number} allows a depth of only {maximum}: enter a smaller depth of cut.</source>
+      <translation>Una pasada tendría {depth} de profundidad, pero la plaquita de T{number} solo admite una profundidad de {maximum}: introduzca una profundidad de pasada menor.</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
@@ -31915,8 +31785,8 @@
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
-      <source>The boring bar of T{number} has a diameter of {diameter}, but the hole diameter is {hole}</source>
-      <translation>La barra de mandrinar de T{number} tiene un diámetro de {diameter}, pero el diámetro del agujero es {hole}</translation>
+      <source>The boring bar of T{number} has a diameter of {diameter}, but the hole diameter is {hole}, so the bar does not fit; drill a larger hole, or use a smaller boring bar.</source>
+      <translation>La barra de mandrinar de T{number} tiene un diámetro de {diameter}, pero el diámetro del agujero es {hole}, así que la barra no entra; taladre un agujero mayor o use una barra de mandrinar menor.</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
@@ -31925,13 +31795,13 @@
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
-      <source>The contour cuts deeper directly after its first point, and roughing cannot return past that point</source>
-      <translation>El contorno corta más hondo justo después de su primer punto, y el desbaste no puede volver más allá de ese punto</translation>
+      <source>The contour cuts deeper directly after its first point, and roughing cannot return past that point: add a point before the first point, at the same Z and at the lowest X.</source>
+      <translation>El contorno corta más hondo justo después de su primer punto, y el desbaste no puede volver más allá de ese punto: añada un punto antes del primer punto, en la misma Z y en la X más baja.</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
-      <source>The reach of T{number} is only {stick_out}</source>
-      <translation>El alcance de T{number} es de solo {stick_out}</translation>
+      <source>The reach of T{number} is only {stick_out}, but the bore is {depth} deep: use a longer boring bar.</source>
+      <translation>El alcance de T{number} es de solo {stick_out}, pero el taladro tiene {depth} de hondo: use una barra de mandrinar más larga.</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
@@ -31964,44 +31834,19 @@
       <translation>el extremo de la pieza refrentado a escuadra, en una o varias pasadas</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
-      <source>{words}, but the bore is {depth} deep: use a longer boring bar.</source>
-      <translation>{words}, pero el taladro tiene {depth} de hondo: use una barra de mandrinar más larga.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/turning.py" />
-      <source>{words}, so the bar does not fit; drill a larger hole, or use a smaller boring bar.</source>
-      <translation>{words}, así que la barra no entra; taladre un agujero mayor o use una barra de mandrinar menor.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/turning.py" />
-      <source>{words}: add a point before the first point, at the same Z and at the lowest X.</source>
-      <translation>{words}: añada un punto antes del primer punto, en la misma Z y en la X más baja.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/turning.py" />
-      <source>{words}: enter a smaller depth of cut.</source>
-      <translation>{words}: introduzca una profundidad de pasada menor.</translation>
-    </message>
-    <message>
       <location filename="core/shapes/usual_fields.py" />
       <source>A feed of {word} per revolution is more than {maximum}: did you mean F.003?</source>
       <translation>Un avance de {word} por vuelta es más que {maximum}: ¿quería decir F.003?</translation>
     </message>
     <message>
       <location filename="core/shapes/usual_fields.py" />
-      <source>Depth {depth} is more than the flute length of T{number}, which is {length}</source>
-      <translation>La profundidad {depth} es más que el largo de estrías de T{number}, que es {length}</translation>
+      <source>Depth {depth} is more than the flute length of T{number}, which is {length}: use a longer tool.</source>
+      <translation>La profundidad {depth} es más que el largo de estrías de T{number}, que es {length}: use una herramienta más larga.</translation>
     </message>
     <message>
       <location filename="core/shapes/usual_fields.py" />
       <source>S{revolutions} is more than the {maximum} rpm limit of this spindle: enter {maximum2} or less.</source>
       <translation>S{revolutions} es más que el límite de {maximum} rpm de este husillo: introduzca {maximum2} o menos.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/usual_fields.py" />
-      <source>{words}: use a longer tool.</source>
-      <translation>{words}: use una herramienta más larga.</translation>
     </message>
     <message>
       <location filename="core/sharing/connection_string.py" />
@@ -32630,13 +32475,13 @@
     </message>
     <message>
       <location filename="core/store/program_records.py" />
-      <source> version {version}</source>
-      <translation> versión {version}</translation>
+      <source>the data store has no program {name}; see the list of programs and versions</source>
+      <translation>el almacén de datos no tiene el programa {name}; vea la lista de programas y versiones</translation>
     </message>
     <message>
       <location filename="core/store/program_records.py" />
-      <source>the data store has no program {name}{which}; see the list of programs and versions</source>
-      <translation>el almacén de datos no tiene el programa {name}{which}; vea la lista de programas y versiones</translation>
+      <source>the data store has no version {version} of program {name}; see the list of programs and versions</source>
+      <translation>el almacén de datos no tiene la versión {version} del programa {name}; vea la lista de programas y versiones</translation>
     </message>
     <message>
       <location filename="core/store/program_records.py" />

@@ -82,15 +82,15 @@ def test_a_thread_that_fails_leaves_a_crash_file_and_one_line(
 @pytest.mark.parametrize(
     ("display", "says"),
     [
-        ({"DISPLAY": ":7777"}, "no display answers at DISPLAY=:7777"),
+        ({"DISPLAY": ":7777"}, "no display found at DISPLAY=:7777"),
         (
             {"WAYLAND_DISPLAY": "/nowhere/wayland-9"},
-            "no display answers at WAYLAND_DISPLAY=/nowhere/wayland-9",
+            "no display found at WAYLAND_DISPLAY=/nowhere/wayland-9",
         ),
         ({"WAYLAND_DISPLAY": "w9", "DISPLAY": ":7777"}, "WAYLAND_DISPLAY=w9 or DISPLAY=:7777"),
         ({"QT_QPA_PLATFORM": "xcb"}, "neither DISPLAY nor WAYLAND_DISPLAY is set"),
         ({"QT_QPA_PLATFORM": "nonsense"}, "QT_QPA_PLATFORM=nonsense"),
-        ({"DISPLAY": "rubbish"}, "no display answers at DISPLAY=rubbish"),
+        ({"DISPLAY": "rubbish"}, "no display found at DISPLAY=rubbish"),
     ],
 )
 def test_a_screen_that_cannot_be_opened_is_one_line(

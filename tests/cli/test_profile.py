@@ -82,7 +82,7 @@ def test_a_program_on_stdout_and_what_it_needs_beside_it(turndesk: Turndesk, par
     nose = {"number": 1, "x": "-.7976", "z": "-.3988", "radius": ".3988", "unit": "mm"}
     assert wording("shapes.secondary-must-have", **nose) in done.err
     assert wording("shapes.stock-in-corner", size=".248", unit="mm", z="-9.975") in done.err
-    assert shows(done.err, "shapes.matches-drawing", what=wording("shapes.elsewhere-proved"), unit="mm")
+    assert shows(done.err, "shapes.matches-elsewhere", unit="mm")
 
 
 def test_it_is_written_to_a_file_and_told_as_json(

@@ -337,7 +337,7 @@ def test_outputs_by_hand_are_of_setup_and_the_lamp_test_is_not(room: Room) -> No
     page._force("coolant", True)
     room.run()
     assert "coolant" in room.desk.snapshot().outputs
-    assert room.log("change") == [(wording("log.output-by-hand", name="coolant", state="on"), "BEN")]
+    assert room.log("change") == [(wording("log.output-on-by-hand", name="coolant"), "BEN")]
 
 
 def test_what_has_come_by_the_line_is_not_stored_when_the_level_fell_back(room: Room) -> None:

@@ -133,8 +133,8 @@ def test_an_output_is_forced_at_rest_and_told_in_the_log() -> None:
     assert rig.shot.modal.coolant
     assert rig.shot.modal.outputs == frozenset({"catcher"})
     assert rig.said("force") == [
-        text("executor.by-hand", output="catcher", on="on"),
-        text("executor.by-hand", output="coolant", on="on"),
+        text("executor.by-hand", output="catcher"),
+        text("executor.by-hand", output="coolant"),
     ]
 
 

@@ -58,7 +58,7 @@ def test_a_program_proved_in_inches_does_not_start_in_millimetres() -> None:
     rig.post(Prepare())
     load(rig, job)
     assert rig.shot.start_refused == (
-        text("executor.program-silent-on", change=text("executor.counts-in", unit="mm"))
+        text("executor.program-silent-on", change=text("executor.counts-in-mm"))
     )
     load(rig, make_job(job.source, replace(job.setup, metric=True)))
     rig.until(State.IDLE)
@@ -81,9 +81,7 @@ def test_no_repeat_in_another_unit_than_the_first_time() -> None:
     rig.start("G90G94F300\nX.1\nG71\nX2\nM30\n")
     rig.until(State.IDLE)
     assert rig.shot.parts == 1
-    assert rig.said("refused")[-1].startswith(
-        text("executor.no-repeat", why=text("executor.counts-in", unit="mm"))
-    )
+    assert rig.said("refused")[-1].startswith(text("executor.no-repeat", why=text("executor.counts-in-mm")))
 
 
 @pytest.mark.parametrize(("inch", "metric"), [(True, False), (False, True)])

@@ -54,10 +54,8 @@ class FedRig(Rig):
         assert self.feeder.acknowledged == [7]
 
 
-def tripped(who: str, what: str, names: str) -> str:
-    return text(
-        "executor.trip", who=text(f"executor.{who}"), seconds=1.5, what=text(f"executor.{what}"), names=names
-    )
+def tripped(by: str, names: str) -> str:
+    return text(f"executor.{by}-trip", seconds=1.5, names=names)
 
 
 def test_at_rest_it_is_told_and_nothing_is_held() -> None:
@@ -65,7 +63,7 @@ def test_at_rest_it_is_told_and_nothing_is_held() -> None:
     rig.ready()
     rig.post(ForceOutput("coolant", True))
     rig.trips("coolant")
-    assert rig.said("disturbed") == [tripped("control-silent", "switched-off", "COOLANT")]
+    assert rig.said("disturbed") == [tripped("control", "COOLANT")]
     assert rig.state is State.IDLE
     assert rig.shot.alarms == ()
 
@@ -80,8 +78,8 @@ def test_lamps_alone_are_not_worth_a_word() -> None:
 @pytest.mark.parametrize(
     ("found", "words"),
     [
-        (False, tripped("control-silent", "switched-off", "SPINDLE, COOLANT")),
-        (True, tripped("machine-not-heard", "found-on", "SPINDLE, COOLANT")),
+        (False, tripped("control", "SPINDLE, COOLANT")),
+        (True, tripped("machine", "SPINDLE, COOLANT")),
     ],
 )
 def test_a_cut_is_held_and_its_part_does_not_count(found: bool, words: str) -> None:

@@ -63,7 +63,7 @@ def test_a_job_that_was_proved_with_another_unit_or_rapid_rate_is_outdated() -> 
     job = job_of("G90G94\nX1\nM30\n", last_rapid=50.0)
     left = Modal(rapid_rate=50.0)
     assert outdated(job, left) == ""
-    assert outdated(job, Modal(rapid_rate=50.0, metric=True)) == text("executor.counts-in", unit="mm")
+    assert outdated(job, Modal(rapid_rate=50.0, metric=True)) == text("executor.counts-in-mm")
     assert outdated(job, Modal(rapid_rate=60.0)) == text("executor.other-rapid-rate")
 
 

@@ -176,7 +176,7 @@ def test_no_start_with_the_collet_otherwise() -> None:
     broken_off(rig)
     mdi(rig, "M13")
     prepare(rig, restart_job(rig, 8))
-    assert refused(rig) == text("executor.must-be", now="open", needed="closed", line=8)
+    assert refused(rig) == text("executor.collet-must-close", line=8)
 
 
 def test_no_start_of_a_program_that_was_loaded_anew() -> None:

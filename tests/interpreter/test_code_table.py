@@ -166,7 +166,7 @@ def wait_in_turns(state: State, made: Statement) -> Iterator[Block]:
 
 TRIAL = Code(
     "G05", "G05Fn", "Waits for n turns.", "G05F2", acts=Acts.MOTION, handler="dwell.wait_in_turns",
-    words=names("F S T D"), f=FWord.SECONDS, least_blocks=1, not_in_mdi="is a trial",
+    words=names("F S T D"), f=FWord.SECONDS, least_blocks=1, not_in_mdi="{code} is a trial.",
 )  # fmt: skip
 
 

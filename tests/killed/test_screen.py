@@ -18,7 +18,7 @@ from core.records.ring_file import LAST, NOW, read_ring
 from core.store.store import Store
 from tests.killed.bench import Process, process, until
 from tests.late_computer import tell
-from tests.texts import text
+from tests.texts import opening, text
 
 pytestmark = [
     pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks for processes in /proc"),
@@ -26,7 +26,7 @@ pytestmark = [
 ]
 PROGRAM = "G90G94\nM03S600\nM08\nG01X.2Z-.2F20\nX0.Z0.\nM30\n"  # 2 s of motion a part
 OPERATOR = "tests.killed.operator"
-_LATE = text("executor.control-silent"), CATALOGUE["low-queue"].text.upper()
+_LATE = opening("executor.control-trip"), CATALOGUE["low-queue"].text.upper()
 
 
 @pytest.fixture

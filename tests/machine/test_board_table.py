@@ -138,16 +138,16 @@ INPUT = "hm2_7i76e.0.7i76.0.0.input"
             f'"{INPUT}-01"',
             '"hm2_7i76e.0.7i76.0.0.output-09"',
             "io.in.guard",
-            "is an output, expected an",
+            "this terminal is an output; expected an input",
         ),
         (
             STEP,
             "7i76.0.0.output-01",
             "7i76.0.0.input-20",
             "io.out.coolant",
-            "is an input, expected an output",
+            "this terminal is an input; expected an output",
         ),
-        (STEP, f'"{INPUT}-10"', '"x-home"', "hal.axes.X.home", "a signal that is not connected to a pin"),
+        (STEP, f'"{INPUT}-10"', '"x-home"', "hal.axes.X.home", "this signal is not connected to a pin"),
         (STEP, '"x-pos-cmd"', '"pid.z.command"', "hal.axes.X.command", "expected pid.x.command, the name of"),
         (STEP, 'machine_on = "hm2_7i76e.0.7i76.0.0.output-00"', "", "hal.machine_on", "missing"),
         (
@@ -178,7 +178,7 @@ INPUT = "hm2_7i76e.0.7i76.0.0.input"
             'pwm = "parport.0.pin-17-out"',
             'pwm = "parport.0.pin-15-in"',
             "board.spindle.pwm",
-            "is an input",
+            "this terminal is an input",
         ),
     ],
 )

@@ -210,7 +210,7 @@ def test_value_that_means_nothing_is_refused_and_stays_to_be_mended(
     write(page, *keys)
     if not says:  # a contradiction with another field is kept, and shown there
         save(room, page)
-        assert shows(page.prompt(room.now[0]), "offsets.front-quadrant", quadrant=3, place="X+")
+        assert shows(page.prompt(room.now[0]), "offsets.front-quadrant", quadrant=3)
         assert page.outline is None
         return
     assert says in room.desk.notice

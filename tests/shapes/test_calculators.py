@@ -244,11 +244,7 @@ def test_no_drill_is_told_where_none_is_sold() -> None:
         ({"SIZE": "1/4-20", "SHORT": 0.5}, wording("shapes.tap-stops-short", short=0.5, depth=0.5)),
         (
             {"SIZE": "1/4-20", "T": 5.0},
-            wording(
-                "shapes.pitch-of-thread",
-                words=wording("shapes.pitch-of-tool", tool="T5", pitch=0.03937),
-                pitch=0.05,
-            ),
+            wording("shapes.pitch-of-thread", tool="T5", pitch=0.03937, needed=0.05),
         ),
         (
             {"SIZE": "1/4-20", "DEEP": 1.0, "T": 4.0},

@@ -48,7 +48,7 @@ def test_missing_program_and_version_are_refused(store: Store) -> None:
     store.save_program("a", b"", "x").result()
     with raises_code(StoreError, "no-program", "'b'"):
         store.load_program("b")
-    with raises_code(StoreError, "no-program", "'a' version 2"):
+    with raises_code(StoreError, "no-program", "version 2 of program 'a'"):
         store.load_program("a", 2)
     assert store.versions("b") == ()
 

@@ -195,7 +195,7 @@ class Code:
     under_nose: bool = False  # may stand under G41 and G42 where it moves
     before_corner: bool = False  # may stand between a move with C or R and the next
     in_contour: bool = False  # may stand in the contour of G75 and G78
-    not_in_mdi: str = ""  # why it means nothing on a line of its own
+    not_in_mdi: str = ""  # template with {code}: why MDI rejects the code, which needs other lines
     further: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:

@@ -46,8 +46,8 @@ _CORNER_SIZE = WordRule(
     "the corner size", least=0, over=True,
     wrong=Refusal(
         "corner-size",
-        "{word}: the corner size must be a number greater than 0.", (
-            "Write the size as a number greater than 0.")
+        "{word}: the corner size must be a number greater than 0.",
+            "Write the size as a number greater than 0."
     ),
 )
 _CORNER = names("corner-next corner-straight corner-too-large")
@@ -80,9 +80,8 @@ _ALONE = Refusal(
 _nose_on = partial(
     Code, acts=Acts.MODE, handler="nose_compensation.switch", group="nose compensation", f=FWord.NONE,
     not_in_mdi=
-                (
-                "cannot start nose compensation in MDI, because nose compensation needs more "
-                "than one line"),
+                "{code} cannot start nose compensation in MDI, because nose compensation needs more "
+                "than one line.",
     not_when={
         When.WITH_OTHERS: _ALONE,
         When.NOSE_COMPENSATION: Refusal(
@@ -120,15 +119,14 @@ _SPEED_LIMIT = WordRule(
     "Write G{number}S with a speed in rpm.", "S"),
 )
 _C_SPEED = WordRule(
-    (
-            "C axis speed in rpm, without a sign"), least=0, over=True, most=Limit.C_RPM,
+            "C axis speed in rpm, without a sign", least=0, over=True, most=Limit.C_RPM,
     wrong=Refusal("speed-range",
     "{word}: the C axis speed must be above 0 and at most {most} rpm.", "Correct S."),
 )
 _NO_C = Refusal(
     "c-disabled",
-    "{name} needs a C axis, but the C axis is disabled in the machine file.", (
-            "Enable the C axis (axis.C.enabled).")
+    "{name} needs a C axis, but the C axis is disabled in the machine file.",
+            "Enable the C axis (axis.C.enabled)."
 )
 _ANGLE = WordRule(
     "angle in degrees; absolute (like CA) under G90, incremental (like CI) under G91",
@@ -141,21 +139,19 @@ _c_word = partial(
         "The line contains both {first} and {word}.", "Keep only one of these words.")),),
     not_when={When.C_FREE: Refusal(
         "c-unlocked",
-        "{word} rotates the C axis, but the spindle is not locked as the C axis.", (
-            "Write M19 or M89 before this line."))},
+        "{word} rotates the C axis, but the spindle is not locked as the C axis.",
+            "Write M19 or M89 before this line.")},
     further=names("c-too-little feed-over-speed finer-than-step speed-missing"),
 )
 _NOT_READY = {
     When.NOSE_COMPENSATION: Refusal(
         "cycle-nose-comp", "{code} cannot run while nose compensation is active.",
-        (
-            "Write G40 and a departure move before the cycle.")),
+            "Write G40 and a departure move before the cycle."),
     When.TOOL_NOT_MOVED: Refusal(
         "tool-first-move",
         "{code} is the first move after the T on line {line}, so its start point is "
             "unknown.",
-        (
-            "Program a move to X and Z of the start point before the cycle.")),
+            "Program a move to X and Z of the start point before the cycle."),
     When.NO_FEED: Refusal(
         "feed-missing",
         "{code}: no cutting feed is active.", "Write F on the {code} line."),
@@ -174,16 +170,14 @@ _DEPTH = WordRule(
     missing=Refusal("word-missing", "{code} needs Z, the bottom of the hole.", "Add Z."),
 )
 _OPPOSITE = WordRule(
-    (
-            "the corner opposite the start point"),
+            "the corner opposite the start point",
     missing=Refusal(
         "word-missing",
         "{code} needs the {letter} coordinate of the corner opposite the start point.", "Add {letter}."),
 )
 _CUT = _needed("the maximum depth of cut")
 _LEFT = WordRule(
-    (
-            "the stock that the cycle leaves per side"), least=0,
+            "the stock that the cycle leaves per side", least=0,
     wrong=Refusal(
         "cycle-length",
         "{word}: U, the stock that the cycle leaves per side, cannot be negative.",
@@ -194,13 +188,12 @@ _DESCRIBED = WordRule(
     numberless=Refusal(
         "word-missing",
         "P must be followed by the number of the subroutine that describes the contour.",
-        (
-            "Write the number of the subroutine after P.")),
+            "Write the number of the subroutine after P."),
 )
 _contour = partial(
     Code, acts=Acts.CONTOUR, handler="roughing_cycles.contour_moves", f=FWord.FEED, not_when=_NOT_READY,
     not_in_mdi=
-                "cannot cut a contour in MDI, because a contour needs more than one line",
+                "{code} cannot cut a contour in MDI, because a contour needs more than one line.",
 )
 _CONTOUR_CYCLE = names(
     "contour-open corner-both corner-size cycle-contour-empty cycle-contour-line cycle-contour-long "
@@ -226,8 +219,8 @@ _PULL_OUT = WordRule(
     "the pull-out from the thread",
     numbered=Refusal(
         "thread-word",
-        "{word}: {letter} must not have a number here.", (
-            "Write {letter} without a number.")),
+        "{word}: {letter} must not have a number here.",
+            "Write {letter} without a number."),
 )
 _END = WordRule(
     "the end of the thread",
@@ -248,13 +241,12 @@ _thread = partial(
         When.STANDING: Refusal(
             "spindle-stopped",
             "The spindle is stopped, but it must turn to cut a thread.",
-            (
-            "Start the spindle with M03 or M04.")),
+            "Start the spindle with M03 or M04."),
     },
 )
 _coarse = partial(
     Code, acts=Acts.MODE, handler="coarse_feeds.coarse_line", group="coarse feed",
-    not_in_mdi="cannot be used in MDI, because it needs a G92 on the next line and MDI runs only " "one line",
+    not_in_mdi="{code} needs a G92 on the next line, but MDI runs only one line.",
 )
 _COARSE_ALONE = Refusal(
     "not-alone",
@@ -264,7 +256,7 @@ _COARSE_ALONE = Refusal(
 _plane = partial(
     Code, acts=Acts.FLOW, f=FWord.NONE, handler="plane_switching.plane_line",
     not_in_mdi=
-                "cannot be used in MDI, because plane switching needs more than one line",
+                "{code} cannot be used in MDI, because plane switching needs more than one line.",
     not_when={
         When.C_FREE: Refusal(
             "c-unlocked",
@@ -293,15 +285,13 @@ _flow = partial(Code, acts=Acts.FLOW, f=FWord.NONE)
 CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
     ("Moves and corners", (
         _mode("G00", "G00 XnZn",
-        (
                 "From here on, all moves are rapid moves; the rapid rate is the F in the first "
-                "line of the program."), "G00X.7\nZ.5",
+                "line of the program.", "G00X.7\nZ.5",
             handler="feeds.feed_words", group="rapid", further=names("title-rapid"),
             not_when={When.WITH_FEED: Refusal(
                 "rapid-and-feed",
-                (
                 "G00 cannot be combined with F, G94 or G95, because each of these words "
-                "cancels the rapid mode."),
+                "cancels the rapid mode.",
                 "Split the line.", 1)}),
         _mode("G01", "G01 XnZn",
         "Returns to the feed that was active before the rapid.", "Z0\nG00Z.05\nG01Z-.2",
@@ -318,8 +308,8 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
             acts=Acts.MOTION, handler="dwell.dwell", words=names("F S T D"), f=FWord.SECONDS,
             rules={"F": WordRule(
                 "seconds", least=0.1,
-                missing=Refusal("word-missing", "G04 does not contain a dwell time.", (
-            "Write G04F with the time in seconds.")),
+                missing=Refusal("word-missing", "G04 does not contain a dwell time.",
+            "Write G04F with the time in seconds."),
                 wrong=Refusal(
                     "dwell-range", "G04F{value} is too short: the shortest dwell is 0.1 s.", "Correct F."))},
             least_blocks=1, under_nose=True, before_corner=True, in_contour=True,
@@ -345,8 +335,7 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
                 "corner-without-move",
                 "{word} programs a corner at the end of a straight move, but the line does not "
                 "contain a straight move.",
-                (
-            "Write the chamfer or radius on the line with X or Z."))}),
+            "Write the chamfer or radius on the line with X or Z.")}),
     )),
     ("Modes", (
         _mode("G70", "G70", "Inches.", "G70\nX.5",
@@ -388,7 +377,6 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
         "cancels the offset.",
             "X.5Z0\nZ-.4D2\nX.55D0", handler="tools_and_offsets.secondary", further=names("comp-d")),
         Code("G10", "G10XnZn",
-
             "Adds X and Z to the work shift; the new shift takes effect at the next T word.",
             "G10X0Z-.5\nT1\nX.6Z.1",
             acts=Acts.FRAME, handler="tools_and_offsets.work_shift", words=names("X Z F S T D"), f=FWord.FEED,
@@ -399,7 +387,8 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
         "contour.", _COMPENSATED,
             acts=Acts.MODE, handler="nose_compensation.switch", group="nose compensation", f=FWord.NONE,
             not_in_mdi=
-                "cannot end nose compensation in MDI, because nose compensation needs more than one " "line",
+                "{code} cannot end nose compensation in MDI, because nose compensation needs more than "
+                "one line.",
             not_when={When.WITH_OTHERS: _ALONE}, further=names("comp-empty")),
         _nose_on("G41", "G41",
         "Turns nose compensation on, with the nose center to the left of the path. The "
@@ -424,12 +413,11 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
         _mode("G96", "G96Sn", "Constant surface speed in ft/min; the rpm changes with the radius.",
             "G96S200\nX.3\nG97S1000", handler="spindle_speed.spindle_modes", group="spindle mode",
             rules={"S": WordRule(
-
                 "surface speed in ft/min, or in m/min with G71",
                 least=0, most=Limit.SURFACE, wrong=_SPEED_SIGN,
                 too_great=Refusal(
                     "speed-range",
-                    "{word}: this surface speed is too high for any tool.", ("Write G97 if S is in rpm.")))},
+                    "{word}: this surface speed is too high for any tool.", "Write G97 if S is in rpm."))},
             further=names("surface-speed-missing")),
         _mode("G97", "G97Sn", "S is in rpm again.", "G97S900",
             handler="spindle_speed.spindle_modes", group="spindle mode"),
@@ -497,7 +485,7 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
         _flow("RF", "RF", "Ends the contour description for G75 and G78.", f"G78U.02F.004\n{_CONTOUR}\nRF",
             handler="loops_and_subroutines.Flow.contour", words=names("RF"), deletable=False,
             not_in_mdi=
-                "cannot end a contour in MDI, because no contour was started", further=names("rf-alone")),
+                "{code} ends a contour, but no contour was started.", further=names("rf-alone")),
     )),
     ("Threads", (
         _thread("G33", "G33XnZnInKnAnCnPO",
@@ -513,8 +501,7 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
                     "C": WordRule("infeed angle in degrees", least=0, most=30, bare=29, wrong=Refusal(
                     "thread-angle",
                     "{word}: the infeed angle must be from 0 to 30 degrees.",
-                    (
-            "Correct the C word; C without a number means 29 degrees."))),
+            "Correct the C word; C without a number means 29 degrees.")),
             "P": _PULL_OUT,
             "O": WordRule("the last pass only"),
             },
@@ -554,48 +541,47 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
         "Repeats the following lines, up to LF, n times.", "LS3\nG91\nZ-.1\nG90\nLF",
             handler="loops_and_subroutines.Flow.steer", words=names("LS"), deletable=False,
             not_in_mdi=
-                "cannot start a loop in MDI; a loop needs more than one line, with LF at the end",
+                "{code} cannot start a loop in MDI; a loop needs more than one line, with LF at the end.",
             further=names("loop-open word-missing")),
         _flow("LF", "LF", "Ends a loop.", "LS2\nX.55\nX.6\nLF",
             handler="loops_and_subroutines.Flow.steer", words=names("LF"), deletable=False,
             not_in_mdi=
-                "cannot end a loop in MDI, because no loop was started", further=names("loop-unopened")),
+                "{code} ends a loop, but no loop was started.", further=names("loop-unopened")),
         _flow("P", "Pn", "Runs subroutine n.", "P4", "}4\nX.55\nM99\n",
             handler="loops_and_subroutines.Flow.call", words=names("P"), calls=True,
             not_in_mdi=
-                "cannot call a subroutine in MDI; subroutine calls are possible only in a program",
+                "{code} cannot call a subroutine in MDI; subroutine calls are possible only in a program.",
             further=names("recursion subroutine-missing")),
         _flow("}", "}n",
         "Marks the start of subroutine n; subroutines are written after the end of the program.",
         "M98P5", "}5\nX.55\nM99\n",
             handler="loops_and_subroutines.Flow.steer", words=names("}"), deletable=False,
             not_in_mdi=
-                "cannot define a subroutine in MDI; subroutines are possible only in a program",
+                "{code} cannot define a subroutine in MDI; subroutines are possible only in a program.",
             further=names("subroutine-open subroutine-twice word-missing")),
         _flow("M98", "M98Pn", "Runs subroutine n.", "M98P2", "}2\nX.55\nM99\n",
             handler="loops_and_subroutines.Flow.call", words=names("P M"), calls=True,
             not_in_mdi=
-                "cannot call a subroutine in MDI; subroutine calls are possible only in a program",
+                "{code} cannot call a subroutine in MDI; subroutine calls are possible only in a program.",
             further=names("recursion subroutine-missing")),
         _flow("M99", "M99", "Ends a subroutine.", "M98P3", "}3\nX.55\nM99\n",
             handler="loops_and_subroutines.Flow.steer", words=names("M"), deletable=False,
             not_in_mdi=
-                "cannot end a subroutine in MDI, because no subroutine was started",
-                further=names("m99-outside")),
+                "{code} ends a subroutine, but no subroutine was started.", further=names("m99-outside")),
         _flow("M95", "M95",
         "Runs subroutine 1 if TB2-9 is closed.", "M95", "}1\nX.55\nM99\n",
             handler="loops_and_subroutines.Flow.call", words=names("M"), terminal=("TB2-9", True), calls=True,
             asks=True, not_in_mdi=
-                "cannot call a subroutine in MDI; subroutine calls are possible only in a program",
+                "{code} cannot call a subroutine in MDI; subroutine calls are possible only in a program.",
             further=names("recursion subroutine-missing")),
         _flow("M97", "M97InCnPn",
         "Runs subroutine P if input I is on (with C1) or off (with C0).", "M97I10C1P6",
             "}6\nX.55\nM99\n", handler="loops_and_subroutines.Flow.call", words=names("C I P M"),
             calls=True, asks=True, not_in_mdi=
-                "cannot call a subroutine in MDI; subroutine calls are possible only in a program",
+                "{code} cannot call a subroutine in MDI; subroutine calls are possible only in a program.",
             rules={
-                "C": WordRule((
-                "required state of the input: on (1) or off (0)"), least=0, most=1, whole=True, wrong=Refusal(
+                "C": WordRule(
+                "required state of the input: on (1) or off (0)", least=0, most=1, whole=True, wrong=Refusal(
                     "condition",
                     "The line contains {word}, which is neither C1 (on) nor C0 (off).",
                     "Write C1 or C0.")),

@@ -123,7 +123,7 @@ class Corners:
             raise _refused(
                 held,
                 "corner-next",
-                (Message("{what} on line {line} is not a straight move", what=what, line=statement.line)),
+                Message("{what} on line {line} is not a straight move", what=what, line=statement.line),
             )
 
     def end(self) -> None:
@@ -140,12 +140,12 @@ class Corners:
 
     def _cut(self, held: _Held, after: Block, corner: Corner | None) -> Iterator[Item]:
         if after.kind not in STRAIGHT or after.c != after.c0:
-            what = "an arc" if after.kind is Kind.ARC else "not a straight line"
-            raise _refused(
-                held,
-                "corner-next",
-                Message("the next move, on line {line}, is {what}", line=after.line, what=what),
+            template = (
+                "the next move, on line {line}, is an arc"
+                if after.kind is Kind.ARC
+                else "the next move, on line {line}, is not a straight line"
             )
+            raise _refused(held, "corner-next", Message(template, line=after.line))
         block, point = held.block, (held.block.x, held.block.z)
         first, last = Line((block.x0, block.z0), point), Line(point, (after.x, after.z))
         try:
@@ -257,13 +257,12 @@ def _corner(asked: ContourPiece, before: Element, after: Element, log: Log) -> S
     except CornerTooLargeError as problem:
         needed = units.length(problem.needed, metric=asked.metric)
         left = units.length((before if problem.first else after).length, metric=asked.metric)
-        which = "this move" if problem.first else "the next move"
-        why = Message(
-            "the corner needs {needed} of {which}, but only {left} remains",
-            needed=needed,
-            which=which,
-            left=left,
+        template = (
+            "the corner needs {needed} of this move, but only {left} remains"
+            if problem.first
+            else "the corner needs {needed} of the next move, but only {left} remains"
         )
+        why = Message(template, needed=needed, left=left)
         raise _refused_in_contour(asked, "corner-too-large", why) from None
     except CornerError as problem:
         raise _refused_in_contour(asked, "corner-next", str(problem)) from None

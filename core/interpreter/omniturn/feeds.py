@@ -162,7 +162,7 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
             line,
             "feed-missing",
             "No feed is programmed for this move.",
-            ("Write F on this line or an earlier line."),
+            "Write F on this line or an earlier line.",
         )
         return
     if not (modal.per_rev or (modal.css and state.cut)):
@@ -176,8 +176,11 @@ def check_move(state: State, line: int, x0: float, x: float, length: float) -> N
     if x0 * x < 0:  # over the centre
         rpm = max(rpm, abs(state.rpm_at(0.0)))
     if not rpm:
-        why = "feed per revolution" if modal.per_rev else "constant surface speed"
-        text = Message("The spindle is stopped, but the move uses {why}.", why=why)
+        text = (
+            "The spindle is stopped, but the move uses feed per revolution."
+            if modal.per_rev
+            else "The spindle is stopped, but the move uses constant surface speed."
+        )
         _once(state, line, "spindle-stopped", text, "Start the spindle with M03 or M04, or use G94.")
         return
     speed = modal.feed * rpm / 60 if modal.per_rev else modal.feed

@@ -45,28 +45,24 @@ def _alone(statement: Statement) -> Diagnostic | None:
     if statement.flow and statement.flow != UNREADABLE:
         return _refuse(statement, 1, _steers(statement))
     if statement.block_delete:
-        return _refuse(statement, 1, "/ skips a program line and has no meaning in MDI")
+        return _refuse(statement, 1, "/ skips a program line and has no meaning in MDI.")
     for code in statement.modal:
         if G_CODES[code].not_in_mdi:
-            return _refuse(
-                statement, 1, Message("G{code} {not_in_mdi}", code=code, not_in_mdi=G_CODES[code].not_in_mdi)
-            )
+            return _refuse(statement, 1, Message(G_CODES[code].not_in_mdi, code=f"G{code}"))
     if statement.code is not None and statement.entry.not_in_mdi:
         return _refuse(
             statement,
             statement.code.column,
-            Message("{code} {not_in_mdi}", code=statement.code.text, not_in_mdi=statement.entry.not_in_mdi),
+            Message(statement.entry.not_in_mdi, code=statement.code.text),
         )
     radius = statement.words.get("R")
     if radius is not None and statement.moves and statement.one_shot is None:
         return _refuse(
             statement,
             radius.column,
-            (
-                Message(
-                    "{radius} rounds the corner with the next move, but MDI runs only one line",
-                    radius=radius.text,
-                )
+            Message(
+                "{radius} rounds the corner with the next move, but MDI runs only one line.",
+                radius=radius.text,
             ),
         )
     return None
@@ -74,10 +70,11 @@ def _alone(statement: Statement) -> Diagnostic | None:
 
 def _steers(statement: Statement) -> str:
     if statement.flow == PLANE:
-        return Message("{text} {not_in_mdi}", text=statement.text, not_in_mdi=FLOW_CODES["~PLXC"].not_in_mdi)
+        plane = FLOW_CODES["~PLXC"]
+        return Message(plane.not_in_mdi, code=statement.text)
     word = statement.m_word.text if statement.m_word else statement.flow
-    return Message("{word} {not_in_mdi}", word=word, not_in_mdi=FLOW_CODES[statement.flow].not_in_mdi)
+    return Message(FLOW_CODES[statement.flow].not_in_mdi, code=word)
 
 
-def _refuse(statement: Statement, column: int, what: str) -> Diagnostic:
-    return refusal(statement.line, column, "not-alone-mdi", Message("{what}.", what=what), _HINT)
+def _refuse(statement: Statement, column: int, text: str) -> Diagnostic:
+    return refusal(statement.line, column, "not-alone-mdi", text, _HINT)

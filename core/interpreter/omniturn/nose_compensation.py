@@ -64,23 +64,22 @@ def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: L
         raise lead.refused("-short", text, "Move farther away from the part.")
     off = min(distance(element, free) for element in lead.contour)
     shown = lead.block.modal.length_text(off)
-    text = Message(
-        "The {lead} {choice} at a distance of {value} from the part",
-        lead=lead.name,
-        choice="ends" if lead.departs else "starts",
-        value=shown,
-    )
     hint = "Start the approach, or end the departure, at least twice the nose radius away from the part."
     if off < radius - SAME_POINT:
-        raise lead.refused(
-            "-near",
-            Message("{what}. This distance is less than the nose radius of {nose}.", what=text, nose=nose),
-            hint,
+        template = (
+            "The departure ends {value} from the part, which is less than the nose radius of {nose}."
+            if lead.departs
+            else "The approach starts {value} from the part, which is less than the nose radius of {nose}."
         )
+        raise lead.refused("-near", Message(template, value=shown, nose=nose), hint)
     if off < 2 * radius - SAME_POINT:
-        text = Message(
-            "{what}. This distance is less than twice the nose radius of {nose}.", what=text, nose=nose
+        template = (
+            "The departure ends {value} from the part, which is less than twice the nose radius of {nose}."
+            if lead.departs
+            else "The approach starts {value} from the part, which is less than twice the nose radius of "
+            "{nose}."
         )
+        text = Message(template, value=shown, nose=nose)
         log.warn(lead.block.line, 0, f"comp-{lead.name}-near", text, hint)
 
 
@@ -170,7 +169,7 @@ class Compensation:
                 block,
                 "comp-with",
                 Message("{name} cannot compensate this move.", name=self._name),
-                ("Write G40 before this line."),
+                "Write G40 before this line.",
             )
         move = _Move(block)
         if self._approach is None:
@@ -244,7 +243,7 @@ class Compensation:
                 (last or approach).block,
                 "comp-empty",
                 text,
-                ("Write the contour between the approach and the departure."),
+                "Write the contour between the approach and the departure.",
             )
         try:
             pieces = list(self._offset.close())
@@ -280,7 +279,7 @@ class Compensation:
             nose=nose,
             why=problem.why,
         )
-        return _refused(block, "comp-gouge", text, ("Use a smaller nose radius, or change the contour."))
+        return _refused(block, "comp-gouge", text, "Use a smaller nose radius, or change the contour.")
 
     @property
     def _code(self) -> int:
@@ -335,16 +334,16 @@ def check_under_nose(state: State, statement: Statement) -> None:
     if statement.ends_program:
         text = Message("The program ends while G{state} is active.", state=on)
         raise statement.refuse(
-            1, "comp-open", text, ("Move off the part, and write G40 before the end of the program.")
+            1, "comp-open", text, "Move off the part, and write G40 before the end of the program."
         )
     if statement.flow and statement.flow not in FLOW_CODES:
         raise statement.refuse(
             1,
             "comp-with",
             Message(
-                ("The plane commands (~PLXC) and (~PLZC) are not allowed while G{state} is active."), state=on
+                "The plane commands (~PLXC) and (~PLZC) are not allowed while G{state} is active.", state=on
             ),
-            ("Write G40 before this line."),
+            "Write G40 before this line.",
         )
     if statement.calls:
         text = Message("A subroutine cannot be called while G{state} is active.", state=on)
@@ -359,7 +358,7 @@ def check_under_nose(state: State, statement: Statement) -> None:
             1,
             "comp-with",
             Message("{what} is not allowed while G{state} is active.", what=what, state=on),
-            ("Write G40 before this line."),
+            "Write G40 before this line.",
         )
     other = statement.value("D") not in {None, state.modal.secondary}
     if other and "T" not in statement.words and not state.contour.approach:
@@ -378,20 +377,20 @@ def check_approach(state: State, block: Block) -> None:
         text = Message(
             "The first move after G{state} on line {line} is not a straight line.", state=on, line=line
         )
-        raise _refused(block, "comp-approach", text, ("Program the approach as a straight line with D."))
+        raise _refused(block, "comp-approach", text, "Program the approach as a straight line with D.")
     if state.contour.d_line != block.line or not state.modal.secondary:
         text = Message("The first move after G{state} on line {line} has no D.", state=on, line=line)
         raise _refused(
             block,
             "comp-approach",
             text,
-            ("Write Dn on the first move after G41 or G42; R of Dn is the nose radius."),
+            "Write Dn on the first move after G41 or G42; R of Dn is the nose radius.",
         )
     radius = state.setup.secondary[state.modal.secondary].r if _known(state) else 0.0
     if radius < 0:
         text = Message("R of D{secondary} is negative.", secondary=state.modal.secondary)
         raise _refused(
-            block, "comp-radius", text, ("Enter the nose radius without a sign; G41 and G42 set the side.")
+            block, "comp-radius", text, "Enter the nose radius without a sign; G41 and G42 set the side."
         )
     if not radius:
         text = Message(
@@ -399,7 +398,7 @@ def check_approach(state: State, block: Block) -> None:
             secondary=state.modal.secondary,
             state=on,
         )
-        state.log.warn(block.line, 0, "comp-no-radius", text, ("Enter the nose radius in the offset table."))
+        state.log.warn(block.line, 0, "comp-no-radius", text, "Enter the nose radius in the offset table.")
 
 
 def nose_radius(state: State) -> float:

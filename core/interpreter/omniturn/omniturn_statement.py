@@ -122,7 +122,7 @@ def statement_of(line: Line) -> Statement:
             line.comment_column,
             "plane-entry",
             message,
-            ("Write (~PLXC) or (~PLZC) alone on a line."),
+            "Write (~PLXC) or (~PLZC) alone on a line.",
         )
     _sort(statement, line)
     words = statement.words
@@ -158,7 +158,9 @@ def _sort(statement: Statement, line: Line) -> None:
             _sort_g(statement, word, modal)
         elif letter == "M":
             if statement.m_word is not None:
-                raise _refused(line, word, "two-m-codes", "contains two M codes", "Split the line.")
+                raise _refused(
+                    line, word, "two-m-codes", "This line contains two M codes.", "Split the line."
+                )
             statement.m, statement.m_word = int(word.value or 0), word
             statement.m_code = M_CODES.get(statement.m)
         elif letter in words:
@@ -166,7 +168,7 @@ def _sort(statement: Statement, line: Line) -> None:
                 line,
                 word,
                 "word-twice",
-                Message("contains {letter} twice", letter=letter),
+                Message("This line contains {letter} twice.", letter=letter),
                 "Remove one of the two.",
             )
         else:
@@ -180,7 +182,9 @@ def _check_groups(statement: Statement, line: Line, modal: list[Word]) -> None:
     groups: dict[str, int] = {}
     for word, code in zip(modal, statement.modal, strict=True):
         if groups.setdefault(G_CODES[code].group, code) != code:
-            what = Message("contains two codes of the same group ({word})", word=G_CODES[code].group)
+            what = Message(
+                "This line contains two codes of the same group ({group}).", group=G_CODES[code].group
+            )
             raise _refused(line, word, "modal-conflict", what, "Keep only one of these words.")
 
 
@@ -241,10 +245,8 @@ def _check_words(statement: Statement, line: Line) -> None:
             if habit is not None:
                 message = Message("{word} has no meaning here. {habit}", word=word.text, habit=habit[0])
                 raise statement.refuse(word, "word-unused", message, habit[1])
-            what = Message("contains {word}, which no code on the line uses", word=word.text)
-            raise _refused(
-                line, word, "word-unused", what, ("Remove the word, or add the code that uses it.")
-            )
+            what = Message("This line contains {word}, which no code on the line uses.", word=word.text)
+            raise _refused(line, word, "word-unused", what, "Remove the word, or add the code that uses it.")
 
 
 def _check_flow(statement: Statement, line: Line) -> None:
@@ -252,20 +254,21 @@ def _check_flow(statement: Statement, line: Line) -> None:
     for word in line.words:
         if word.letter not in allowed:
             what = Message(
-                "contains {word}, but {flow} must be alone on a line",
+                "This line contains {word}, but {flow} must be alone on a line.",
                 word=word.text,
                 flow=statement.flow,
             )
             raise _refused(line, word, "not-alone", what, "Put each command on a separate line.")
     if line.block_delete and not FLOW_CODES[statement.flow].deletable:
         what = Message(
-            "has '/' before {flow}, which cannot be skipped because the rest of the program needs it",
+            "This line has '/' before {flow}, which cannot be skipped because the rest of the program "
+            "needs it.",
             flow=statement.flow,
         )
         raise _refused(line, line.words[0], "block-delete-flow", what, "Remove '/'.")
     for letter in sorted(allowed - {"M", "LF", "RF"}):
         if statement.value(letter) is None:
-            what = Message("contains {flow} without {letter}", flow=statement.flow, letter=letter)
+            what = Message("This line contains {flow} without {letter}.", flow=statement.flow, letter=letter)
             raise _refused(
                 line,
                 line.words[0],
@@ -309,5 +312,5 @@ def _group(statement: Statement, word: Word) -> str:
     return "move"
 
 
-def _refused(line: Line, word: Word, code: str, what: str, hint: str) -> ProgramError:
-    return program_error(line.number, word.column, code, Message("This line {what}.", what=what), hint)
+def _refused(line: Line, word: Word, code: str, text: str, hint: str) -> ProgramError:
+    return program_error(line.number, word.column, code, text, hint)

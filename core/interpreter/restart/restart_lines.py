@@ -16,11 +16,21 @@ _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
 
 
 class LineRange(NamedTuple):
-    """Lines ``first`` to ``last``, counted from 1, and why none of them is good."""
+    """Lines ``first`` to ``last``, counted from 1.
+
+    If a program cannot be restarted from these lines, ``reason`` is the template of the sentence that
+    states why. Its values are ``line``, the line of the restart, and ``begin``, the line on which the
+    contour, corner or other section begins.
+    """
 
     first: int
     last: int
-    why: str
+    reason: str = ""
+    begin: int = 0
+
+    def why(self, line: int) -> Message:
+        """Return why a program cannot be restarted from this line, which must be within the range."""
+        return Message(self.reason, line=line, begin=self.begin)
 
 
 class RestartLines:
@@ -45,7 +55,7 @@ class RestartLines:
             )
         for lines in self.ranges:
             if lines.first <= line <= lines.last:
-                return Message("Line {line} {why}", line=line, why=lines.why)
+                return lines.why(line)
         return "" if self._steps[line - 1] is not None else Message("Line {line} is empty.", line=line)
 
     def repeats(self, line: int) -> bool:
@@ -97,29 +107,22 @@ def _structured(program: Program) -> Iterator[LineRange]:
     """Contours, and what no call can reach: their first lines are good, what is inside is not."""
     structure = program.structure
     for start, end in structure.contours.items():
-        yield LineRange(
-            start + 2,
-            end + 1,
-            Message(("is part of the contour that begins on line {start}."), start=start + 1),
-        )
+        reason = "Line {line} is part of the contour that begins on line {begin}."
+        yield LineRange(start + 2, end + 1, reason, start + 1)
     spans = sorted(_subroutines(program))
     at = structure.main_end + 1
     for start, end, _number in (*spans, (len(program.ready) + 1, 0, 0)):
         if at < start:
-            yield LineRange(at, start - 1, "is after the end of the program.")
+            yield LineRange(at, start - 1, "Line {line} is after the end of the program.")
         at = max(at, end + 1)
 
 
 def _repeated(program: Program) -> Iterator[LineRange]:
     """Loops behind their LS, and subroutines."""
     for start, end in program.structure.loop_ends.items():
-        yield LineRange(
-            start + 2,
-            end + 1,
-            (Message("is inside the loop from line {start} to line {end}.", start=start + 1, end=end + 1)),
-        )
-    for start, end, number in _subroutines(program):
-        yield LineRange(start, end, Message("is in subroutine {number}.", number=number))
+        yield LineRange(start + 2, end + 1)
+    for start, end, _number in _subroutines(program):
+        yield LineRange(start, end)
 
 
 def _subroutines(program: Program) -> Iterator[tuple[int, int, int]]:
@@ -146,19 +149,13 @@ def _open(steps: ReadyLines) -> Iterator[LineRange]:
         if step.flow == PLANE:
             plane, done = _plane(step, number, plane)
             if done:
-                yield LineRange(
-                    done + 1,
-                    number,
-                    Message(
-                        "is inside the plane switching with (~PLXC) or (~PLZC) that begins on line {done}.",
-                        done=done,
-                    ),
-                )
+                reason = "Line {line} is in the section of (~PLXC) or (~PLZC) that begins on line {begin}."
+                yield LineRange(done + 1, number, reason, done)
         if not nose and _NOSE_ON.intersection(step.modal):
             nose = number
         elif nose and (_NOSE_OFF in step.modal or "T" in step.words):
-            why = Message("uses the nose compensation that begins on line {nose}.", nose=nose)
-            yield LineRange(nose + 1, number, why)
+            reason = "Line {line} uses the nose compensation that begins on line {begin}."
+            yield LineRange(nose + 1, number, reason, nose)
             nose = 0
 
 
@@ -171,6 +168,4 @@ def _plane(step: Statement, number: int, begun: int) -> tuple[int, int]:
 
 
 def _corner(begun: int, ends: int) -> LineRange:
-    return LineRange(
-        begun + 1, ends, Message(("is part of the corner that begins on line {begun}."), begun=begun)
-    )
+    return LineRange(begun + 1, ends, "Line {line} is part of the corner that begins on line {begin}.", begun)

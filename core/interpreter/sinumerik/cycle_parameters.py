@@ -78,7 +78,7 @@ class Cycle:
                 arguments[len(names)].column,
                 TOO_MANY,
                 text,
-                (Message("Use only these parameters: {names}.", names=", ".join(names))),
+                Message("Use only these parameters: {names}.", names=", ".join(names)),
             )
         return {name: each for name, each in zip(names, arguments, strict=False) if each.given}
 
@@ -88,21 +88,23 @@ class Cycle:
             text = Message(
                 "{call} cannot run in a frame that is rotated, scaled or mirrored.", call=self.line.call
             )
-            raise self.refused("cycle-frame", text, ("Write TRANS without axes before this block."))
+            raise self.refused("cycle-frame", text, "Write TRANS without axes before this block.")
         plane = self.state.transformation
         if plane is not None and (self.line.call not in _LIVE or not plane.along_z):
-            what = "uses the spindle for turning or tapping" if plane.along_z else "moves along Z"
-            text = Message(
-                "{call} {what}, but {plane} is active.", call=self.line.call, what=what, plane=plane.name
+            template = (
+                "{call} uses the spindle for turning or tapping, but {plane} is active."
+                if plane.along_z
+                else "{call} moves along Z, but {plane} is active."
             )
-            raise self.refused("transformation", text, ("Write TRAFOOF before this block."))
+            text = Message(template, call=self.line.call, plane=plane.name)
+            raise self.refused("transformation", text, "Write TRAFOOF before this block.")
         if self.state.modal.nose_comp != 40:
             text = Message(
                 "{what} is not allowed while G{state} is active.",
                 what=self.line.call,
                 state=self.state.modal.nose_comp,
             )
-            raise self.refused("comp-with", text, ("Write G40 and a move before this block."))
+            raise self.refused("comp-with", text, "Write G40 and a move before this block.")
 
     def given(self, name: str) -> bool:
         """Whether the call hands this parameter over."""
@@ -135,7 +137,7 @@ class Cycle:
         """A length without a sign. Raises ProgramError under 0."""
         value = self.length(name, default)
         if value < 0.0:
-            raise self.wrong(name, ("{name} is a size and cannot be negative"), "Remove the sign.")
+            raise self.wrong(name, "{name} is a size and cannot be negative", "Remove the sign.")
         return value
 
     def needed(self, name: str) -> float:
@@ -161,13 +163,13 @@ class Cycle:
             raise self.wrong(
                 name,
                 Message(
-                    ("{name} is {value} but must be between {low} and {high}"),
+                    "{name} is {value} but must be between {low} and {high}",
                     value=f"{value:g}",
                     low=low,
                     high=high,
                     name=name,
                 ),
-                ("Correct the value."),
+                "Correct the value.",
             )
         return round(value)
 
@@ -208,7 +210,7 @@ class Cycle:
             raise self.wrong(
                 name,
                 Message(
-                    ("{name} is {value}; valid types are {low} to {high}"),
+                    "{name} is {value}; valid types are {low} to {high}",
                     value=f"{value:g}",
                     low=low,
                     high=high,

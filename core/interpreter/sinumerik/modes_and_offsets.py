@@ -37,13 +37,13 @@ def programmed_frame(state: State, statement: Statement) -> None:
     check_c(state, statement)
     name = key.name.removeprefix("A")
     if name == "ROT":
-        _refuse_axes(statement, key, "the plane is rotated with RPL=, not with axis words")
+        _refuse_axes(statement, key)
     elif word := statement.words.get("RPL"):
         raise statement.refuse(
             word,
             "word-unused",
             Message("{word} can be used only with ROT.", word=word.text),
-            ("Remove this text from the program."),
+            "Remove this text from the program.",
         )
     frame = state.programmed if key.name[0] == "A" else NO_FRAME
     if name == "TRANS":
@@ -95,10 +95,14 @@ def check_y(state: State, statement: Statement) -> None:
     raise statement.refuse(word, "not-in-subset", text, hint)
 
 
-def _refuse_axes(statement: Statement, key: Word, what: str) -> None:
+def _refuse_axes(statement: Statement, key: Word) -> None:
     for axis in statement.axes:
         word = statement.words[axis]
-        text = Message("{word} with {key}: on a lathe, {what}.", word=word.text, key=key.name, what=what)
+        text = Message(
+            "{word}: on a lathe, {key} rotates the plane with RPL=, not with axis words.",
+            word=word.text,
+            key=key.name,
+        )
         raise statement.refuse(word, "offset-form", text, Message("Write {key} RPL=…", key=key.name))
 
 
@@ -116,7 +120,7 @@ def _factor(state: State, statement: Statement, name: str) -> float:
     if word is not None and not 0.001 <= value <= 1000.0:
         text = Message("{word}: a factor must be between 0.001 and 1000.", word=word.text)
         raise statement.refuse(
-            word, "offset-form", text, ("Correct the factor; to reverse an axis, use MIRROR.")
+            word, "offset-form", text, "Correct the factor; to reverse an axis, use MIRROR."
         )
     return value
 
@@ -163,7 +167,7 @@ def _motion_and_plane(state: State, statement: Statement) -> None:
             plane=plane,
             nose_comp=state.modal.nose_comp,
         )
-        raise statement.refuse(statement.g[table.PLANE], "comp-plane", text, ("Write G40 before this line."))
+        raise statement.refuse(statement.g[table.PLANE], "comp-plane", text, "Write G40 before this line.")
     state.plane = plane or state.plane
 
 

@@ -167,11 +167,9 @@ def _place(state: State, line: Line, parameter: Parameter, argument: Argument | 
 
 
 def _count(count: int) -> str:
-    return (
-        Message("{count} parameter{ending}", count=count, ending="s" if count != 1 else "")
-        if count
-        else "no parameters"
-    )
+    if not count:
+        return "no parameters"
+    return Message("{count} parameter" if count == 1 else "{count} parameters", count=count)
 
 
 def _refused(line: Line, column: int, code: int | str, text: str, hint: str) -> ProgramError:

@@ -105,23 +105,21 @@ class Compensation:
         state, code = self._state, block.modal.nose_comp
         if block.kind not in _STRAIGHT or self._turns(block):
             text = Message("the first move with G{code} is not a straight line.", code=code)
-            raise _fault(block, "comp-approach", text, ("Approach with G0 or G1, then begin the contour."))
+            raise _fault(block, "comp-approach", text, "Approach with G0 or G1, then begin the contour.")
         if not state.modal.edge:
             text = Message("G{code} needs a tool with a cutting edge.", code=code)
             raise _fault(block, "comp-no-edge", text, "Write T and D before this block.")
         edge = state.edge
         if not edge.nose_radius:
             text = Message("the nose radius of the tool is 0, so G{code} does not compensate.", code=code)
-            self._warn(
-                block, "comp-no-radius", text, ("Enter the nose radius on the TOOL OFFSETS page (F8).")
-            )
+            self._warn(block, "comp-no-radius", text, "Enter the nose radius on the TOOL OFFSETS page (F8).")
         elif not edge.quadrant:
             text = Message(
-                ("the tool has no tip quadrant, so G{code} applies the tool offset to the nose center."),
+                "the tool has no tip quadrant, so G{code} applies the tool offset to the nose center.",
                 code=code,
             )
             self._warn(
-                block, "comp-no-quadrant", text, ("Enter the tip quadrant (F8); 9 means the nose center.")
+                block, "comp-no-quadrant", text, "Enter the tip quadrant (F8); 9 means the nose center."
             )
         # G42 is to the right with X up, which is to the left with X down, as blocks count.
         side = 1.0 if (code == 42) is not state.programmed.mirrored else -1.0
@@ -149,13 +147,12 @@ class Compensation:
             )
             raise _fault(block, "comp-with", text, "Leave the contour with G40 before this block.")
         if block.kind not in _FOLLOWED or self._turns(block):
-            what = "the C axis turns" if self._turns(block) else "a thread is cut"
-            raise _fault(
-                block,
-                "comp-with",
-                Message("{what} while G{code} is active.", what=what, code=code),
-                ("Write G40 before this line."),
+            template = (
+                "the C axis turns while G{code} is active."
+                if self._turns(block)
+                else "a thread is cut while G{code} is active."
             )
+            raise _fault(block, "comp-with", Message(template, code=code), "Write G40 before this line.")
         if (block.offset_x, block.offset_z) != (first.offset_x, first.offset_z):
             text = Message("the zero point changes while G{code} is active.", code=code)
             raise _fault(block, "comp-with", text, "Write G40 and a move before this block.")
@@ -244,7 +241,7 @@ class _Beside:
                 why=problem.why,
             )
             raise _fault(
-                block, "comp-gouge", text, ("Use a smaller nose radius, or change the contour.")
+                block, "comp-gouge", text, "Use a smaller nose radius, or change the contour."
             ) from None
         return found
 
@@ -311,10 +308,8 @@ class _Beside:
         away = dist(end.at, end.corner)
         if away < radius - SAME_POINT:
             text = Message(
-                (
-                    "with KONT, the distance from the {end} point to the end of the contour is "
-                    "less than the nose radius."
-                ),
+                "with KONT, the distance from the {end} point to the end of the contour is "
+                "less than the nose radius.",
                 end=end.name,
             )
             raise _fault(

@@ -122,20 +122,21 @@ def demand_spindle_as_c(state: State, refuse: Callable[[str, str], ProgramError]
     limits = state.setup.limits
     if limits.c_enabled and limits.spindle_is_c:
         return
-    why = "C has a separate drive" if limits.c_enabled else "the machine has no C axis"
     if limits.spindle_oriented:
-        text = Message(
-            "the spindle of this machine is not a C axis because {why}; the spindle drive can "
-            "only turn the spindle to an angle.",
-            why=why,
+        text = (
+            "the spindle of this machine is not a C axis because C has a separate drive; the spindle "
+            "drive can only turn the spindle to an angle."
+            if limits.c_enabled
+            else "the spindle of this machine is not a C axis because the machine has no C axis; the "
+            "spindle drive can only turn the spindle to an angle."
         )
         raise refuse(text, "Select the machine sinumerik-live, whose spindle is the C axis.")
-    text = Message(
-        (
-            "the spindle of this machine cannot be oriented because {why} and the machine "
-            "file does not enable orientation by the spindle drive."
-        ),
-        why=why,
+    text = (
+        "the spindle of this machine cannot be oriented because C has a separate drive and the machine "
+        "file does not enable orientation by the spindle drive."
+        if limits.c_enabled
+        else "the spindle of this machine cannot be oriented because the machine has no C axis and the "
+        "machine file does not enable orientation by the spindle drive."
     )
     hint = (
         "Set oriented = true under [spindle] in the machine file if the drive can stop the "
@@ -153,27 +154,22 @@ def _orient(state: State, statement: Statement, word: Word) -> SpindleOrient:
     if form is Form.IC:
         if at is None:
             text = Message(
-                (
-                    "{word} is relative to a spindle angle, but the spindle has not been "
-                    "positioned at an angle."
-                ),
+                "{word} is relative to a spindle angle, but the spindle has not been positioned at an angle.",
                 word=word.text,
             )
             raise statement.refuse(
-                word, "spindle-position", text, ("Write SPOS with an angle before this block.")
+                word, "spindle-position", text, "Write SPOS with an angle before this block."
             )
         if abs(value) >= _TURN:
             text = Message(
-                ("{word}: on this drive, a spindle positioning move must be less than one revolution."),
+                "{word}: on this drive, a spindle positioning move must be less than one revolution.",
                 word=word.text,
             )
-            raise statement.refuse(
-                word, "spindle-position", text, ("Enter an angle of less than 360 degrees.")
-            )
+            raise statement.refuse(word, "spindle-position", text, "Enter an angle of less than 360 degrees.")
         return SpindleOrient((at + value) % _TURN, int(copysign(1, value)) if value else 0)
     if not 0.0 <= value < _TURN:
         text = Message("{word}: {value} is not a valid spindle angle.", word=word.text, value=f"{value:g}")
-        raise statement.refuse(word, WRONG_MODULO, text, ("Enter an angle from 0 to less than 360 degrees."))
+        raise statement.refuse(word, WRONG_MODULO, text, "Enter an angle from 0 to less than 360 degrees.")
     sense = {Form.ACP: 1, Form.ACN: -1}.get(form, 0)
     if form is Form.AC and at is not None:  # never across 0
         sense = int(copysign(1, value - at)) if value != at else 0
@@ -232,7 +228,7 @@ def _limit(state: State, statement: Statement) -> None:
             word,
             "not-positive",
             Message("{word} is not a valid speed limit.", word=word.text),
-            ("Correct the value."),
+            "Correct the value.",
         )
     lowest, highest = (value, state.highest) if code == 25 else (state.lowest, value)
     highest = min(highest, state.setup.limits.max_rpm)
@@ -298,7 +294,7 @@ def _check_start(state: State, statement: Statement, word: Word) -> None:
             word,
             "collet-open",
             Message("{word} starts the spindle with the collet open.", word=word.text),
-            ("Close the collet first."),
+            "Close the collet first.",
         )
 
 
@@ -311,7 +307,7 @@ def dwell(state: State, statement: Statement) -> Block:
             word,
             "dwell-range",
             Message("{word}: a dwell cannot be negative.", word=word.text),
-            ("Correct the value."),
+            "Correct the value.",
         )
     seconds = value if word.name == "F" else value / _turning(state, statement, word) * 60.0
     if seconds > _LONGEST_DWELL:
@@ -332,6 +328,6 @@ def _turning(state: State, statement: Statement, word: Word) -> float:
     if not rpm:
         text = Message("G4 {word} waits for spindle revolutions, but the spindle is stopped.", word=word.text)
         raise statement.refuse(
-            word, "dwell-spindle-stopped", text, ("Start the spindle with M3 or M4, or write G4 F.")
+            word, "dwell-spindle-stopped", text, "Start the spindle with M3 or M4, or write G4 F."
         )
     return rpm

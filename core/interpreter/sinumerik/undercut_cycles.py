@@ -118,7 +118,7 @@ def thread_undercut(cycle: Cycle) -> Iterator[Block]:
     """CYCLE96. Raises ProgramError before the first block."""
     form = cycle.text("FORM")
     if form not in {"A", "B", "C", "D"}:
-        raise cycle.wrong("FORM", ('{name} must be "A", "B", "C" or "D"'), "Correct the value.", WRONG_FORM)
+        raise cycle.wrong("FORM", '{name} must be "A", "B", "C" or "D"', "Correct the value.", WRONG_FORM)
     nominal = cycle.over_zero("DIATH", TOO_SMALL)
     lead = COARSE_LEADS.get(round(nominal), 0.0) if abs(nominal - round(nominal)) < _SAME else 0.0
     if not lead:
@@ -133,18 +133,14 @@ def thread_undercut(cycle: Cycle) -> Iterator[Block]:
     out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
     inside = form in {"C", "D"}
     if inside is (out > 0.0):
-        where, other = ("inside", "outside") if inside else ("outside", "inside")
-        text = Message(
-            (
-                "{name} {form} is for {place} undercuts, but the cutting edge of the tool is "
-                "for {other} undercuts"
-            ),
-            form=form,
-            place=where,
-            other=other,
-            name="FORM",
+        template = (
+            "{name} {form} is for inside undercuts, but the cutting edge of the tool is for outside undercuts"
+            if inside
+            else "{name} {form} is for outside undercuts, but the cutting edge of the tool is for inside "
+            "undercuts"
         )
-        raise cycle.wrong("FORM", text, ("Correct FORM, or use another tool."), WRONG_EDGE)
+        text = Message(template, form=form, name="FORM")
+        raise cycle.wrong("FORM", text, "Correct FORM, or use another tool.", WRONG_EDGE)
     feed = _feed(cycle.state.modal.feed, cycle)
     if not inside:
         size = Size(lacks / 2.0, long if form == "A" else short, radius, 30.0)
@@ -212,7 +208,7 @@ def _in_passes(cycle: Cycle, place: Place, size: Size, feed: float, clear: float
         raise cycle.wrong(
             "_VARI",
             Message("{name} cannot be {value}", value=kind, name="_VARI"),
-            ("Enter 1 for roughing, 2 for finishing or 3 for both."),
+            "Enter 1 for roughing, 2 for finishing or 3 for both.",
             MACHINING_TYPE,
         )
     left = cycle.size("_FAL")
@@ -225,9 +221,9 @@ def _in_passes(cycle: Cycle, place: Place, size: Size, feed: float, clear: float
             raise cycle.wrong(
                 "_MID",
                 Message(
-                    ("{name} would need {count} passes, which is too many"), count=f"{count:,}", name="_MID"
+                    "{name} would need {count} passes, which is too many", count=f"{count:,}", name="_MID"
                 ),
-                ("Look for a missing decimal point."),
+                "Look for a missing decimal point.",
             )
         for k in range(1, count + 1):
             above = up + (size.depth - up) * (count - k) / count
@@ -248,14 +244,14 @@ def position(cycle: Cycle, chosen: int) -> tuple[float, float]:
     state = cycle.state
     if not state.modal.edge:
         text = Message("{call} needs an active tool with an offset.", call=cycle.line.call)
-        raise cycle.refused(61000, text, ("Write T and D before this block."))
+        raise cycle.refused(61000, text, "Write T and D before this block.")
     quadrant = state.edge.quadrant
     if quadrant not in _BY_POSITION and (not chosen or state.edge.nose_radius):
         text = Message(
             "the tip quadrant of the tool is {quadrant}, but an undercut needs a quadrant from 1 to 4.",
             quadrant=quadrant,
         )
-        raise cycle.refused(WRONG_EDGE, text, ("Enter the tip quadrant on the TOOL OFFSETS page (F8)."))
+        raise cycle.refused(WRONG_EDGE, text, "Enter the tip quadrant on the TOOL OFFSETS page (F8).")
     return _BY_POSITION[chosen or quadrant]
 
 
@@ -303,7 +299,7 @@ def _nose(cycle: Cycle, size: Size) -> float:
             nose=f"{nose:g}",
             radius=f"{size.radius:g}",
         )
-        raise cycle.refused(NOSE_TOO_LARGE, text, ("Use a tool with a smaller nose radius."))
+        raise cycle.refused(NOSE_TOO_LARGE, text, "Use a tool with a smaller nose radius.")
     return nose
 
 
@@ -332,6 +328,6 @@ def _of_tip(cycle: Cycle, place: Place, contour: list[Element]) -> list[Element]
             nose_radius=f"{edge.nose_radius:g}",
             why=problem.why,
         )
-        raise cycle.refused(NOSE_TOO_LARGE, text, ("Use a tool with a smaller nose radius.")) from None
+        raise cycle.refused(NOSE_TOO_LARGE, text, "Use a tool with a smaller nose radius.") from None
     z, x = TIP_DIRECTIONS[edge.quadrant]
     return [shifted(each, x * edge.nose_radius, z * edge.nose_radius) for each in centres]

@@ -144,7 +144,7 @@ def _demand_whole(cursor: Cursor, made: Move) -> None:
             cursor.line,
             made.column,
             Message("{form} does not accept DR.", form=made.form),
-            ("Remove this text from the program."),
+            "Remove this text from the program.",
         )
 
 
@@ -247,9 +247,8 @@ def _demand_few(cursor: Cursor, codes: list[MCode]) -> None:
 def _strange(cursor: Cursor, form: str) -> ProgramError:
     if cursor.take(_AXIS_ALONE):
         return cursor.expected("No value is programmed for the axis", "Write a number such as +10.")
-    article = "an" if form[0] in "AL" else "a"
     takes = ", ".join(("axes", *_FORMS[form].takes, *(("DR",) if _FORMS[form].turn else ())))
     return cursor.expected(
-        Message("Unexpected word in {article} {form} block", article=article, form=form),
-        (Message("Use only {takes}, R0, RL or RR, a feed and M functions.", takes=takes)),
+        Message("Unexpected word in this {form} block", form=form),
+        Message("Use only {takes}, R0, RL or RR, a feed and M functions.", takes=takes),
     )

@@ -81,10 +81,10 @@ def _all_of(cursor: Cursor, names: tuple[str, ...], words: tuple[AxisWord, ...])
     found = {word.axis: word for word in words}
     missing = [name for name in names if name not in found]
     if missing:
-        verb = "are" if len(missing) > 1 else "is"
+        template = "{missing} are missing" if len(missing) > 1 else "{missing} is missing"
         raise cursor.expected(
-            Message("{missing} {verb} missing", missing=", ".join(missing), verb=verb),
-            ("Write all the words named in the message, even if a value is 0."),
+            Message(template, missing=", ".join(missing)),
+            "Write all the words named in the message, even if a value is 0.",
         )
     return tuple(found[name] for name in names)
 
@@ -96,7 +96,7 @@ def _positioning(cursor: Cursor, form: str) -> Positioning:
             return Positioning()
         raise cursor.expected(
             "MOVE, TURN or STAY is missing",
-            ("Write MOVE, TURN or STAY to set how the rotary axes are positioned."),
+            "Write MOVE, TURN or STAY to set how the rotary axes are positioned.",
         )
     made = Positioning(way)
     while not cursor.done:
@@ -150,5 +150,5 @@ def _demand_motion(cursor: Cursor, made: Positioning, column: int, what: str) ->
             cursor.line,
             column,
             Message("STAY does not move any axis, so {what} is not allowed.", what=what),
-            ("Remove this text from the program."),
+            "Remove this text from the program.",
         )

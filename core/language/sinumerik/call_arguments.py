@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from core.language.formulas import Formula, FormulaError, FormulaReader
 from core.language.sinumerik.sinumerik_formulas import GRAMMAR
-from core.message import Message
 
 _QUOTED = re.compile(r'\s*"([^"]*)"\s*(?=[,)])')
 _AXIS = re.compile(r"\s*([A-CU-Z][0-9]?)\s*(?=[,)])")
@@ -61,14 +60,10 @@ def read_arguments(text: str, written: str, at: int) -> tuple[tuple[Argument, ..
         found.append(argument)
         match = _NEXT.match(text, at)
         if match is None:
-            what = (
-                "has no closing parenthesis" if at >= len(text) else ("contains text that is not an argument")
-            )
-            raise FormulaError(
-                at if at < len(text) else start,
-                Message("The argument list {what}", what=what),
-                "Write ( , , ).",
-            )
+            hint = "Write ( , , )."
+            if at >= len(text):
+                raise FormulaError(start, "The argument list has no closing parenthesis", hint)
+            raise FormulaError(at, "The argument list contains text that is not an argument", hint)
         at = match.end()
         if match[1] == ")":
             return (() if len(found) == 1 and not found[0].given else tuple(found)), at
@@ -95,7 +90,7 @@ def read_parameters(text: str, written: str, at: int) -> tuple[tuple[Parameter, 
     while True:
         match = _PARAMETER.match(text, at)
         if match is None:
-            raise FormulaError(at, ("A parameter needs a type and a name"), "Write PROC NAME(REAL LENGTH).")
+            raise FormulaError(at, "A parameter needs a type and a name", "Write PROC NAME(REAL LENGTH).")
         sizes = _sizes(match)
         at, default = match.end(), None
         if match[5]:
@@ -105,8 +100,8 @@ def read_parameters(text: str, written: str, at: int) -> tuple[tuple[Parameter, 
         if end is None:
             raise FormulaError(
                 at,
-                ("The closing parenthesis of the parameter list is missing"),
-                ("Write ) after the last parameter."),
+                "The closing parenthesis of the parameter list is missing",
+                "Write ) after the last parameter.",
             )
         at = end.end()
         if end[1] == ")":
@@ -119,8 +114,8 @@ def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:
         return ()
     found = [_DIMENSION.fullmatch(each) for each in match[4].split(",")]
     if None in found or not match[1]:
-        raise FormulaError(match.start(3), (
-            "An array parameter needs VAR and whole numbers as its sizes"),
+        raise FormulaError(match.start(3),
+            "An array parameter needs VAR and whole numbers as its sizes",
                            "Write PROC NAME(VAR REAL LIST[3]).")  # fmt: skip
     return tuple(int(each[1][:9]) if each is not None and each[1] else None for each in found)
 

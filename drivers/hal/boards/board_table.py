@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from core.message import Message
 from core.table_schema import (
     Driver,
     DriverTable,
@@ -37,10 +38,8 @@ _FIELDS = (
         "address",
         Kind.TEXT,
         default="",
-        meaning=(
-            'Address of the board: an IP address for a Mesa card, a port address such as "0x378" '
-            "for a parallel port."
-        ),
+        meaning='Address of the board: an IP address for a Mesa card, a port address such as "0x378" '
+        "for a parallel port.",
     ),
     Field(
         "base_us",
@@ -93,17 +92,15 @@ _AXIS = (
         "reversed",
         Kind.FLAG,
         default=False,
-        meaning=("true: the sign of the scale of the axis is reversed; on a 7I97 that of its encoder only."),
+        meaning="true: the sign of the scale of the axis is reversed; on a 7I97 that of its encoder only.",
     ),
     Field(
         "mode",
         Kind.CHOICE,
         choices=("velocity", "position"),
         default="velocity",
-        meaning=(
-            '7I76E: "velocity" closes a position loop around the step generator; "position" sends '
-            "positions to it."
-        ),
+        meaning='7I76E: "velocity" closes a position loop around the step generator; "position" sends '
+        "positions to it.",
     ),
     _pulse("step_ns", 5000, "Length of a step pulse, in ns."),
     _pulse("space_ns", 5000, "7I76E: shortest time between two step pulses, in ns."),
@@ -151,10 +148,8 @@ _TURNS = (
         "reversed",
         Kind.FLAG,
         default=False,
-        meaning=(
-            "true: the sign of the scale of the spindle encoder is reversed; on EtherCAT also that "
-            "of the speed."
-        ),
+        meaning="true: the sign of the scale of the spindle encoder is reversed; on EtherCAT also that "
+        "of the speed.",
     ),
     Field(
         "full_speed",
@@ -294,10 +289,8 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         yield Finding(
             "hal",
             "",
-            (
-                "missing; [board] needs this table, because [board] describes the hardware "
-                "connected to the pins that [hal] specifies"
-            ),
+            "missing; [board] needs this table, because [board] describes the hardware "
+            "connected to the pins that [hal] specifies",
         )
     if kind in _ADDRESS and values.has("board.address"):
         form, expected = _ADDRESS[kind]
@@ -317,7 +310,9 @@ def _axis_rules(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
     values, path = file.values, f"{_AXES}.{axis}"
     if axis not in file.names(_AXES):
         if path not in values.wrong:
-            yield Finding(path, "", f"missing; specify the board outputs that move axis {axis}")
+            yield Finding(
+                path, "", Message("missing; specify the board outputs that move axis {axis}", axis=axis)
+            )
         return
     if axis == C and _spindle_is_c(file):
         yield from _spindle_as_c(file, kind, path)
@@ -335,8 +330,7 @@ def _channel_rules(file: FileReading, kind: str, path: str) -> Iterator[Finding]
     if kind in _CHANNELS and values.has(f"{path}.channel"):
         channel = values.whole(f"{path}.channel")
         if channel not in _CHANNELS[kind]:
-            said = "" if channel < 0 else str(channel)
-            yield Finding(f"{path}.channel", said, f"{_missing(said)}expected {_WHAT[kind]}")
+            yield _number_expected(f"{path}.channel", channel, _WHAT[kind])
 
 
 def _spindle_is_c(file: FileReading) -> bool:
@@ -360,12 +354,21 @@ def _spindle_as_c(file: FileReading, kind: str, path: str) -> Iterator[Finding]:
     for key in ("channel", "full_speed", "full_rpm", "vendor", "product"):
         place = f"{path}.{key}"
         if values.has(place) and values.found[place] not in ("", 0.0, -1):
-            why = f"remove this key: C uses the spindle drive, which is configured in {_SPINDLE}"
+            why = Message(
+                "remove this key: C uses the spindle drive, which is configured in {table}", table=_SPINDLE
+            )
             yield Finding(place, str(values.found[place]), why)
 
 
-def _missing(said: str) -> str:
-    return "" if said else "missing; "
+def _missing(place: str, expected: str) -> Finding:
+    return Finding(place, "", Message("missing; expected {expected}", expected=expected))
+
+
+def _number_expected(place: str, number: int, expected: str) -> Finding:
+    """Return the finding of a number that is missing (less than 0) or not possible."""
+    if number < 0:
+        return _missing(place, expected)
+    return Finding(place, str(number), Message("expected {expected}", expected=expected))
 
 
 _Stated = Mapping[str, tuple[tuple[str, str], ...]]
@@ -388,7 +391,7 @@ def _stated(file: FileReading, kind: str, path: str, stated: _Stated = _STATED) 
             continue
         said = file.values.found[place]
         if not said:
-            yield Finding(place, "", f"missing; expected {what}")
+            yield _missing(place, what)
         elif key in ("vendor", "product") and not _NUMBER.fullmatch(str(said)):
             yield Finding(
                 place,
@@ -412,15 +415,26 @@ def _step_rate(file: FileReading, kind: str, axis: str) -> Iterator[Finding]:
     rate = values.number(needed[0]) / values.number(needed[1])
     if kind == PARPORT:
         most = 1e6 / values.number("board.base_us")
-        of = f"a parallel port with base_us = {values.whole('board.base_us')}"
+        template = (
+            "this speed requires {rate} steps/s, but the maximum for a parallel port with "
+            "base_us = {base_us} is {maximum} steps/s"
+        )
     else:
         most = 1e9 / (values.number(needed[3]) + values.number(needed[4]))
-        of = "the specified step_ns and space_ns"
+        template = (
+            "this speed requires {rate} steps/s, but the maximum for the specified step_ns and space_ns "
+            "is {maximum} steps/s"
+        )
     if rate * 1.2 > most:  # the limit of what drives it stands a fifth above vmax
         yield Finding(
             f"axis.{axis}.vmax",
             "",
-            (f"requires {rate:.0f} steps/s, but the maximum for {of} is {most / 1.2:.0f} steps/s"),
+            Message(
+                template,
+                rate=f"{rate:.0f}",
+                base_us=values.whole("board.base_us"),
+                maximum=f"{most / 1.2:.0f}",
+            ),
         )
 
 
@@ -430,7 +444,11 @@ def _fast_enough(file: FileReading, axis: str) -> Iterator[Finding]:
         f"axis.{axis}.vmax"
     ):
         yield Finding(
-            path, "", (f"expected at least axis.{axis}.vmax, because the board outputs no more than 10 V")
+            path,
+            "",
+            Message(
+                "expected at least axis.{axis}.vmax, because the board outputs no more than 10 V", axis=axis
+            ),
         )
 
 
@@ -445,7 +463,9 @@ def _channels_apart(file: FileReading, kind: str) -> Iterator[Finding]:
         channel = values.whole(path) if values.has(path) else -1
         if channel >= 0 and (first := taken.setdefault(channel, path)) != path:
             yield Finding(
-                path, str(channel), (f"expected an unused channel; {first} already uses this channel")
+                path,
+                str(channel),
+                Message("expected an unused channel; {first} already uses this channel", first=first),
             )
 
 
@@ -464,19 +484,20 @@ def _spindle_rules(file: FileReading, kind: str) -> Iterator[Finding]:
         what = (
             "the value of object 60FF at 1 rpm" if kind == ETHERCAT else ("the spindle speed at 10 V, in rpm")
         )
-        yield Finding(f"{_SPINDLE}.{scale}", "", f"missing; expected {what}")
+        yield _missing(f"{_SPINDLE}.{scale}", what)
     if scaled and not told:
         yield Finding(
-            speeds[0], "", (f"missing; {_SPINDLE}.{scale} specifies an output for the spindle speed")
+            speeds[0],
+            "",
+            Message("missing; {key} specifies an output for the spindle speed", key=f"{_SPINDLE}.{scale}"),
         )
     channel = values.whole(f"{_SPINDLE}.channel")
     if told and kind == MESA_SERVO and channel not in (4, 5):
-        said = "" if channel < 0 else str(channel)
-        why = "the number of an analog output with a separate enable: 4 or 5"
-        yield Finding(f"{_SPINDLE}.channel", said, f"{_missing(said)}expected {why}")
+        what = "the number of an analog output with a separate enable: 4 or 5"
+        yield _number_expected(f"{_SPINDLE}.channel", channel, what)
     if told and kind == ETHERCAT:
         if channel < 0:
-            yield Finding(f"{_SPINDLE}.channel", "", f"missing; expected {_WHAT[kind]}")
+            yield _missing(f"{_SPINDLE}.channel", _WHAT[kind])
         yield from _stated(file, kind, _SPINDLE)
 
 
@@ -497,16 +518,15 @@ def _encoder_rules(file: FileReading, kind: str) -> Iterator[Finding]:
     for axis in file.names(_AXES) if kind == MESA_SERVO else ():
         path = f"{_AXES}.{axis}.channel"
         if values.has(path) and values.whole(path) == channel >= 0:
-            why = f"expected an unused encoder; {path} already uses this encoder"
+            why = Message("expected an unused encoder; {path} already uses this encoder", path=path)
             yield Finding(f"{_SPINDLE}.encoder", str(channel), why)
     if read and has and most is not None and not 0 <= channel <= most:
-        said = "" if channel < 0 else str(channel)
         what = (
             ("0, the number of the only encoder on the 7I76E")
             if most == 0
             else ("the number of a 7I97 encoder, from 0 to 5")
         )
-        yield Finding(f"{_SPINDLE}.encoder", said, f"{_missing(said)}expected {what}")
+        yield _number_expected(f"{_SPINDLE}.encoder", channel, what)
     if read and has and kind == PARPORT:
         for key in ("phase_a", "phase_b"):
             if values.has(f"{_SPINDLE}.{key}") and not values.text(f"{_SPINDLE}.{key}"):

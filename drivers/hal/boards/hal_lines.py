@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import NamedTuple
 
+from core.message import Message
 from core.table_schema import Finding, written
 from drivers.hal.boards.board_table import BoardTable
 
@@ -151,7 +152,8 @@ class HalFile:
         drives = not _READS.fullmatch(path)
         if not name:
             if needed:
-                self.findings.append(Finding(path, "", f"missing; expected a signal ({signal}) or a pin"))
+                why = Message("missing; expected a signal ({signal}) or a pin", signal=signal)
+                self.findings.append(Finding(path, "", why))
             return signal
         if "." not in name:
             return self._on_signal(path, name, pins, place)
@@ -200,7 +202,10 @@ class HalFile:
                 self.claim(name, path)
                 pins = (*pins, name)
             elif name not in pins:
-                why = f"expected {self.hint}; or remove this key: hal.machine_on then enables every axis"
+                why = Message(
+                    "expected {terminals}; or remove this key: hal.machine_on then enables every axis",
+                    terminals=self.hint,
+                )
                 self.findings.append(Finding(path, written(name), why))
                 continue
             self.wires.append(Wire(found.place if found else "", name, "machine-on", (path,)))
@@ -230,9 +235,8 @@ class HalFile:
         """A terminal that is driven is driven by one thing."""
         first = self._claimed.setdefault(pin, path)
         if first != path:
-            self.findings.append(
-                Finding(path, written(pin), (f"expected an unused pin; {first} already uses this pin"))
-            )
+            why = Message("expected an unused pin; {first} already uses this pin", first=first)
+            self.findings.append(Finding(path, written(pin), why))
 
     def rest(self) -> None:
         """Every name of the machine file that no part of the board has taken, on its terminal."""
@@ -245,11 +249,8 @@ class HalFile:
         if pins:
             self._wire(path, name, pins, place, pins[0])
         else:
-            self.findings.append(
-                Finding(
-                    path, written(name), (f"is a signal that is not connected to a pin; expected {self.hint}")
-                )
-            )
+            why = Message("this signal is not connected to a pin; expected {terminals}", terminals=self.hint)
+            self.findings.append(Finding(path, written(name), why))
         return name
 
     def _wire(self, path: str, signal: str, pins: tuple[str, ...], place: str, pin: str) -> None:
@@ -263,10 +264,16 @@ class HalFile:
 
     def _expected(self, pins: tuple[str, ...], found: Terminal | None) -> str:
         if found is not None:
-            is_one, expected = ("output", "input") if found.drives else ("input", "output")
-            return f"is an {is_one}, expected an {expected}"
-        own = f"{', '.join(pins)}, the name of a signal, or " if pins else ""
-        return f"the board does not have this pin; expected {own}{self.hint}"
+            if found.drives:
+                return "this terminal is an output; expected an input"
+            return "this terminal is an input; expected an output"
+        if not pins:
+            return Message("the board does not have this pin; expected {terminals}", terminals=self.hint)
+        return Message(
+            "the board does not have this pin; expected {pins}, the name of a signal, or {terminals}",
+            pins=", ".join(pins),
+            terminals=self.hint,
+        )
 
 
 def signal_of(path: str) -> str:

@@ -6,6 +6,7 @@ One that takes steps beside its speed input is changed over by a terminal, and t
 
 from __future__ import annotations
 
+from core.message import Message
 from core.table_schema import Finding
 from drivers.hal.boards.hal_lines import HalFile, LatheAxis
 
@@ -50,7 +51,7 @@ def loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
     file.setp(
         f"{_PID}.maxoutput",
         STAYS_BELOW * axis.vmax,
-        ("speed limit in degrees/s; also applies if a fault occurs"),
+        "speed limit in degrees/s; also applies if a fault occurs",
     )
     file.setp(f"{_PID}.error-previous-target", 1)
     path = f"hal.axes.{axis.name}"
@@ -98,9 +99,10 @@ def changed_over(file: HalFile) -> None:
     """The terminal that makes the drive listen to steps instead of its speed input."""
     name = file.lathe.names.get(_PATH, "")
     if "." not in name:
-        why = (
-            f"expected {file.hint}; connect it to the drive input that switches the drive from "
-            "speed mode to step mode"
+        why = Message(
+            "expected {terminals}; connect this terminal to the drive input that switches the drive from "
+            "speed mode to step mode",
+            terminals=file.hint,
         )
         file.findings.append(Finding(_PATH, name, why))
     file.role(_PATH, "spindle-is-c", f"{_PID}.enable", needed=True)

@@ -78,12 +78,12 @@ def trouble(wanted: Wanted, pins: Mapping[str, Pin], signals: Mapping[str, Signa
         )
     kind = pin.kind if pin is not None else signal.kind if signal is not None else ""
     if kind != wanted.kind:
-        return f"is of type {kind}, expected type {wanted.kind}"
+        return f"this pin or signal is of type {kind}; expected type {wanted.kind}"
     if pin is not None and _wrong_way(wanted, pin, signals):
         expected = (
             ("an input pin that TurnDesk drives") if wanted.drives else ("an output pin that TurnDesk reads")
         )
-        return f"is an {'output' if pin.way == _OUT else 'input'}, expected {expected}"
+        return f"this pin is an {'output' if pin.way == _OUT else 'input'}; expected {expected}"
     if wanted.drives and pin is not None and pin.signal and signals.get(pin.signal, Signal("", False)).driven:
         return (
             f"another source already drives this pin through the signal {pin.signal}; remove that "

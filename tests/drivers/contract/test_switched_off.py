@@ -105,13 +105,7 @@ def test_a_control_that_was_silent_at_a_standstill(control: Control, program: st
         assert control.world.rpm() == pytest.approx(600.0, rel=0.1)
         return
     (said,) = control.said("disturbed")
-    assert said == text(
-        "executor.trip",
-        who=text("executor.control-silent"),
-        seconds=0.5,
-        what=text("executor.switched-off"),
-        names="SPINDLE, COOLANT",
-    )
+    assert said == text("executor.control-trip", seconds=0.5, names="SPINDLE, COOLANT")
     assert control.state is (State.HOLD if state is State.WAIT else state)
     assert on(control) == {"collet"}
     assert set(control.shot.announced) == {

@@ -72,8 +72,7 @@ def test_without_its_feeder_the_control_shows_no_station_and_no_motion() -> None
 
 
 def tripped(seconds: float, names: str) -> str:
-    who, what = text("executor.control-silent"), text("executor.switched-off")
-    return text("executor.trip", who=who, seconds=seconds, what=what, names=names)
+    return text("executor.control-trip", seconds=seconds, names=names)
 
 
 def test_coolant_that_nobody_renewed_in_a_cut_holds_and_comes_on_with_the_start() -> None:

@@ -11,7 +11,7 @@ from core.executor.snapshot import State
 from core.ports import ALL_UNKNOWN
 from tests.drivers.contract.grbl import HOMING
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
-from tests.texts import pattern, text
+from tests.texts import pattern
 
 CUT = "G90G94F300\nM03S600\nM08\nX.1\nG01F30Z-2\nM30\n"
 
@@ -53,8 +53,7 @@ def test_reset_connects_and_switches_off_what_is_still_on_and_says_so() -> None:
     assert bench.peer.spindle.speed == 0.0
     assert not bench.peer.outputs["flood"]
     (said,) = [event.text for event in bench.events if event.kind == "disturbed"]
-    who, what = text("executor.machine-not-heard"), text("executor.found-on")
-    assert re.fullmatch(pattern("executor.trip", who=who, what=what, names="SPINDLE, COOLANT"), said)
+    assert re.fullmatch(pattern("executor.machine-trip", names="SPINDLE, COOLANT"), said)
     assert "3." in said
     assert bench.shot.unknown == frozenset()
     assert all(bench.shot.homed)

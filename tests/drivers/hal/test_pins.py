@@ -55,10 +55,13 @@ def test_what_halcmd_shows_is_read() -> None:
         (wanted("ear.in"), ""),  # an input that hears what something else drives
         (wanted("index", drives=True), ""),
         (wanted("gaurd.out"), text("drivers.hal-no-pin")),
-        (wanted("x-motor.out"), "is of type float, expected type bit"),
-        (wanted("x-cmd"), "is of type float, expected type bit"),
-        (wanted("guard.out", drives=True), "is an output, expected an input pin that TurnDesk drives"),
-        (wanted("lamp.in"), "is an input, expected an output pin that TurnDesk reads"),
+        (wanted("x-motor.out"), "this pin or signal is of type float; expected type bit"),
+        (wanted("x-cmd"), "this pin or signal is of type float; expected type bit"),
+        (
+            wanted("guard.out", drives=True),
+            "this pin is an output; expected an input pin that TurnDesk drives",
+        ),
+        (wanted("lamp.in"), "this pin is an input; expected an output pin that TurnDesk reads"),
         (
             wanted("ear.in", drives=True),
             "another source already drives this pin through the signal guard; remove that net",

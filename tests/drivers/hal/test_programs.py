@@ -50,9 +50,9 @@ def test_every_pin_that_the_machine_file_names_has_its_verdict() -> None:
     ("old", "new", "row", "why"),
     [
         ('"x-servo.in"', '"x-servo.inn"', "hal.axes.X.command", text("drivers.hal-no-pin")),
-        ('"x-motor.out"', '"x-motor.sel"', "hal.axes.X.feedback", "is of type bit, expected type float"),
-        ('"x-servo.in"', '"x-servo.out"', "hal.axes.X.command", "is an output"),
-        ('"z-motor.out"', '"z-servo.in"', "hal.axes.Z.feedback", "is an input"),
+        ('"x-motor.out"', '"x-motor.sel"', "hal.axes.X.feedback", "is of type bit; expected type float"),
+        ('"x-servo.in"', '"x-servo.out"', "hal.axes.X.command", "this pin is an output"),
+        ('"z-motor.out"', '"z-servo.in"', "hal.axes.Z.feedback", "this pin is an input"),
         ('"spindle-ramp.in"', '"spindle.velocity-cmd"', "hal.spindle.speed", "spindle-rps"),
     ],
 )

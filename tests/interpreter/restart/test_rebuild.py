@@ -44,13 +44,13 @@ def test_everything_that_a_line_inherits() -> None:
     [
         (NOSE, 5, "Line 5 uses the nose compensation that begins on line 3.", 3, 8),
         (NOSE, 7, "Line 7 uses the nose compensation that begins on line 3.", 3, 8),
-        (CONTOUR, 5, f"Line 5 {text_of('search.in-contour', line=3)}", 3, 8),
-        (CORNER, 4, f"Line 4 {text_of('search.in-corner', line=3)}", 3, 6),
-        (CORNER, 5, f"Line 5 {text_of('search.in-corner', line=3)}", 3, 6),
+        (CONTOUR, 5, text_of("search.in-contour", line=5, begin=3), 3, 8),
+        (CORNER, 4, text_of("search.in-corner", line=4, begin=3), 3, 6),
+        (CORNER, 5, text_of("search.in-corner", line=5, begin=3), 3, 6),
         (CALLED, 6, "The program never reaches line 6.", 3, 0),  # its call
         (NEVER, 6, "The program never reaches line 6.", 4, 0),
         (BEHIND, 5, "Line 5 is after the end of the program.", 4, 0),
-        (PLANE, 5, f"Line 5 {text_of('search.in-plane', line=4)}", 4, 7),
+        (PLANE, 5, text_of("search.in-plane", line=5, begin=4), 4, 7),
         (PLAIN, 99, "Line 99 does not exist; the last line of the program is 8.", 8, 0),
         ("G90G94F300\nX1Z1\n\nX2\nM30\n", 3, "Line 3 is empty.", 2 + 0, 4),
     ],
