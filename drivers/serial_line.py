@@ -106,7 +106,7 @@ def table_of(parity: str) -> bytes:
 _TO_DO = {
     errno.ENOENT: ("this port does not exist; plug in the adapter. To list the ports: turndesk serial ports"),
     errno.EACCES: (
-        "this user has no permission for the port; add this user to the group dialout, then log in again"
+        "this user has no permission for the port; add this user to the dialout group, then log in again"
     ),
     errno.EAGAIN: "another program is using the port; close that program",
     errno.EBUSY: "another program is using the port; close that program",

@@ -42,7 +42,7 @@ def pieces_of(segments: Segments, axes: int, give_way: Callable[[], None] = _not
                 "setpoints contain a value that is not a number", "broken-path", reason="no-number"
             )
     if (segments.dt < 0).any():
-        raise DriverError("the times of the setpoints decrease", "broken-path", reason="backwards")
+        raise DriverError("the setpoint times run backward", "broken-path", reason="backwards")
     pieces: list[Piece] = []
     for begin in range(0, count, _AT_ONCE):
         t, dt, p, v, a = (part[begin : begin + _AT_ONCE].tolist() for part in segments)

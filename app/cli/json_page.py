@@ -102,7 +102,7 @@ def _commands() -> Iterator[str]:
 
 _FLOOR = {
     "The file status.json": (_STATUS, FILE),
-    "The web page for the office and the MQTT state": (_OFFICE, OFFICE),
+    "The office web page and the MQTT state message": (_OFFICE, OFFICE),
     "MQTT and webhook events": (_EVENT, EVENT),
 }
 

@@ -90,7 +90,8 @@ def _keep(out: Path, text: str, beside: Mapping[str, str]) -> None:
         if path.exists():
             raise CommandError(
                 Message(
-                    "{path} already exists and is not overwritten; use a different name or folder", path=path
+                    "{path} already exists and will not be overwritten; use a different name or folder",
+                    path=path,
                 ),
                 "file-exists",
             )

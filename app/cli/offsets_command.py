@@ -33,10 +33,10 @@ def add_parser(subparsers: SubParsers) -> None:
         metavar="KEY=VALUE",
         nargs="+",
         help="lengths are in inches unless another unit is listed; expressions such as x=.5-.002 "
-        "are allowed. Keys of T: x z nose_radius wear_x wear_z quadrant remark master. Keys "
-        "of the tool shape of T: kind hand insert holder width diameter point stick_out "
-        "length pitch flutes entry rear profile (kind=none removes the shape). Keys of D: x "
-        "z r. Keys of G54 to G59, in mm and degrees: x z c. Keys on a mill, in mm, degrees "
+        "are allowed. Keys for T: x z nose_radius wear_x wear_z quadrant remark master. Keys "
+        "for the tool shape of T: kind hand insert holder width diameter point stick_out "
+        "length pitch flutes entry rear profile (kind=none removes the shape). Keys for D: x "
+        "z r. Keys for G54 to G59, in mm and degrees: x z c. Keys on a mill, in mm, degrees "
         "and minutes: for TOOL, name L R R2 DL DR DR2 cut t-angle time2 stop; for PRESET, x "
         "y z a b c rot doc",
     )

@@ -158,7 +158,9 @@ def _run(args: argparse.Namespace) -> int:
     if args.out is not None and not args.list:
         if Path(args.out).exists():
             raise CommandError(
-                Message("{file} already exists and is not overwritten; use a different name", file=args.out),
+                Message(
+                    "{file} already exists and will not be overwritten; use a different name", file=args.out
+                ),
                 "file-exists",
             )
         if not Path(args.out).parent.is_dir():
@@ -317,7 +319,7 @@ def _list(drawing: Drawing, view: View, found: list[Net], *, as_json: bool) -> N
     for number, net in enumerate(found, 1):
         low, high, r = net.reach
         words = Message(
-            "{elements_count} lines, {high} mm long, diameter {radius} mm",
+            "length {high} mm, diameter {radius} mm, made up of {elements_count} lines",
             elements_count=len(net.elements),
             high=f"{high - low:.4g}",
             radius=f"{2 * r:.4g}",

@@ -113,7 +113,7 @@ def _may_write(args: argparse.Namespace) -> str:
         return ""
     if Path(args.out).exists():
         raise CommandError(
-            Message("{file} already exists and is not overwritten; use a different name", file=args.out),
+            Message("{file} already exists and will not be overwritten; use a different name", file=args.out),
             "file-exists",
         )
     if not Path(args.out).parent.is_dir():

@@ -51,7 +51,9 @@ def add_parser(subparsers: SubParsers) -> None:
         action.add_argument("name", metavar="PROGRAM")
     for action in (compare, take):
         action.add_argument(
-            "--id", metavar="ID", help="first characters of the version ID, as shown by 'status'"
+            "--id",
+            metavar="ID",
+            help="first characters of the version ID, as shown by 'turndesk share status'",
         )
     for action in (begin, status, publish, compare, take, keep):
         action.add_argument("--machine", metavar="FILE", help="machine file with a [sharing] table")

@@ -48,7 +48,7 @@ def with_generated(text: str) -> str:
 
 
 def _languages(found: dict[str, Machine]) -> Iterator[str]:
-    machines = "machines on which MDI and SEARCHTO use the language"
+    machines = "machines that use this language in MDI and SEARCHTO"
     yield f"| language | files | codes in the reference | {machines} |"
     yield "|---|---|---|---|"
     for dialect in Dialect:

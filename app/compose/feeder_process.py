@@ -140,14 +140,19 @@ def beat(machine: Machine) -> float:
 def without_priority(period: float, late: float) -> str:
     """What a feeder cannot promise whose trial has come so late, in words for the operator."""
     template = (
-        "{cause}, a SYNC every {period} ms is not reliable: in a {seconds} s test, the SYNC arrived in time "
-        "(at most {late} ms late); the path waits for late setpoints, and a delay of 10 ms causes an alarm. "
-        'Give the driver host real-time priority (docs/integrator/computer.md), or use mode = "pvt"'
+        (
+            "{cause}, a SYNC every {period} ms is not reliable, even though the SYNC arrived in "
+            "time in a {seconds} s test (at most {late} ms late). If setpoints are late, the "
+            "path waits, and a delay of 10 ms causes an alarm. Give the driver host real-time "
+            'priority (docs/integrator/computer.md), or use mode = "pvt"'
+        )
         if late <= EVENED_OUT * period
-        else "{cause}, a SYNC every {period} ms is not reliable: in a {seconds} s test, the SYNC did not "
-        "arrive in time (at most {late} ms late); the path waits for late setpoints, and a delay of 10 ms "
-        "causes an alarm. Give the driver host real-time priority (docs/integrator/computer.md), or use "
-        'mode = "pvt"'
+        else (
+            "{cause}, a SYNC every {period} ms is not reliable: in a {seconds} s test, the SYNC "
+            "did not arrive in time (up to {late} ms late). If setpoints are late, the path "
+            "waits, and a delay of 10 ms causes an alarm. Give the driver host real-time "
+            'priority (docs/integrator/computer.md), or use mode = "pvt"'
+        )
     )
     return Text(
         template,

@@ -216,7 +216,8 @@ def _hashes(source: Path, told: object) -> dict[str, str]:
     if form != FORMAT or not isinstance(hashes, dict) or STORE not in hashes:
         raise CommandError(
             Message(
-                "{source} is not a setup of this format ({format}); save the setup again with 'setup save'",
+                "{source} does not have the required setup format ({format}); save the setup again "
+                "with 'setup save'",
                 source=source,
                 format=FORMAT,
             ),

@@ -472,9 +472,9 @@ class Desk:
         """Turn Block Delete over. It is part of the job that was proved, so the program is loaded anew."""
         loaded = self.session.now
         if loaded.path is None:
-            self.say("CHOOSE A PROGRAM (F2) BEFORE SWITCHING BLOCK DELETE")
+            self.say("F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE")
         elif self.snapshot().state in UNDER_WAY:
-            self.say("SWITCH BLOCK DELETE ONLY BETWEEN CYCLES")
+            self.say("CHANGE BLOCK DELETE ONLY BETWEEN CYCLES")
         else:
             self.clear()
             self.session.load(loaded.path, not loaded.block_delete)

@@ -30,7 +30,7 @@ class Step(NamedTuple):
 
 
 STEPS = (
-    Step("CHOOSE A PROGRAM", "F2: TYPE A NAME   F1, F6: CHOOSE FROM THE LIST"),
+    Step("CHOOSE A PROGRAM", "F2: TYPE A NAME   F1, THEN F6: CHOOSE FROM THE LIST"),
     Step(
         "SET THE TOOLS",
         "TOOLS NOT SET? PRESS F8. TO TOUCH OFF: F1, F5, THEN T, X, Z",

@@ -129,7 +129,7 @@ def _feeds(point: Checkpoint) -> tuple[ModalRow, ...]:
         ModalRow("rapid", tr("RAPID"), "G00" if modal.rapid else tr("OFF")),
         ModalRow("cut feed", tr("G01 FEED"), _feed(modal.cut_feed, modal.metric, modal.cut_per_rev)),
         ModalRow("rapid rate", tr("RAPID RATE"), _feed(modal.rapid_rate, modal.metric, False)),
-        ModalRow("first feed", tr("F AS RAPID RATE"), first),
+        ModalRow("first feed", tr("RAPID (FIRST F)"), first),
     )
 
 

@@ -144,10 +144,10 @@ class Finder:
         """The function keys while something is looked for."""
         return {
             2: Key("NEXT", partial(self.step, 1)),
-            3: Key("BEFORE", partial(self.step, -1)),
+            3: Key("PREVIOUS", partial(self.step, -1)),
             4: Key("REPLACE", self.replace),
             5: Key("ALL", self.replace_all),
-            6: Key("PARTS" if self.whole else "WHOLE", self.other_width),
+            6: Key("PARTIAL" if self.whole else "WHOLE", self.other_width),
         }
 
     def _places(self) -> tuple[int, ...]:

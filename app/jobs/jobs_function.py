@@ -17,7 +17,10 @@ class JobsFunction(PageFunction):
     name = "JOBS"
     use = "next job, number of parts, setup requirements"
     page = PAGE
-    way = "Press Enter to open the page. Shift+F6 opens it from any page, J from the main menu."
+    way = (
+        "Press Enter to open the JOBS page. Shift+F6 opens it from any page, and J opens it "
+        "from the main menu."
+    )
 
     def facts(self) -> tuple[Row, ...]:
         """Under way, next, waiting."""

@@ -134,7 +134,7 @@ class JobsModel:
             words = tr("PROVING …")
             if self.watch.on_desk(job) or job.done:
                 words = (
-                    tr("PROGRAM LOADED. SEE ITS ERRORS AND WARNINGS ON PAGE B")
+                    tr("PROGRAM LOADED. SEE ERRORS AND WARNINGS ON PART PAGE (B)")
                     if not job.done
                     else tr("DONE")
                 )

@@ -58,7 +58,7 @@ class PendantJog:
             self.wheel.next_step()
         elif name in self.buttons:
             if ENABLE in self.machine.inputs and ENABLE not in on:
-                self.hold.say(tr("ENABLING SWITCH NOT PRESSED. HOLD IT TO JOG WITH THE BUTTON"))
+                self.hold.say(tr("ENABLING SWITCH NOT PRESSED. HOLD IT AND PRESS JOG BUTTON"))
                 return
             axis, sign = self.buttons[name]
             self.hold.press(name, axis, sign, rapid=JOG_RAPID in on, button=name)

@@ -154,7 +154,7 @@ class MdiModel:
     def prompt(self, snapshot: Snapshot, start: str) -> str:
         """What can be done now; ``start`` names what starts a cycle here."""
         if snapshot.state is State.DISABLED:
-            return tr("DRIVES ARE OFF. F5: DRIVES ON. YOU CAN ALREADY TYPE A LINE")
+            return tr("DRIVES ARE OFF. F5: DRIVES ON. YOU CAN STILL TYPE A LINE")
         if snapshot.state is not State.IDLE:
             return ""
         if self.completion.open:

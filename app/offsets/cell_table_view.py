@@ -168,7 +168,7 @@ class ZeroOffsetsPage(CellTablePage):
     """G54 to G59: a row each, X, Z and C."""
 
     NAME = page_table.ZERO
-    LABELS = ("MENU", "SET HERE", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
+    LABELS = ("MENU", "SET POS.", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
     model: ZeroOffsets
 
     def __init__(self, host: Host, parent: QWidget) -> None:

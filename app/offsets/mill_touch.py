@@ -85,7 +85,7 @@ class MillTouch:
         """The chain with the preset in force, the angles, the slides; or why they are not known."""
         snapshot, book = self.desk.snapshot(), self.desk.book
         if self.machine is None:
-            return tr("CANNOT TOUCH OFF: THE MACHINE FILE OF THIS MILL HAS NO [kinematics]")
+            return tr("CANNOT TOUCH OFF: THE MILL'S MACHINE FILE HAS NO [kinematics] TABLE")
         if why := _unknown(snapshot):
             return why
         setup = with_mill(Setup(kinematics=self.machine), MillOffsets({}, book.presets, book.preset))

@@ -36,7 +36,7 @@ _KINDS = (Kind.TOOL, Kind.SECONDARY)
 _NUMBERS = {
     Kind.TOOL: ({str(number): number for number in OFFSETS}, "offset numbers are 1…32"),
     Kind.SECONDARY: ({str(number): number for number in OFFSETS}, "offset numbers are 1…32"),
-    Kind.ZERO: ({str(code): code for code in ZERO_CODES}, "settable zero offsets are 54…59"),
+    Kind.ZERO: ({str(code): code for code in ZERO_CODES}, ("settable zero offsets are 54…59 (G54 to G59)")),
 }
 _EXPECTED = {
     Sort.LENGTH: "a number in inches",

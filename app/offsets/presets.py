@@ -52,7 +52,7 @@ class Presets(CellTable):
         if self.name in _ROTARY:
             told = tr("F2: set the current axis position to the typed value")
         elif self.name == "rotation":
-            told = tr("Press F2 at two points of an edge to set ROT so that the edge has the typed angle")
+            told = tr("Press F2 at two points on an edge to set ROT so that the edge has the typed angle")
         active = self.book.preset
         now = tr(Message("active preset: {preset}", preset=active or tr("0 (from the machine file)")))
         return f"{told}        {tr('F3: activate preset')}        {now}"
@@ -153,7 +153,9 @@ class Presets(CellTable):
         if why := self.barred(self.desk.snapshot()):
             return why
         if self.stored is None:
-            return tr(Message("PRESET {number} IS NOT SET. TOUCH IT OFF OR TYPE IT", number=self.number))
+            return tr(
+                Message("PRESET {number} IS NOT SET. TOUCH IT OFF OR TYPE ITS VALUES", number=self.number)
+            )
         return ""
 
     def here_barred(self) -> str:

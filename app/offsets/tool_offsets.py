@@ -120,7 +120,7 @@ class ToolOffsets(ToolEntry):
     def cell_barred(self) -> str:
         """Why the cell under the cursor may not be changed now; empty when it may."""
         if self.relative and self.name in {"x", "z"}:
-            return tr("X AND Z RELATIVE TO MASTER ARE READ-ONLY. F3: EDIT FROM HOME")
+            return tr("X, Z RELATIVE TO MASTER: READ-ONLY. F3: SHOW X, Z FROM HOME")
         return super().cell_barred()
 
     def look(self, snapshot: Snapshot) -> None:

@@ -219,7 +219,7 @@ def apart_words(apart: Apart, in_mm: bool) -> str:
     length = formats.length(apart.distance, in_mm)
     return tr(
         Message(
-            "LARGEST DIFFERENCE {length} {unit}  ·  MARKED BY THE CIRCLE",
+            "LARGEST DIFFERENCE {length} {unit}  ·  CIRCLED",
             length=length,
             unit="mm" if in_mm else "in",
         )

@@ -255,7 +255,7 @@ def details_of(program: Program) -> tuple[Detail, ...]:
     run = program.run
     return (
         ("SIZE", formats.file_size(program.size)),
-        ("PLACE", "DRAWING" if program.drawing else "SAMPLE" if program.sample else "USER PROGRAM"),
+        ("TYPE", "DRAWING" if program.drawing else "SAMPLE" if program.sample else "USER PROGRAM"),
         ("PARTS", str(run.parts)),
         ("BEST CYCLE", _time(run.best)),
         ("LAST CYCLE", _time(run.latest)),

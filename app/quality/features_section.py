@@ -150,7 +150,7 @@ class FeaturesSection(QualitySection):
             "NAME",
             Message("NOMINAL {mode}", mode=mode.name),
             "TOLERANCE",
-            tr("BY") if lathe else "",
+            tr("OFFSET") if lathe else "",
             "MEASURED",
             "SAMPLE",
         )
@@ -283,7 +283,7 @@ class FeaturesSection(QualitySection):
         self._write(
             lambda c: measured_parts.save_feature(c, row),
             partial(self._kept, row.name),
-            Message("{row} entered", row=row.name),
+            Message("feature {row} saved", row=row.name),
         )
 
     def _kept(self, name: str) -> None:

@@ -28,7 +28,7 @@ class MeasuredPartsFunction(PageFunction):
         return (
             Row((tr("FEATURES"), str(len(data.features)))),
             Row((tr("READINGS"), str(len(data.readings)))),
-            Row((tr("DUE"), watch.due() or NOTHING)),
+            Row((tr("MEASUREMENT DUE"), watch.due() or NOTHING)),
         )
 
     def prompt(self) -> str:

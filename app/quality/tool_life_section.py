@@ -66,7 +66,7 @@ class ToolLifeSection(QualitySection):
         rows = tuple(self._row(each) for each in self.tools())
         tool = self.tool
         question = tr(Message("T{number} {limit}?", number=tool.number, limit=tr(self.limit))) if tool else ""
-        heads = ("T", "PARTS", "MINUTES", "STOPS", "LEFT", "USED")
+        heads = ("T", "PARTS", "MINUTES", "STOPS", "REMAINING", "USED")
         notes = (
             (
                 "Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: "

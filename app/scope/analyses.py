@@ -246,7 +246,7 @@ def _analysed(kind: Kind, record: Record, arc: int, drives: Mapping[str, Axis]) 
     letters = [each.name[0] for each in record.channels if each.name[1:] == " demand" and each.unit == "mm"]
     if len(letters) < 2 or not len(record.times):
         raise AnalysisError(
-            tr("the record has fewer than two linear axes, so the record does not contain a path"), "no-path"
+            tr("a path needs two linear axes, but the record contains fewer than two"), "no-path"
         )
     slides = ("Z", "X") if set(letters) == {"X", "Z"} else tuple(sorted(letters))
     demand = np.column_stack([columns[Message("{item} demand", item=each)] for each in slides])
@@ -406,7 +406,7 @@ def _thread_sheet(title: str, thread: Thread, vmax: float, metric: bool, marked:
         tr("Flank infeed shifts the entry angle with the depth."),
         tr(Message("The axis is fast enough to cut this lead at up to {rpm} rpm", rpm=formats.rpm(limit))),
     )
-    heads = (tr("PASS"), tr("ADDED DEPTH"), tr("ENTRY"), tr("LEAD ERROR"), tr("RPM DROP"))
+    heads = (tr("PASS"), tr("ADDED DEPTH"), tr("ENTRY ANGLE"), tr("LEAD ERROR"), tr("RPM DROP"))
     shares = (0.12, 0.24, 0.2, 0.24, 0.2)
     figures = frozenset({1, 2, 3, 4})
     return Sheet(title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, figures=figures)

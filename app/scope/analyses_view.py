@@ -149,7 +149,7 @@ class _Keys:
 
     def prompt(self) -> str:
         """What keys do now."""
-        return tr("ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY: NEW SAMPLES")
+        return tr("ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE")
 
     def leave(self) -> None:
         """Nothing stays open."""

@@ -230,6 +230,9 @@ def response_sheet(title: str, found: AxisResponse, metric: bool) -> Sheet:
                 axis=found.letter,
             )
         ),
-        tr("For a good result, jog a single step on the Jog page; F9 opens the drive tests."),
+        tr(
+            "For a good result, jog a single step on the Jog page, or press F9 on this page to "
+            "open the drive tests."
+        ),
     )
     return Sheet(title, ("", "", ""), SHARES, tuple(rows), notes=notes, figures=frozenset({1, 2}))

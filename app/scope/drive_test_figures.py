@@ -145,7 +145,7 @@ def figures_sheet(title: str, found: DriveTestFigures, metric: bool, part: Part 
     units = Units(metric)
     rows = [Row(cells) for cells in _responses(found, units)] if part is not Part.WINDOW else []
     rows += map(Row, window_rows(found.move, units)) if part is not Part.RESPONSE else ()
-    heads = ("", tr("GAIN"), tr("PHASE LAG")) if found.sines else ("", tr("OUT"), tr("BACK"))
+    heads = ("", tr("GAIN"), tr("PHASE LAG")) if found.sines else ("", tr("OUTBOUND"), tr("RETURN"))
     if part is Part.WINDOW:
         heads = ("", "", "")
     notes = (shown_words(found.path, metric), tr("Nothing was written to the drive."))

@@ -38,7 +38,7 @@ class Quantity(Enum):
     LOAD = ("LOAD", "%", "%", 10.0)
     OVERRIDE = ("OVERRIDE", "%", "%", 10.0)
     QUEUE = ("QUEUE", "ms", "ms", 10.0)
-    LATENESS = ("LATENESS", "ms", "ms", 1.0)
+    LATENESS = ("CYCLE DELAY", "ms", "ms", 1.0)
     NUMBER = ("LINE", "", "", 5.0)
     LOGIC = ("INPUTS AND OUTPUTS", "", "", 1.0)
 

@@ -81,8 +81,8 @@ def _why(said: str) -> str:
     platform = os.environ.get("QT_QPA_PLATFORM", "")
     if "Could not find the Qt platform plugin" in said:
         return Message(
-            "Qt does not have the platform plugin that QT_QPA_PLATFORM={platform} names; remove "
-            "this variable",
+            "QT_QPA_PLATFORM={platform}: Qt has no platform plugin with this name; remove this "
+            "environment variable",
             platform=platform,
         )
     missing = _missing_library()
@@ -97,7 +97,7 @@ def _why(said: str) -> str:
             tried=" and ".join(tried),
         )
     template = (
-        "no display responds in time at {tried}; start the X server or compositor, or correct this setting"
+        ("no display at {tried} responded in time; start the X server or compositor, or correct this setting")
         if said.endswith("no answer")
         else "no display found at {tried}; start the X server or compositor, or correct this setting"
     )

@@ -141,7 +141,7 @@ class SearchtoModel:
     def turn_pass(self, by: int) -> None:
         """To a later or an earlier pass of a line that is run more than once."""
         if self.count < 2:
-            self.say(tr("PRESS ENTER FIRST. ONLY LOOP OR SUBROUTINE LINES REPEAT"))
+            self.say(tr("NO REPETITIONS FOUND FOR THIS LINE. ENTER: REBUILD STATE"))
             return
         number = max(1, min(self.number + by, self.count))
         if number != self.number:
@@ -203,7 +203,7 @@ class SearchtoModel:
         self._forget()
         self.clear()
         if not self._has_text:
-            self.say(tr('TYPE A TEXT FIRST. TO FIND A NUMBER, TYPE " BEFORE IT'))
+            self.say(tr('TYPE SEARCH TEXT FIRST. TO FIND A NUMBER, TYPE " BEFORE IT'))
         elif not self.cursor.find(way):
             self.say(tr(Message("{text} NOT FOUND IN ANY LINE", text=self.cursor.wanted)))
 
@@ -230,7 +230,7 @@ class SearchtoModel:
         self._forget()
         self.clear()
         if self._out_by_hand:
-            self.say(tr("RESTART RETRACTS TOOL ALONG ITS AXIS FIRST. OR JOG TOOL OUT"))
+            self.say(tr("RESTARTING RETRACTS TOOL ALONG ITS AXIS FIRST; OR JOG IT OUT"))
         elif (job := self.session.now.job) is not None:
             self.stage, self._of = SearchtoStage.SEARCHING, job
             self.finder.cut(job)

@@ -96,14 +96,14 @@ def jog_words(found: Retract, tool: int) -> str:
         return ""
     if found.tool_place is ToolPlace.TAP:
         words = tr(
-            "T{tool} IS A TAP IN ITS THREAD: TURN THE SPINDLE BY HAND TO BACK IT OUT, AND LET Z FOLLOW"
+            "TAP T{tool} IS STILL IN THE THREAD: TURN THE SPINDLE BY HAND TO BACK IT OUT, AND LET Z FOLLOW"
         )
     elif found.tool_place is ToolPlace.THREAD:
         words = tr("T{tool} IS IN A THREAD: JOG X FIRST, NOT Z, UNTIL IT IS CLEAR")
     elif found.tool_place is ToolPlace.TURNED:
         words = tr(
-            "C HAS TURNED SINCE T{tool} ENTERED THE PART: TURN THE SPINDLE BY HAND UNTIL THE "
-            "TOOL IS FREE, THEN JOG T{tool} OUT"
+            "C AXIS HAS TURNED SINCE T{tool} ENTERED THE PART: TURN THE SPINDLE BY HAND UNTIL "
+            "THE TOOL IS FREE, THEN JOG T{tool} OUT"
         )
     else:
         words = _towards(*found.away)
@@ -284,7 +284,7 @@ def _words(step: ApproachStep, point: Checkpoint, language: str) -> str:
             speed = next(row.value for row in rows_of(point, language) if row.key == "speed")
             return Message("{details} {speed}", details=way, speed=speed)
         case SpindleLock():
-            return tr("SPINDLE LOCKED AS C AXIS AND TURNED TO ITS ANGLE")
+            return tr("SPINDLE LOCKED AS C AXIS AND TURNED INTO POSITION")
         case SpindleOrient(angle=angle):
             return tr(Message("SPINDLE ORIENTED AT {angle}", angle=formats.angle(angle)))
         case Coolant():

@@ -298,7 +298,7 @@ class SearchtoPage(ModelPage):
         if model.stage is SearchtoStage.SEARCHING:
             words = tr(Message("SEARCHING UP TO LINE {line}", line=line))
             return StateShown(join_messages("  ·  ", (words, str(model.finder.worker.reached))))
-        return StateShown(tr(Message("ENTER OR TAP: REBUILD STATE OF LINE {line}", line=line)))
+        return StateShown(tr(Message("ENTER OR TAP: REBUILD STATE AT LINE {line}", line=line)))
 
     def _state(self, plan: Plan) -> StateShown:
         title, visit = tr(Message("STATE AT LINE {line}", line=plan.found.line)), plan.found.visit

@@ -230,8 +230,8 @@ class _Making:
             return
         if (wrong := wrong_unit(net, self.view.unit, self.asked.setting.shop.travel)) is not None:
             words = Message(
-                "{drawing} is {wrong}, which is too large for this machine. With {wrong2} as "
-                "its unit, the drawing fits: choose {wrong3}.",
+                "{drawing} is {wrong}, which is too large for this machine. The drawing fits if its "
+                "unit is {wrong2}: choose {wrong3}.",
                 drawing=self.drawing.name,
                 wrong=wrong[0],
                 wrong2=wrong[1],

@@ -209,7 +209,7 @@ class Shapes:
         elif shape is PROFILE and not self.lines:
             self.at = 0  # it writes a head of its own
         elif not begun(self.lines, self.new.dialect):
-            self.notice = tr("WRITE THE PROGRAM HEAD FIRST. PRESS N AND FILL IN THE HEAD")
+            self.notice = tr("FIRST PRESS N AND FILL IN THE PROGRAM HEADER (HEAD)")
             return
         setting = setting_at(self.lines, self.at, self.shop, self.new)
         if shape is PROFILE:

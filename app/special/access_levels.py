@@ -115,7 +115,7 @@ class AccessLevels(SpecialFunction):
         if self.draft is not None:
             return tr("TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL")
         if not self.access.people.on:
-            return tr("F3: ADD A USER AND TURN LEVELS ON   ESC: BACK TO THE LIST")
+            return tr("F3: ADD USER, TURN ACCESS LEVELS ON   ESC: BACK TO THE LIST")
         return tr("SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK")
 
     # --- keys ----------------------------------------------------------------------------------------

@@ -133,7 +133,10 @@ class BackupAndRestore(SpecialFunction):
 
     def _notes(self) -> tuple[str, ...]:
         """Of the marked backup: what is wrong with it, or what a restore would change."""
-        kept = "A restore saves a copy of the replaced data next to the new data."
+        kept = (
+            "When a backup is restored, a copy of the replaced data is saved in the same folder "
+            "as the new data."
+        )
         place = self.places[self.marked] if self.places else None
         verdict = self.verdicts.get(place) if place is not None else None
         if verdict is None:

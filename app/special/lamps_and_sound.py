@@ -153,7 +153,7 @@ class LampsAndSound(SpecialFunction):
             silent = self.sounds.silent ^ {kind}
             self._choose(self.sounds.volume, silent)
         else:
-            self.desk.say("A RUNNING CYCLE IS SHOWN ONLY BY A LAMP. IT HAS NO SOUND")
+            self.desk.say("NO SOUND FOR A RUNNING CYCLE: ONLY THE LAMP SHOWS IT")
         return True
 
     def _louder(self, by: int) -> None:

@@ -55,8 +55,8 @@ class PartsCounterFunction(FigureFunction):
             text=self.entry.text,
             notes=(
                 (
-                    "Cycle Repeat turns off during the last part of the target count. Enter 0 for no "
-                    "part target."
+                    "Cycle Repeat turns off during the cycle that reaches the part target. Enter 0 for "
+                    "no part target."
                 ),
                 (
                     "Use NO COUNT for dry runs; the cycle is then not counted as a part. A restart "
@@ -112,7 +112,9 @@ class PartsCounterFunction(FigureFunction):
         if 0 < target <= self.counter.count:
             made = self.counter.count
             self.entry.text = refused(self.entry.text)
-            self.desk.say(tr(Message("REJECTED: {count} PARTS ALREADY MADE. F4: RESET COUNT", count=made)))
+            self.desk.say(
+                tr(Message("TARGET TOO LOW: {count} PARTS ALREADY MADE. F4: RESET COUNT", count=made))
+            )
             return False
         self.desk.keep(lambda: self.counter.set_target(target))
         return True

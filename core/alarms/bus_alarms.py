@@ -192,7 +192,7 @@ WIRES: Entries = {
             "the network cable between the computer and the board is unplugged or damaged",
             "the board has no power, or its watchdog has switched it off",
             "an EtherCAT slave is not operational, or the bus is still starting",
-            "the 7I76E has lost its field I/O",
+            "the 7I76E has lost the link to its field I/O",
         ),
         (
             "PRESS E-STOP: the spindle may be turning. Check the cable and the board power, then "

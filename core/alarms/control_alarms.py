@@ -75,8 +75,8 @@ CONTROL: Entries = {
             "a pendant or the drive's own software is also switching the output",
         ),
         (
-            "Find the cause. Read the list of outputs that will be switched again, then "
-            "press Cycle Start. Measure this part, because it is not counted"
+            "Find the cause. Read the list of outputs that will be restored, then press Cycle "
+            "Start. Measure this part, because it is not counted"
         ),
         tells=True,
     ),
@@ -120,7 +120,7 @@ PROGRAM: Entries = {
         "end of travel",
         (
             "the tool offset or the part zero is wrong",
-            "the program was not started from the position for which it was proved",
+            "the axes were not at the start position for which the program was proved",
         ),
         "Check the tool offset and the start position of the axes, then press Reset",
         tells=True,

@@ -161,7 +161,7 @@ SPINDLE: Entries = {
     ),
     "spindle-switch": hold(
         223,
-        "spindle switch off",
+        "spindle switch at OFF",
         ("the spindle switch is at OFF",),
         (
             "Set the spindle switch to AUTO, then press Cycle Start: the spindle starts as shown, "
@@ -204,7 +204,10 @@ CHUCK: Entries = {
     "collet-open": stop(
         301,
         "spindle start with the collet open",
-        ("the program starts the spindle before M12", "the collet switch does not respond"),
+        (
+            "the program starts the spindle before the collet is closed (M12)",
+            "the collet switch does not respond",
+        ),
         "Close the collet with M12, press Reset and start again",
         tells=True,
     ),

@@ -66,7 +66,7 @@ def in_words(
         yield _deviation(found, made.nose_radius, mm, unit, places)
     within = plain(max(comparison.worst, 0.001) / mm, places)
     template = (
-        "elsewhere, the simulated part matches the drawing to within {within} {unit}"
+        ("except at the listed deviations, the simulated part matches the drawing to within {within} {unit}")
         if comparison.found
         else "the simulated part matches the drawing to within {within} {unit}"
     )

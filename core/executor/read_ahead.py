@@ -150,7 +150,7 @@ def check_block(block: Block, machine: Machine) -> None:
             raise AlarmError(
                 "travel",
                 Message(
-                    "line {line} moves {axis} to a position {distance} {unit} from home",
+                    "line {line} moves {axis} beyond its travel, to {distance} {unit} from home",
                     line=block.line,
                     axis=axis.name,
                     distance=f"{far:.3f}",

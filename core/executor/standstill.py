@@ -169,7 +169,10 @@ def _orient_spindle(context: MachineContext, angle: float, sense: int) -> Wait:
     if spindle.orientation.at != angle and start_conditions.unclamped(context):
         raise AlarmError(
             "collet-open",
-            Message("SPOS or M19 would turn the spindle to {angle} degrees", angle=f"{angle:g}"),
+            Message(
+                "SPOS or M19 cannot turn the spindle to {angle} degrees while the collet is open",
+                angle=f"{angle:g}",
+            ),
         )
     if spindle.asked or not spindle.stopped:
         spindle.stop()

@@ -32,7 +32,7 @@ class CornerTooLargeError(CornerError):
 
     def __init__(self, needed: float, *, first: bool) -> None:
         super().__init__(
-            "the line itself is too short" if first else "the next line is too short", "line-too-short"
+            "the current line is too short" if first else "the next line is too short", "line-too-short"
         )
         self.needed = needed
         self.first = first

@@ -31,7 +31,7 @@ def page(dialect: Dialect) -> str:
     chapters = "".join(
         f"\n## {title}\n\n" + "".join(map(_entry, entries)) for title, entries in book.chapters
     )
-    titles = [*(["Words of cycles"] if book.meanings else []), *(title for title, _ in book.chapters)]
+    titles = [*(["Cycle parameters"] if book.meanings else []), *(title for title, _ in book.chapters)]
     top = _TOP.format(name=NAMES[dialect], dialect=dialect, contents=contents(titles))
     return top + _frame(book) + _words(book) + chapters
 
@@ -43,7 +43,7 @@ def _frame(book: CodeBook) -> str:
 def _words(book: CodeBook) -> str:
     """Return the table of the words of cycles, or nothing for a language without them."""
     rows = "".join(f"| `{word}` | {what} |\n" for word, what in book.meanings.items())
-    return f"\n## Words of cycles\n\n| word | means |\n|---|---|\n{rows}" if rows else ""
+    return f"\n## Cycle parameters\n\n| word | means |\n|---|---|\n{rows}" if rows else ""
 
 
 def _entry(entry: Entry) -> str:

@@ -24,6 +24,9 @@ def turns_at_axis(log: Log, line: int, turn: float) -> bool:
             1,
             "plane-centre",
             text,
-            ("The tool does not move while C turns; route the path around the spindle centerline."),
+            (
+                "At the spindle centerline, the tool does not move while C turns; route the path "
+                "around the centerline."
+            ),
         )
     return angle > _SAME

@@ -138,7 +138,7 @@ def _homing(axis: str) -> Rule:
             ""
             if known
             else Message(
-                "an axis that is not absolute needs axis.{axis}.home = {{ order, speed }}", axis=axis
+                "an axis without an absolute encoder needs axis.{axis}.home = {{ order, speed }}", axis=axis
             )
         )
 
@@ -275,7 +275,7 @@ RULES = (
     _below(
         "machine.setpoint_ms",
         "machine.commit_ms",
-        "a setpoint cannot last longer than machine.commit_ms",
+        "the duration of a setpoint cannot be longer than machine.commit_ms",
         Unit.MILLISECONDS,
     ),
     _below("machine.commit_ms", "machine.low_water_ms", _QUEUE, Unit.MILLISECONDS),

@@ -95,9 +95,9 @@ _PALM = re.compile(
     r"(left|right)?_?palms?_?(left|right|\d)?|(left|right)_start|start_?(left|right|\d)", re.IGNORECASE
 )
 WHY = (
-    "do not wire palm buttons to the control; use a two-hand relay, which checks "
-    "that both buttons are pressed within 0.5 s of each other and released between "
-    "starts; wire the single output of the relay to the input start"
+    "do not wire palm buttons to the control; use a two-hand relay, which checks that "
+    "both buttons are pressed within 0.5 s of each other and released between starts; "
+    "wire the single output of the relay to the input named start"
 )
 
 

@@ -291,7 +291,7 @@ def _inch(size: _Size) -> tuple[float, float, float]:
     if size.left[:1].isdigit():
         raise InsertCodeError(
             Message(
-                "{code}: character {place} ({left}) is one digit too many",
+                "{code}: character {place} ({left}) is an extra digit",
                 code=size.code,
                 place=size.place + 1,
                 left=size.left[0],

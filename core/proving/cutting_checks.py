@@ -145,7 +145,8 @@ class CuttingChecks:
         slowest, fastest = (surface_rpm(speed, r, 0.0, math.inf) for r in reversed(radii))
         if speed > _FASTEST and slowest > 2.0 * most:
             text = Message(
-                "The surface speed requires {slowest} rpm here, but the spindle maximum is {maximum} rpm.",
+                "The surface speed requires {slowest} rpm in this move, but the spindle maximum is "
+                "{maximum} rpm.",
                 slowest=f"{slowest:.0f}",
                 maximum=f"{most:.0f}",
             )
@@ -155,7 +156,7 @@ class CuttingChecks:
         limited = abs(block.x) <= abs(block.x0) and abs(block.rpm) < most  # as G26 does
         if modal.css_max is None and fastest > most and not limited:
             text = Message(
-                "G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm here.",
+                "G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm in this move.",
                 maximum=f"{most:.0f}",
             )
             hint = "Write G77Sn, where n is the maximum rpm for this chuck and bar."

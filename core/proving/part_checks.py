@@ -154,7 +154,7 @@ CHECKS: Mapping[str, Check] = {
     ),
     "unmade-cut": Check(
         _ERROR,
-        ("A cutting move feeds away from the part, so a cut that seems to be intended is not made."),
+        ("A cutting move feeds away from the part, so the cut that was probably intended is not made."),
         (
             "One of these cases applies: a feed move goes away from the part or out past the "
             "part face; none of the feed moves between two rapids, or of a live tool, comes near "

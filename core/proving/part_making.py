@@ -283,7 +283,7 @@ class PartMaking:
 def _cut_standing(lines: Mapping[int, int]) -> list[str]:
     return [
         Message(
-            "cuts by {tool} from line {line} on, while the spindle is stopped",
+            "cuts made by {tool} with the spindle stopped, from line {line} on",
             tool=edge_name(tool),
             line=line,
         )

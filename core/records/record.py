@@ -98,7 +98,7 @@ def checked_record(record: Record) -> Record:
     if not 0.0 <= record.started <= _LATEST:
         raise UnsoundError(
             Message(
-                ("the start time of the record, {started} s after 1970, is not valid"),
+                ("the start time of the scope record, {started} s after January 1, 1970, is not valid"),
                 started=f"{record.started:g}",
             )
         )

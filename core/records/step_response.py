@@ -140,7 +140,7 @@ def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) 
     even = np.flatnonzero(np.abs(speeds - top) <= 0.01 * abs(top))
     if abs(top) < 1e-9 or len(even) < LEAST:
         raise AnalysisError(
-            "the commanded motion has no ramp at constant speed; use a longer ramp", "no-ramp"
+            "the commanded motion never reaches a constant speed; use a longer move", "no-ramp"
         )
     late = even[len(even) // 2 :]
     error = float(np.mean(request[late] - response[late]))

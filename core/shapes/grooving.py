@@ -207,7 +207,7 @@ def _slant_checks(filled: Filled, deep: float) -> Iterator[Refusal]:
             ),
         )
     if filled.n("EDGE"):
-        yield Refusal("EDGE", "Edges of sloped walls cannot be chamfered here: enter 0.")
+        yield Refusal("EDGE", "Edges of sloped walls cannot be chamfered in this shape: enter 0.")
 
 
 def _groove_sketch(filled: Filled) -> Sketch:
@@ -307,20 +307,20 @@ def _sinumerik_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if filled.t("SIDE") == REAR:
         yield Refusal(
             "SIDE",
-            "CYCLE93 does not support a tool at negative X: use G1 by entering 0 as the D number "
-            "of the other blade corner.",
+            "CYCLE93 does not support a tool at negative X: to use G1 instead, enter 0 as the D "
+            "number of the other blade corner.",
         )
     if filled.n("EDGE"):
         yield Refusal(
             "EDGE",
-            "CYCLE93 cannot chamfer these edges: enter 0 for the chamfer, or use G1 by entering "
-            "0 as the D number of the other blade corner.",
+            "CYCLE93 cannot chamfer these edges: enter 0 for the chamfer or, to use G1 instead, "
+            "enter 0 as the D number of the other blade corner.",
         )
     if any(_slants(filled)):
         yield Refusal(
             "FANGLE",
-            "CYCLE93 can cut only square walls here: enter 0 for the slope, or use G1 by "
-            "entering 0 as the D number of the other blade corner.",
+            "CYCLE93 can cut only square walls in this shape: enter 0 for the slope or, to use "
+            "G1 instead, enter 0 as the D number of the other blade corner.",
         )
 
 

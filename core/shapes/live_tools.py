@@ -79,7 +79,8 @@ def _cross_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         )
     if filled.n("COUNT") > 1 and abs(filled.n("STEP")) * filled.n("COUNT") > 360.0 + 1e-6:
         words = Message(
-            "{number} holes at {number2}° go around the part more than once: enter a smaller angle.",
+            "{number} holes spaced {number2}° apart go around the part more than once: enter a "
+            "smaller angle.",
             number=f"{filled.n('COUNT'):.0f}",
             number2=f"{filled.n('STEP'):g}",
         )

@@ -73,7 +73,10 @@ def _checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     series, pitch = series_of(filled.values), filled.n("PITCH")
     if series in TAPERED or series is Series.ACME:
         yield Refusal(
-            "SERIES", Message("{series} cannot be tapped here: cut the thread with G33.", series=series)
+            "SERIES",
+            Message(
+                "{series} threads cannot be tapped with this shape: cut the thread with G33.", series=series
+            ),
         )
     if pitch * setting.mm / 25.4 > _COARSEST:
         most = _COARSEST * 25.4 / setting.mm

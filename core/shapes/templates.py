@@ -101,7 +101,7 @@ TOOL_CHANGE = Shape(
 )
 ROUGH = Shape(
     "G75 ROUGHING",
-    "roughing passes down to a contour of points, which you edit by hand",
+    "makes roughing passes down to a contour whose points you edit by hand",
     (
         _ACROSS,
         Field("ROUGH", "ROUGHING DEPTH OF CUT", Kind.LENGTH, _depth),
@@ -128,7 +128,7 @@ THREADING = Shape(
 )
 BAR_FEED = Shape(
     "BAR FEED LOOP",
-    "positions a stop, opens the collet and feeds the bar; the part program is a subroutine",
+    "positions a stop, opens the collet and feeds the bar, with the part program as a subroutine",
     (
         Field("COUNT", "PARTS", Kind.COUNT, 10.0, most=100_000),
         _TOOL,

@@ -368,9 +368,6 @@ def _lead_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
                 slow=slow,
             ),
         )
-    turns = math.sqrt(filled_depth(filled) / max(first_depth(filled), 1e-9))
-    if turns > 60:
-        yield Refusal("PASSES", "This thread needs more than 60 passes: reduce the number of passes.")
 
 
 def _relief(filled: Filled) -> Iterator[Refusal]:

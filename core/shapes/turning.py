@@ -496,7 +496,8 @@ def _bore_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
         yield Refusal(
             "HOLE",
             Message(
-                "A hole of {hole} is not less than the bore diameter of {across}, so nothing is cut.",
+                "The hole diameter of {hole} is not less than the bore diameter of {across}, so "
+                "nothing is cut.",
                 hole=f"{hole:g}",
                 across=f"{across:g}",
             ),

@@ -83,7 +83,9 @@ def backup(folder: Path, target: Path) -> None:
         database.check_kind(target)
         if target.samefile(path):
             raise StoreError(
-                Message("{target} is the data store itself; name another file for the backup", target=target),
+                Message(
+                    "{target} is the data store itself; specify another file for the backup", target=target
+                ),
                 "store-itself",
             )
         database.check_header(target)
@@ -125,7 +127,10 @@ def restore(folder: Path, source: Path) -> Path | None:
             database.check_kind(path)
         if there and path.samefile(source):
             raise StoreError(
-                Message("{source} is the data store itself; name a backup", source=source), "store-itself"
+                Message(
+                    "{source} is the data store itself, not a backup; specify a backup file", source=source
+                ),
+                "store-itself",
             )
         here = _people_of(path) if there else None
         kept = _keep(path) if there else None

@@ -133,7 +133,7 @@ OF_PROGRAMS = ("tool_offsets", "secondary_offsets", "zero_offsets", "mill_tools"
 
 _ANEW = "enter the data again, or restore a backup"
 _REMEDY = {
-    "part_counts": "count the parts and enter them, or restore a backup",
+    "part_counts": "count the parts and enter the number, or restore a backup",
     "jobs": "clear the job from the queue ('turndesk jobs clear') and enter the job again",
     "people": "enter the PIN again, or reset the access levels ('turndesk access reset')",
 }

@@ -73,7 +73,7 @@ def check_header(path: Path) -> None:
     if int.from_bytes(header[68:72], "big") != APPLICATION_ID:
         raise StoreError(
             Message(
-                "{path} is a database of another program and was not changed. Name another file", path=path
+                "{path} is a database of another program and was not changed. Specify another file", path=path
             ),
             "foreign-database",
         )
@@ -106,7 +106,7 @@ def check_kind(path: Path) -> None:
             (
                 Message(
                     "{path} is a folder, a pipe or a device, not a file, and was not changed. Move it to "
-                    "another place",
+                    "another location",
                     path=path,
                 )
             ),

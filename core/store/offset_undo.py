@@ -53,7 +53,7 @@ def _check(kind: Kind, rows: Mapping[int, Row]) -> None:
     if orphans := [edge_name(n) for n in rows if tool_of(n) not in rows]:
         raise StoreError(
             Message(
-                ("no tool would be left for cutting edge {orphans}; clear this cutting edge first"),
+                ("cutting edge {orphans} would be left without a tool; clear this cutting edge first"),
                 orphans=", ".join(orphans),
             ),
             "has-further-edges",

@@ -106,8 +106,8 @@ def _demand_service(connection: sqlite3.Connection) -> None:
     if levels and max(levels) < 3:
         raise StoreError(
             (
-                "the list of users must contain one user with SERVICE level who can enter the "
-                "others; enter this user first"
+                "the list of users must contain one user with SERVICE level who can add the others; "
+                "add this user first"
             ),
             "last-service-person",
         )

@@ -43,7 +43,7 @@ def export(store: Store, folder: Path) -> int:
     try:
         if folder.exists() and any(folder.iterdir()):
             raise StoreError(
-                Message("{folder} is not empty; name a new folder for the export", folder=folder),
+                Message("{folder} is not empty; specify a new folder for the export", folder=folder),
                 "folder-not-empty",
             )
         with unfinished_folder(folder) as scratch:

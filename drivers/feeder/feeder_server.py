@@ -398,7 +398,7 @@ class Feeder:
             try:
                 step()
             except DriverError as error:
-                self._note(Text("error while stopping: {error}", error=error))
+                self._note(Text("error while the driver host was stopping the machine: {error}", error=error))
 
     def _note(self, what: str) -> None:
         self._notes = [*self._notes[-_NOTES:], what]

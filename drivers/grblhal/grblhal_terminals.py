@@ -170,7 +170,11 @@ class GrblIO:
         terminal = self._c.config.outputs[name].terminal
         if terminal in _COOLANT:
             mist = self._c.identity is not None and _MIST in self._c.identity.letters
-            return "" if terminal != "mist" or mist else "the controller's firmware does not support mist"
+            return (
+                ""
+                if terminal != "mist" or mist
+                else ("the controller's firmware does not support mist coolant")
+            )
         have = self._c.identity.outputs if self._c.identity is not None else 0
         port = terminal.removeprefix("out.")
         if port.isdecimal() and int(port) < have:

@@ -131,7 +131,8 @@ _TURNS = _optional(
         "at_speed": "Bit out: on while the drive reports that the spindle is at speed.",
         "fault": "Bit out: on while the drive reports a fault.",
         "index_enable": (
-            "Bit I/O: index enable of the encoder that supplies `position`. Threads and M19 wait for it."
+            "Bit I/O: index enable of the encoder that supplies `position`. Threading and M19 "
+            "wait for this signal."
         ),
         "position_mode": "Bit in: switches the spindle drive to position mode for C.",
         "in_position_mode": (

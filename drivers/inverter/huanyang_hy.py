@@ -68,7 +68,8 @@ class HuanyangHy:
         if top < number(highest):
             known.append(
                 Message(
-                    "PD005 is {top} Hz, but the highest speed needs {highest} Hz; change one of these values",
+                    "PD005 is {top} Hz, but the maximum spindle speed needs {highest} Hz; change one of "
+                    "these values",
                     top=f"{top / 100:g}",
                     highest=f"{highest:g}",
                 )

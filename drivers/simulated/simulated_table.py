@@ -155,7 +155,9 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         what, axis = values.text(f"{path}.what"), values.text(f"{path}.axis")
         if what in _OF_AN_AXIS and axis not in axes:
             expected = Message(
-                "{what} is an axis fault; expected one of these axes: {axes}", what=what, axes=", ".join(axes)
+                "{what} is an axis fault signal; assign it to one of these axes: {axes}",
+                what=what,
+                axes=", ".join(axes),
             )
             yield Finding(f"{path}.axis", written(axis), expected)
         if what not in _OF_AN_AXIS and axis:
@@ -193,8 +195,8 @@ DRIVER = Driver(
             parts=(
                 TableReference(
                     "[sim.faults]",
-                    "A fault of the simulated machine. Write the heading in double brackets; it may "
-                    "occur any number of times.",
+                    "A fault of the simulated machine. Write the heading in double square brackets; this "
+                    "table may occur any number of times.",
                     _FAULT,
                 ),
                 TableReference(

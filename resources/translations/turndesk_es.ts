@@ -190,8 +190,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Approaches and leaves the contour on a path around its end point.</source>
-      <translation>Entra al contorno y sale de él por una trayectoria que rodea su punto final.</translation>
+      <source>Approaches and leaves the contour on a path around the end point of the contour.</source>
+      <translation>Entra al contorno y sale de él por una trayectoria que rodea el punto final del contorno.</translation>
     </message>
     <message>
       <location filename="" />
@@ -725,23 +725,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>Drills in pecks of decreasing depth, with chip breaking.</source>
+      <translation>Taladra por picadas de profundidad decreciente, con rotura de viruta.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Drills in pecks.</source>
       <translation>Taladra por picadas.</translation>
     </message>
     <message>
       <location filename="" />
-      <source>Drills in several infeeds.</source>
-      <translation>Taladra en varias penetraciones.</translation>
+      <source>Drills in several pecks.</source>
+      <translation>Taladra en varias picadas.</translation>
     </message>
     <message>
       <location filename="" />
       <source>Drills to Z, then retracts at rapid.</source>
       <translation>Taladra hasta Z y se retira en rápido.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Drills with decreasing infeeds and chip breaking.</source>
-      <translation>Taladra con penetraciones decrecientes y rotura de viruta.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1250,6 +1250,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Included angle of an arc.</source>
+      <translation>Ángulo comprendido de un arco.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Incremental distances.</source>
       <translation>Distancias incrementales.</translation>
     </message>
@@ -1700,8 +1705,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>No X and Z move is programmed after the T on line {line}.</source>
-      <translation>No hay ningún movimiento en X y Z programado tras la T de la línea {line}.</translation>
+      <source>No X and Z move is programmed after the T word on line {line}.</source>
+      <translation>No hay ningún movimiento en X y Z programado tras la palabra T de la línea {line}.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1742,11 +1747,6 @@
       <location filename="" />
       <source>On the original control, writes to the tool table. This control does not change any value in the tool table, and it rejects values that would move an axis.</source>
       <translation>En el control original, escribe en la tabla de herramientas. Este control no cambia ningún valor de la tabla y rechaza los valores que moverían un eje.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Opening angle of an arc.</source>
-      <translation>Ángulo de apertura de un arco.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1970,8 +1970,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Radius; a negative value means more than half a circle.</source>
-      <translation>Radio; un valor negativo significa más de medio círculo.</translation>
+      <source>Radius; a negative value gives an arc of more than half a circle.</source>
+      <translation>Radio; un valor negativo da un arco de más de medio círculo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2070,8 +2070,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Repeats the following lines, up to LF, n times.</source>
-      <translation>Repite n veces las líneas siguientes, hasta LF.</translation>
+      <source>Repeats the following lines n times, up to the line with LF.</source>
+      <translation>Repite n veces las líneas siguientes, hasta la línea con LF.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2297,6 +2297,11 @@
       <location filename="" />
       <source>SPINDLE DID NOT SWITCH TO C-AXIS MODE</source>
       <translation>EL HUSILLO NO PASÓ AL MODO DE EJE C</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>SPINDLE SWITCH AT OFF</source>
+      <translation>INTERRUPTOR DE HUSILLO EN OFF</translation>
     </message>
     <message>
       <location filename="" />
@@ -3020,6 +3025,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Turns a contour from the stock. The contour is described in a subprogram or between two labels ("START:END"). Parameters: passes of MID, allowances FALZ, FALX (radius) or FAL, and feeds FF1, FF2 for plunging into reliefs and FF3 for finishing. VARI 1 to 4 rough, 5 to 8 finish, and 9 to 12 do both, each in this order: along Z outside, along X outside, along Z inside, along X inside. The nose radius is taken into account.</source>
+      <translation>Tornea un contorno a partir del material en bruto. El contorno se describe en un subprograma o entre dos etiquetas ("START:END"). Parámetros: pasadas de MID, sobremedidas FALZ, FALX (radio) o FAL, y avances FF1, FF2 para entrar en destalonados y FF3 de acabado. VARI 1 a 4 desbasta, 5 a 8 acaba y 9 a 12 hace ambas cosas, cada vez en este orden: a lo largo de Z por fuera, a lo largo de X por fuera, a lo largo de Z por dentro, a lo largo de X por dentro. Se tiene en cuenta el radio de punta.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Turns nose compensation off; the preceding move is the departure from the contour.</source>
       <translation>Desactiva la compensación de punta; el movimiento anterior es la salida del contorno.</translation>
     </message>
@@ -3052,11 +3062,6 @@
       <location filename="" />
       <source>Turns radius compensation off.</source>
       <translation>Desactiva la compensación de radio.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Turns the contour of a subprogram or between two labels ("START:END") from the stock: passes of MID, allowances FALZ, FALX (radius) or FAL, and feeds FF1, FF2 for plunging into reliefs and FF3 for finishing. VARI 1 to 4 rough, 5 to 8 finish, and 9 to 12 do both, each in this order: along Z outside, along X outside, along Z inside, along X inside. The nose radius is taken into account.</source>
-      <translation>Tornea el contorno de un subprograma o entre dos etiquetas ("START:END") a partir del material en bruto: pasadas de MID, sobremedidas FALZ, FALX (radio) o FAL, y avances FF1, FF2 para entrar en destalonados y FF3 de acabado. VARI 1 a 4 desbasta, 5 a 8 acaba y 9 a 12 hace ambas cosas, cada vez en este orden: a lo largo de Z por fuera, a lo largo de X por fuera, a lo largo de Z por dentro, a lo largo de X por dentro. Se tiene en cuenta el radio de punta.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3225,8 +3230,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Waits for SPOSA. This is not necessary here, because SPOSA itself waits until the spindle is at its angle.</source>
-      <translation>Espera a SPOSA. Aquí no es necesario, porque SPOSA ya espera hasta que el husillo está en su ángulo.</translation>
+      <source>Waits for SPOSA. This is not necessary on this control, because SPOSA itself waits until the spindle is at its angle.</source>
+      <translation>Espera a SPOSA. En este control no es necesario, porque SPOSA ya espera hasta que el husillo está en su ángulo.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3950,8 +3955,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>required state of the input: on (1) or off (0): 0 … 1</source>
-      <translation>estado requerido de la entrada: encendida (1) o apagada (0): 0 … 1</translation>
+      <source>required state of the input, on (1) or off (0): 0 … 1</source>
+      <translation>estado requerido de la entrada, encendida (1) o apagada (0): 0 … 1</translation>
     </message>
     <message>
       <location filename="" />
@@ -4430,8 +4435,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>{code} is the first move after the T on line {line}, so its start point is unknown.</source>
-      <translation>{code} es el primer movimiento tras la T de la línea {line}, así que su punto de inicio es desconocido.</translation>
+      <source>{code} is the first move after the T word on line {line}, so its start point is unknown.</source>
+      <translation>{code} es el primer movimiento tras la palabra T de la línea {line}, así que su punto de inicio es desconocido.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4535,8 +4540,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>{word}: {letter} must not have a number here.</source>
-      <translation>{word}: {letter} no debe llevar número aquí.</translation>
+      <source>{word}: {letter} must not have a number in this line.</source>
+      <translation>{word}: {letter} no debe llevar número en esta línea.</translation>
     </message>
     <message>
       <location filename="app/automatic/automatic_view.py" />
@@ -5025,13 +5030,13 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART</source>
-      <translation>COMPROBANDO SI EL PRIMER MOVIMIENTO CHOCA CON LA PIEZA</translation>
+      <source>CHANGE BLOCK DELETE ONLY BETWEEN CYCLES</source>
+      <translation>CAMBIE EL SALTO DE BLOQUE SÓLO ENTRE CICLOS</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>CHOOSE A PROGRAM (F2) BEFORE SWITCHING BLOCK DELETE</source>
-      <translation>ELIJA UN PROGRAMA (F2) ANTES DE CAMBIAR EL SALTO DE BLOQUE</translation>
+      <source>CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART</source>
+      <translation>COMPROBANDO SI EL PRIMER MOVIMIENTO CHOCA CON LA PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5052,6 +5057,11 @@
       <location filename="app/desk/desk.py" />
       <source>F1, THEN U: RELEASE E-STOP</source>
       <translation>F1, LUEGO U: SOLTAR EL PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/desk.py" />
+      <source>F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE</source>
+      <translation>F2: ELIJA UN PROGRAMA ANTES DE CAMBIAR EL SALTO DE BLOQUE</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5115,11 +5125,6 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>SWITCH BLOCK DELETE ONLY BETWEEN CYCLES</source>
-      <translation>CAMBIE EL SALTO DE BLOQUE SÓLO ENTRE CICLOS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
       <source>THE DRIVES ARE ALREADY ON</source>
       <translation>LOS SERVOS YA ESTÁN ENCENDIDOS</translation>
     </message>
@@ -5175,8 +5180,8 @@
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
-      <source>F2: TYPE A NAME   F1, F6: CHOOSE FROM THE LIST</source>
-      <translation>F2: ESCRIBIR UN NOMBRE   F1, F6: ELEGIR DE LA LISTA</translation>
+      <source>F2: TYPE A NAME   F1, THEN F6: CHOOSE FROM THE LIST</source>
+      <translation>F2: ESCRIBIR UN NOMBRE   F1 Y LUEGO F6: ELEGIR DE LA LISTA</translation>
     </message>
     <message>
       <location filename="app/desk/first_job.py" />
@@ -5365,11 +5370,6 @@
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
-      <source>F AS RAPID RATE</source>
-      <translation>F COMO AVANCE RÁPIDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/modal_rows.py" />
       <source>FEED</source>
       <translation>AVANCE</translation>
     </message>
@@ -5457,6 +5457,11 @@
       <location filename="app/desk/modal_rows.py" />
       <source>RAPID</source>
       <translation>RÁPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/modal_rows.py" />
+      <source>RAPID (FIRST F)</source>
+      <translation>RÁPIDO (PRIMERA F)</translation>
     </message>
     <message>
       <location filename="app/desk/modal_rows.py" />
@@ -6760,18 +6765,18 @@
     </message>
     <message>
       <location filename="app/editor/question_view.py" />
-      <source>BEFORE</source>
-      <translation>ANTERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/question_view.py" />
       <source>NEXT</source>
       <translation>SIGUE</translation>
     </message>
     <message>
       <location filename="app/editor/question_view.py" />
-      <source>PARTS</source>
-      <translation>PIEZAS</translation>
+      <source>PARTIAL</source>
+      <translation>PARCIAL</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>PREVIOUS</source>
+      <translation>PREVIA</translation>
     </message>
     <message>
       <location filename="app/editor/question_view.py" />
@@ -6890,8 +6895,8 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_function.py" />
-      <source>Press Enter to open the page. Shift+F6 opens it from any page, J from the main menu.</source>
-      <translation>Pulse Enter para abrir la página. Mayús+F6 la abre desde cualquier página, J desde el menú principal.</translation>
+      <source>Press Enter to open the JOBS page. Shift+F6 opens it from any page, and J opens it from the main menu.</source>
+      <translation>Pulse Enter para abrir la página TRABAJOS. Mayús+F6 la abre desde cualquier página, y J desde el menú principal.</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_function.py" />
@@ -6985,8 +6990,8 @@
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
-      <source>PROGRAM LOADED. SEE ITS ERRORS AND WARNINGS ON PAGE B</source>
-      <translation>PROGRAMA CARGADO. VEA SUS ERRORES Y AVISOS EN LA PÁGINA B</translation>
+      <source>PROGRAM LOADED. SEE ERRORS AND WARNINGS ON PART PAGE (B)</source>
+      <translation>PROGRAMA CARGADO. VEA ERRORES Y AVISOS EN LA PÁGINA PIEZA (B)</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -7905,8 +7910,8 @@
     </message>
     <message>
       <location filename="app/jog/pendant_jog.py" />
-      <source>ENABLING SWITCH NOT PRESSED. HOLD IT TO JOG WITH THE BUTTON</source>
-      <translation>INTERRUPTOR DE VALIDACIÓN SIN PULSAR. MANTÉNGALO PARA MOVER CON EL BOTÓN</translation>
+      <source>ENABLING SWITCH NOT PRESSED. HOLD IT AND PRESS JOG BUTTON</source>
+      <translation>INTERRUPTOR DE VALIDACIÓN SIN PULSAR. MANTÉNGALO Y PULSE EL BOTÓN</translation>
     </message>
     <message>
       <location filename="app/jog/pendant_jog.py" />
@@ -8165,8 +8170,8 @@
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
-      <source>DRIVES ARE OFF. F5: DRIVES ON. YOU CAN ALREADY TYPE A LINE</source>
-      <translation>SERVOS APAGADOS. F5: ENCENDER SERVOS. YA PUEDE ESCRIBIR UNA LÍNEA</translation>
+      <source>DRIVES ARE OFF. F5: DRIVES ON. YOU CAN STILL TYPE A LINE</source>
+      <translation>SERVOS APAGADOS. F5: ENCENDER SERVOS. AUN ASÍ PUEDE ESCRIBIR UNA LÍNEA</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
@@ -8295,8 +8300,8 @@
     </message>
     <message>
       <location filename="app/offsets/cell_table_view.py" />
-      <source>SET HERE</source>
-      <translation>AQUÍ</translation>
+      <source>SET POS.</source>
+      <translation>FIJAR POS.</translation>
     </message>
     <message>
       <location filename="app/offsets/cell_table_view.py" />
@@ -8345,8 +8350,8 @@
     </message>
     <message>
       <location filename="app/offsets/mill_touch.py" />
-      <source>CANNOT TOUCH OFF: THE MACHINE FILE OF THIS MILL HAS NO [kinematics]</source>
-      <translation>NO SE PUEDE PALPAR: EL ARCHIVO DE MÁQUINA DE ESTA FRESADORA NO TIENE [kinematics]</translation>
+      <source>CANNOT TOUCH OFF: THE MILL'S MACHINE FILE HAS NO [kinematics] TABLE</source>
+      <translation>NO SE PUEDE PALPAR: EL ARCHIVO DE MÁQUINA DE LA FRESADORA NO TIENE LA TABLA [kinematics]</translation>
     </message>
     <message>
       <location filename="app/offsets/mill_touch.py" />
@@ -8830,6 +8835,11 @@
     </message>
     <message>
       <location filename="app/offsets/part_effect.py" />
+      <source>BEFORE</source>
+      <translation>ANTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/part_effect.py" />
       <source>BORE</source>
       <translation>MANDRINADO</translation>
     </message>
@@ -8900,8 +8910,8 @@
     </message>
     <message>
       <location filename="app/offsets/presets.py" />
-      <source>PRESET {number} IS NOT SET. TOUCH IT OFF OR TYPE IT</source>
-      <translation>EL PRESET {number} ESTÁ SIN DEFINIR. PÁLPELO O ESCRÍBALO</translation>
+      <source>PRESET {number} IS NOT SET. TOUCH IT OFF OR TYPE ITS VALUES</source>
+      <translation>EL PRESET {number} ESTÁ SIN DEFINIR. PÁLPELO O ESCRIBA SUS VALORES</translation>
     </message>
     <message>
       <location filename="app/offsets/presets.py" />
@@ -8910,7 +8920,7 @@
     </message>
     <message>
       <location filename="app/offsets/presets.py" />
-      <source>Press F2 at two points of an edge to set ROT so that the edge has the typed angle</source>
+      <source>Press F2 at two points on an edge to set ROT so that the edge has the typed angle</source>
       <translation>Pulse F2 en dos puntos de una arista para fijar ROT de modo que la arista tenga el ángulo escrito</translation>
     </message>
     <message>
@@ -9100,8 +9110,8 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets.py" />
-      <source>X AND Z RELATIVE TO MASTER ARE READ-ONLY. F3: EDIT FROM HOME</source>
-      <translation>X Y Z RELATIVAS A LA MAESTRA NO SE EDITAN. F3: EDITAR DESDE LA REFERENCIA</translation>
+      <source>X, Z RELATIVE TO MASTER: READ-ONLY. F3: SHOW X, Z FROM HOME</source>
+      <translation>X, Z RELATIVAS A LA MAESTRA: SOLO LECTURA. F3: VER X, Z DESDE LA REFERENCIA</translation>
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
@@ -9545,8 +9555,8 @@
     </message>
     <message>
       <location filename="app/path/path_marks_view.py" />
-      <source>LARGEST DIFFERENCE {length} {unit}  ·  MARKED BY THE CIRCLE</source>
-      <translation>DIFERENCIA MÁXIMA {length} {unit}  ·  MARCADA POR EL CÍRCULO</translation>
+      <source>LARGEST DIFFERENCE {length} {unit}  ·  CIRCLED</source>
+      <translation>DIFERENCIA MÁXIMA {length} {unit}  ·  EN EL CÍRCULO</translation>
     </message>
     <message>
       <location filename="app/path/path_marks_view.py" />
@@ -9940,8 +9950,8 @@
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
-      <source>PLACE</source>
-      <translation>LUGAR</translation>
+      <source>PARTS</source>
+      <translation>PIEZAS</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -9967,6 +9977,11 @@
       <location filename="app/programs/program_list.py" />
       <source>SORT</source>
       <translation>ORDENAR</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list.py" />
+      <source>TYPE</source>
+      <translation>TIPO</translation>
     </message>
     <message>
       <location filename="app/programs/program_list.py" />
@@ -10200,11 +10215,6 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
-      <source>BY</source>
-      <translation>POR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
       <source>CHANGE</source>
       <translation>CAMBIAR</translation>
     </message>
@@ -10300,6 +10310,11 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
+      <source>OFFSET</source>
+      <translation>CORRECTOR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
       <source>PARTS PER SAMPLE</source>
       <translation>PIEZAS POR MUESTRA</translation>
     </message>
@@ -10355,6 +10370,11 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
+      <source>feature {row} saved</source>
+      <translation>característica {row} guardada</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
       <source>measured features of {program}: {change}</source>
       <translation>características medidas de {program}: {change}</translation>
     </message>
@@ -10372,11 +10392,6 @@
       <location filename="app/quality/features_section.py" />
       <source>{name} SAVED</source>
       <translation>{name} GUARDADA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>{row} entered</source>
-      <translation>{row} introducido</translation>
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
@@ -10420,11 +10435,6 @@
     </message>
     <message>
       <location filename="app/quality/parts_function.py" />
-      <source>DUE</source>
-      <translation>PENDIENTE</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_function.py" />
       <source>ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST</source>
       <translation>ENTER: ABRIR PIEZAS MEDIDAS   ESC: VOLVER A LA LISTA</translation>
     </message>
@@ -10432,6 +10442,11 @@
       <location filename="app/quality/parts_function.py" />
       <source>MEASURED PARTS</source>
       <translation>PIEZAS MEDIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/parts_function.py" />
+      <source>MEASUREMENT DUE</source>
+      <translation>MEDICIÓN PENDIENTE</translation>
     </message>
     <message>
       <location filename="app/quality/parts_function.py" />
@@ -10700,6 +10715,11 @@
     </message>
     <message>
       <location filename="app/quality/shift_function.py" />
+      <source>PLACE</source>
+      <translation>LUGAR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
       <source>REPORT IS NOT READY YET. WAIT A MOMENT</source>
       <translation>EL INFORME AÚN NO ESTÁ LISTO. ESPERE UN MOMENTO</translation>
     </message>
@@ -10782,11 +10802,6 @@
       <location filename="app/quality/shift_page.py" />
       <source>OCCURRENCES</source>
       <translation>VECES</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>OFFSET</source>
-      <translation>CORRECTOR</translation>
     </message>
     <message>
       <location filename="app/quality/shift_page.py" />
@@ -10900,11 +10915,6 @@
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
-      <source>LEFT</source>
-      <translation>FALTA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
       <source>MINUTES</source>
       <translation>MINUTOS</translation>
     </message>
@@ -10922,6 +10932,11 @@
       <location filename="app/quality/tool_life_section.py" />
       <source>Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: no new part starts once the tool life is used up.</source>
       <translation>Solo el tiempo en avance cuenta para los minutos de vida. Escriba 0 para no tener límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/quality/tool_life_section.py" />
+      <source>REMAINING</source>
+      <translation>RESTANTE</translation>
     </message>
     <message>
       <location filename="app/quality/tool_life_section.py" />
@@ -11215,8 +11230,8 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
-      <source>ENTRY</source>
-      <translation>ENTRADA</translation>
+      <source>ENTRY ANGLE</source>
+      <translation>ÁNG. DE ENTRADA</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
@@ -11335,6 +11350,11 @@
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
+      <source>a path needs two linear axes, but the record contains fewer than two</source>
+      <translation>una trayectoria necesita dos ejes lineales, pero el registro contiene menos de dos</translation>
+    </message>
+    <message>
+      <location filename="app/scope/analyses.py" />
       <source>error magnified {times}x; press Z to change the scale</source>
       <translation>error ampliado {times}x; pulse Z para cambiar la escala</translation>
     </message>
@@ -11367,11 +11387,6 @@
       <location filename="app/scope/analyses.py" />
       <source>spindle turns</source>
       <translation>vueltas del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/scope/analyses.py" />
-      <source>the record has fewer than two linear axes, so the record does not contain a path</source>
-      <translation>el registro tiene menos de dos ejes lineales, así que no contiene ninguna trayectoria</translation>
     </message>
     <message>
       <location filename="app/scope/analyses.py" />
@@ -11410,8 +11425,8 @@
     </message>
     <message>
       <location filename="app/scope/analyses_view.py" />
-      <source>ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY: NEW SAMPLES</source>
-      <translation>FLECHAS: ELEGIR FILA   Z: AMPLIAR   MISMA TECLA F: NUEVAS</translation>
+      <source>ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE</source>
+      <translation>FLECHAS: ELEGIR FILA   Z: AMPLIAR   MISMA TECLA F: ACTUALIZAR</translation>
     </message>
     <message>
       <location filename="app/scope/analyses_view.py" />
@@ -11445,8 +11460,8 @@
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
-      <source>For a good result, jog a single step on the Jog page; F9 opens the drive tests.</source>
-      <translation>Para un buen resultado, mueva un solo paso en la página Manual; F9 abre las pruebas de accionamiento.</translation>
+      <source>For a good result, jog a single step on the Jog page, or press F9 on this page to open the drive tests.</source>
+      <translation>Para un buen resultado, mueva un solo paso en la página Manual, o pulse F9 en esta página para abrir las pruebas de accionamiento.</translation>
     </message>
     <message>
       <location filename="app/scope/axis_response.py" />
@@ -11555,13 +11570,18 @@
     </message>
     <message>
       <location filename="app/scope/drive_test_figures.py" />
-      <source>OUT</source>
-      <translation>Y SUELTE</translation>
+      <source>OUTBOUND</source>
+      <translation>IDA</translation>
     </message>
     <message>
       <location filename="app/scope/drive_test_figures.py" />
       <source>PHASE LAG</source>
       <translation>DESFASE</translation>
+    </message>
+    <message>
+      <location filename="app/scope/drive_test_figures.py" />
+      <source>RETURN</source>
+      <translation>VUELTA</translation>
     </message>
     <message>
       <location filename="app/scope/drive_test_figures.py" />
@@ -11890,6 +11910,11 @@
     </message>
     <message>
       <location filename="app/scope/signals.py" />
+      <source>CYCLE DELAY</source>
+      <translation>RETRASO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
       <source>Commanded spindle speed</source>
       <translation>Velocidad de husillo mandada</translation>
     </message>
@@ -11907,11 +11932,6 @@
       <location filename="app/scope/signals.py" />
       <source>INPUTS AND OUTPUTS</source>
       <translation>ENTRADAS Y SALIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/scope/signals.py" />
-      <source>LATENESS</source>
-      <translation>RETRASO</translation>
     </message>
     <message>
       <location filename="app/scope/signals.py" />
@@ -12450,6 +12470,11 @@
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
+      <source>OUT</source>
+      <translation>Y SUELTE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
       <source>PAUSE</source>
       <translation>PAUSA</translation>
     </message>
@@ -12502,6 +12527,11 @@
       <location filename="app/screen/window_frame.py" />
       <source>LAST</source>
       <translation>ÚLTIMO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>LEFT</source>
+      <translation>FALTA</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
@@ -12560,8 +12590,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
-      <source>PRESS ENTER FIRST. ONLY LOOP OR SUBROUTINE LINES REPEAT</source>
-      <translation>PULSE PRIMERO ENTER. SÓLO SE REPITEN LÍNEAS DE BUCLES O SUBRUTINAS</translation>
+      <source>NO REPETITIONS FOUND FOR THIS LINE. ENTER: REBUILD STATE</source>
+      <translation>NO SE HALLARON REPETICIONES DE ESTA LÍNEA. ENTER: RECONSTRUIR EL ESTADO</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -12570,8 +12600,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
-      <source>RESTART RETRACTS TOOL ALONG ITS AXIS FIRST. OR JOG TOOL OUT</source>
-      <translation>EL REARRANQUE RETIRA ANTES LA HERRAMIENTA POR SU EJE. O SÁQUELA EN JOG</translation>
+      <source>RESTARTING RETRACTS TOOL ALONG ITS AXIS FIRST; OR JOG IT OUT</source>
+      <translation>EL REARRANQUE RETIRA ANTES LA HERRAMIENTA POR SU EJE; O SÁQUELA EN JOG</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -12610,8 +12640,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
-      <source>TYPE A TEXT FIRST. TO FIND A NUMBER, TYPE " BEFORE IT</source>
-      <translation>ESCRIBA PRIMERO UN TEXTO. PARA BUSCAR UN NÚMERO, ANTEPONGA "</translation>
+      <source>TYPE SEARCH TEXT FIRST. TO FIND A NUMBER, TYPE " BEFORE IT</source>
+      <translation>ESCRIBA PRIMERO EL TEXTO A BUSCAR. PARA BUSCAR UN NÚMERO, ANTEPONGA "</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -12625,8 +12655,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
-      <source>C HAS TURNED SINCE T{tool} ENTERED THE PART: TURN THE SPINDLE BY HAND UNTIL THE TOOL IS FREE, THEN JOG T{tool} OUT</source>
-      <translation>C GIRÓ DESDE QUE T{tool} ENTRÓ EN LA PIEZA: GIRE EL HUSILLO A MANO HASTA LIBERAR LA HERRAMIENTA Y LUEGO SAQUE T{tool} EN JOG</translation>
+      <source>C AXIS HAS TURNED SINCE T{tool} ENTERED THE PART: TURN THE SPINDLE BY HAND UNTIL THE TOOL IS FREE, THEN JOG T{tool} OUT</source>
+      <translation>EL EJE C GIRÓ DESDE QUE T{tool} ENTRÓ EN LA PIEZA: GIRE EL HUSILLO A MANO HASTA LIBERAR LA HERRAMIENTA Y LUEGO SAQUE T{tool} EN JOG</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
@@ -12675,8 +12705,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
-      <source>SPINDLE LOCKED AS C AXIS AND TURNED TO ITS ANGLE</source>
-      <translation>HUSILLO BLOQUEADO COMO EJE C Y GIRADO A SU ÁNGULO</translation>
+      <source>SPINDLE LOCKED AS C AXIS AND TURNED INTO POSITION</source>
+      <translation>HUSILLO BLOQUEADO COMO EJE C Y GIRADO A SU POSICIÓN</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
@@ -12687,6 +12717,11 @@
       <location filename="app/searchto/searchto_plan.py" />
       <source>SPINDLE REVERSE</source>
       <translation>HUSILLO REVERSA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
+      <source>TAP T{tool} IS STILL IN THE THREAD: TURN THE SPINDLE BY HAND TO BACK IT OUT, AND LET Z FOLLOW</source>
+      <translation>EL MACHO T{tool} SIGUE EN LA ROSCA: GIRE EL HUSILLO A MANO PARA SACARLO Y DEJE QUE Z LO SIGA</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
@@ -12702,11 +12737,6 @@
       <location filename="app/searchto/searchto_plan.py" />
       <source>T{tool} IN THE PART: JOG {x} FIRST, NOT Z, UNTIL IT IS CLEAR</source>
       <translation>T{tool} EN LA PIEZA: MUEVA PRIMERO {x} EN JOG, NO Z, HASTA LIBRARLA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_plan.py" />
-      <source>T{tool} IS A TAP IN ITS THREAD: TURN THE SPINDLE BY HAND TO BACK IT OUT, AND LET Z FOLLOW</source>
-      <translation>T{tool} ES UN MACHO EN SU ROSCA: GIRE EL HUSILLO A MANO PARA SACARLO Y DEJE QUE Z LO SIGA</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />
@@ -12795,8 +12825,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
-      <source>ENTER OR TAP: REBUILD STATE OF LINE {line}</source>
-      <translation>ENTER O TOQUE: RECONSTRUIR EL ESTADO DE LA LÍNEA {line}</translation>
+      <source>ENTER OR TAP: REBUILD STATE AT LINE {line}</source>
+      <translation>ENTER O TOQUE: RECONSTRUIR EL ESTADO EN LA LÍNEA {line}</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
@@ -12822,11 +12852,6 @@
       <location filename="app/searchto/searchto_view.py" />
       <source>PATH: {legs}</source>
       <translation>TRAYECTORIA: {legs}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>PREVIOUS</source>
-      <translation>PREVIA</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
@@ -13045,8 +13070,8 @@
     </message>
     <message>
       <location filename="app/shapes/drawing_plan.py" />
-      <source>{drawing} is {wrong}, which is too large for this machine. With {wrong2} as its unit, the drawing fits: choose {wrong3}.</source>
-      <translation>{drawing} mide {wrong}, demasiado para esta máquina. Con la unidad {wrong2}, el dibujo cabe: elija {wrong3}.</translation>
+      <source>{drawing} is {wrong}, which is too large for this machine. The drawing fits if its unit is {wrong2}: choose {wrong3}.</source>
+      <translation>{drawing} mide {wrong}, demasiado para esta máquina. El dibujo cabe si su unidad es {wrong2}: elija {wrong3}.</translation>
     </message>
     <message>
       <location filename="app/shapes/drawing_plan.py" />
@@ -13082,6 +13107,11 @@
       <location filename="app/shapes/shapes_model.py" />
       <source>F6: REPLACE {count} EDITED LINES STARTING AT LINE {line}   ESC: KEEP</source>
       <translation>F6: SUSTITUIR {count} LÍNEAS EDITADAS A PARTIR DE LA LÍNEA {line}   ESC: CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_model.py" />
+      <source>FIRST PRESS N AND FILL IN THE PROGRAM HEADER (HEAD)</source>
+      <translation>PRIMERO PULSE N Y RELLENE LA CABECERA DEL PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
@@ -13147,11 +13177,6 @@
       <location filename="app/shapes/shapes_model.py" />
       <source>TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE</source>
       <translation>ESCRIBA UN NÚMERO O EXPRESIÓN   ENTER: CAMPO SIGUIENTE   F2: ESCRIBIR</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/shapes_model.py" />
-      <source>WRITE THE PROGRAM HEAD FIRST. PRESS N AND FILL IN THE HEAD</source>
-      <translation>ESCRIBA ANTES LA CABECERA DEL PROGRAMA. PULSE N Y RELLÉNELA</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
@@ -13470,8 +13495,8 @@
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
-      <source>F3: ADD A USER AND TURN LEVELS ON   ESC: BACK TO THE LIST</source>
-      <translation>F3: AÑADIR UN USUARIO Y ACTIVAR LOS NIVELES   ESC: VOLVER A LA LISTA</translation>
+      <source>F3: ADD USER, TURN ACCESS LEVELS ON   ESC: BACK TO THE LIST</source>
+      <translation>F3: AÑADIR UN USUARIO, ACTIVAR LOS NIVELES DE ACCESO   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
@@ -13575,11 +13600,6 @@
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
-      <source>A restore saves a copy of the replaced data next to the new data.</source>
-      <translation>La restauración guarda una copia de los datos reemplazados junto a los nuevos.</translation>
-    </message>
-    <message>
-      <location filename="app/special/backup_and_restore.py" />
       <source>ACTION ON ENTER</source>
       <translation>ACCIÓN CON ENTER</translation>
     </message>
@@ -13672,6 +13692,11 @@
       <location filename="app/special/backup_and_restore.py" />
       <source>WHEN</source>
       <translation>CUÁNDO</translation>
+    </message>
+    <message>
+      <location filename="app/special/backup_and_restore.py" />
+      <source>When a backup is restored, a copy of the replaced data is saved in the same folder as the new data.</source>
+      <translation>Al restaurar un respaldo, se guarda una copia de los datos reemplazados en la misma carpeta que los nuevos.</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -13880,11 +13905,6 @@
     </message>
     <message>
       <location filename="app/special/lamps_and_sound.py" />
-      <source>A RUNNING CYCLE IS SHOWN ONLY BY A LAMP. IT HAS NO SOUND</source>
-      <translation>EL CICLO EN MARCHA SE INDICA SÓLO CON LÁMPARA. NO TIENE SONIDO</translation>
-    </message>
-    <message>
-      <location filename="app/special/lamps_and_sound.py" />
       <source>AMBER</source>
       <translation>ÁMBAR</translation>
     </message>
@@ -13927,6 +13947,11 @@
       <location filename="app/special/lamps_and_sound.py" />
       <source>LOUDER</source>
       <translation>MÁS</translation>
+    </message>
+    <message>
+      <location filename="app/special/lamps_and_sound.py" />
+      <source>NO SOUND FOR A RUNNING CYCLE: ONLY THE LAMP SHOWS IT</source>
+      <translation>SIN SONIDO CON EL CICLO EN MARCHA: SOLO LO INDICA LA LÁMPARA</translation>
     </message>
     <message>
       <location filename="app/special/lamps_and_sound.py" />
@@ -14140,8 +14165,8 @@
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
-      <source>Cycle Repeat turns off during the last part of the target count. Enter 0 for no part target.</source>
-      <translation>Repetir ciclo se apaga durante la última pieza de la meta. Escriba 0 para no tener meta de piezas.</translation>
+      <source>Cycle Repeat turns off during the cycle that reaches the part target. Enter 0 for no part target.</source>
+      <translation>Repetir ciclo se apaga durante el ciclo que alcanza la meta de piezas. Escriba 0 para no tener meta de piezas.</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -14175,13 +14200,13 @@
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
-      <source>REJECTED: {count} PARTS ALREADY MADE. F4: RESET COUNT</source>
-      <translation>RECHAZADO: YA SE HICIERON {count} PIEZAS. F4: PONER LA CUENTA EN CERO</translation>
+      <source>STOP AT HOW MANY PARTS?</source>
+      <translation>¿PARAR EN CUÁNTAS PIEZAS?</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
-      <source>STOP AT HOW MANY PARTS?</source>
-      <translation>¿PARAR EN CUÁNTAS PIEZAS?</translation>
+      <source>TARGET TOO LOW: {count} PARTS ALREADY MADE. F4: RESET COUNT</source>
+      <translation>META DEMASIADO BAJA: YA SE HICIERON {count} PIEZAS. F4: PONER LA CUENTA EN CERO</translation>
     </message>
     <message>
       <location filename="app/special/parts_counter.py" />
@@ -15690,8 +15715,8 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>the 7I76E has lost its field I/O</source>
-      <translation>la 7I76E ha perdido sus E/S de campo</translation>
+      <source>the 7I76E has lost the link to its field I/O</source>
+      <translation>la 7I76E perdió la comunicación con sus E/S de campo</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -15865,8 +15890,8 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>Find the cause. Read the list of outputs that will be switched again, then press Cycle Start. Measure this part, because it is not counted</source>
-      <translation>Busque la causa. Lea la lista de salidas que se conmutarán otra vez, luego pulse arranque de ciclo. Mida esta pieza, porque no se cuenta</translation>
+      <source>Find the cause. Read the list of outputs that will be restored, then press Cycle Start. Measure this part, because it is not counted</source>
+      <translation>Busque la causa. Lea la lista de salidas que se restablecerán, luego pulse arranque de ciclo. Mida esta pieza, porque no se cuenta</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -15970,6 +15995,11 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>the axes were not at the start position for which the program was proved</source>
+      <translation>los ejes no estaban en la posición inicial para la que se comprobó el programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>the computer is overloaded because another program, a backup or an update is using the processor</source>
       <translation>la computadora está sobrecargada porque otro programa, un respaldo o una actualización usa el procesador</translation>
     </message>
@@ -15997,11 +16027,6 @@
       <location filename="core/alarms/control_alarms.py" />
       <source>the program ends without M30 or M02</source>
       <translation>el programa termina sin M30 ni M02</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/control_alarms.py" />
-      <source>the program was not started from the position for which it was proved</source>
-      <translation>el programa no arrancó desde la posición para la que se comprobó</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16295,7 +16320,7 @@
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
-      <source>spindle switch off</source>
+      <source>spindle switch at OFF</source>
       <translation>interruptor del husillo en OFF</translation>
     </message>
     <message>
@@ -16355,8 +16380,8 @@
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
-      <source>the program starts the spindle before M12</source>
-      <translation>el programa arranca el husillo antes de M12</translation>
+      <source>the program starts the spindle before the collet is closed (M12)</source>
+      <translation>el programa arranca el husillo antes de cerrar la pinza (M12)</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -16840,8 +16865,8 @@
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
-      <source>elsewhere, the simulated part matches the drawing to within {within} {unit}</source>
-      <translation>en el resto, la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
+      <source>except at the listed deviations, the simulated part matches the drawing to within {within} {unit}</source>
+      <translation>salvo en las desviaciones indicadas, la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
     </message>
     <message>
       <location filename="core/drawings/profile_words.py" />
@@ -17650,8 +17675,8 @@
     </message>
     <message>
       <location filename="core/executor/read_ahead.py" />
-      <source>line {line} moves {axis} to a position {distance} {unit} from home</source>
-      <translation>la línea {line} lleva {axis} a una posición a {distance} {unit} de la referencia</translation>
+      <source>line {line} moves {axis} beyond its travel, to {distance} {unit} from home</source>
+      <translation>la línea {line} lleva {axis} más allá de su recorrido, a {distance} {unit} de la referencia</translation>
     </message>
     <message>
       <location filename="core/executor/read_ahead.py" />
@@ -17795,8 +17820,8 @@
     </message>
     <message>
       <location filename="core/executor/standstill.py" />
-      <source>SPOS or M19 would turn the spindle to {angle} degrees</source>
-      <translation>SPOS o M19 giraría el husillo a {angle} grados</translation>
+      <source>SPOS or M19 cannot turn the spindle to {angle} degrees while the collet is open</source>
+      <translation>SPOS o M19 no puede girar el husillo a {angle} grados con la pinza abierta</translation>
     </message>
     <message>
       <location filename="core/executor/standstill.py" />
@@ -18180,8 +18205,8 @@
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
-      <source>the line itself is too short</source>
-      <translation>la línea misma es demasiado corta</translation>
+      <source>the current line is too short</source>
+      <translation>la línea actual es demasiado corta</translation>
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
@@ -18440,6 +18465,11 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/contour_cycles.py" />
+      <source>Contour {figure} does not contain any elements.</source>
+      <translation>El contorno {figure} no contiene elementos.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_cycles.py" />
       <source>Cycle 25 mills only the first contour listed in cycle 14.</source>
       <translation>El ciclo 25 fresa sólo el primer contorno indicado en el ciclo 14.</translation>
     </message>
@@ -18490,11 +18520,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/contour_cycles.py" />
-      <source>The contour {figure} does not contain any elements.</source>
-      <translation>El contorno {figure} no contiene elementos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/contour_cycles.py" />
       <source>The tool radius is not defined.</source>
       <translation>El radio de la herramienta no está definido.</translation>
     </message>
@@ -18540,13 +18565,18 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/contour_figures.py" />
+      <source>Contour {figure} ends {gap} mm from its start.</source>
+      <translation>El contorno {figure} termina a {gap} mm de su inicio.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/contour_figures.py" />
       <source>Correct the contours.</source>
       <translation>Corrija los contornos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/contour_figures.py" />
-      <source>Correct these entries.</source>
-      <translation>Corrija estos datos.</translation>
+      <source>Correct the entries named in the message.</source>
+      <translation>Corrija los datos que indica el mensaje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/contour_figures.py" />
@@ -18560,13 +18590,13 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/contour_figures.py" />
-      <source>Program the outer contour clockwise with RR.</source>
-      <translation>Programe el contorno exterior en sentido horario con RR.</translation>
+      <source>No machining side is programmed for contour {figure}.</source>
+      <translation>No hay ningún lado de mecanizado programado para el contorno {figure}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/contour_figures.py" />
-      <source>The contour {figure} ends {gap} mm from its start.</source>
-      <translation>El contorno {figure} termina a {gap} mm de su inicio.</translation>
+      <source>Program the outer contour clockwise with RR.</source>
+      <translation>Programe el contorno exterior en sentido horario con RR.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/contour_figures.py" />
@@ -18577,11 +18607,6 @@
       <location filename="core/interpreter/klartext/contour_figures.py" />
       <source>The contours do not enclose an area because the islands cover the pockets.</source>
       <translation>Los contornos no encierran ninguna superficie porque las islas cubren las cajeras.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/contour_figures.py" />
-      <source>The side on which contour {figure} is milled is not programmed.</source>
-      <translation>No está programado a qué lado del contorno {figure} se fresa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/contour_figures.py" />
@@ -19840,8 +19865,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
-      <source>The datum was shifted in the tilted coordinate system of line {line}.</source>
-      <translation>El origen se desplazó en el sistema de coordenadas inclinado de la línea {line}.</translation>
+      <source>The datum was shifted in the tilted coordinate system that is defined on line {line}.</source>
+      <translation>El origen se desplazó en el sistema de coordenadas inclinado que se define en la línea {line}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/plane_functions.py" />
@@ -20305,6 +20330,11 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
+      <source>G73 is active, so X is a radius. If the X words are diameters, write G72 before them.</source>
+      <translation>G73 está activo, así que X es un radio. Si las palabras X son diámetros, escriba G72 antes de ellas.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>On this line, I and K are distances from the start point of the arc.</source>
       <translation>En esta línea, I y K son distancias desde el punto de inicio del arco.</translation>
     </message>
@@ -20345,11 +20375,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/arc_moves.py" />
-      <source>X is a radius here (G73). If the X words are diameters, write G72 before them.</source>
-      <translation>X es un radio aquí (G73). Si las palabras X son diámetros, escriba G72 antes de ellas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/arc_moves.py" />
       <source>{letter} is missing; with G90 and G73 active, I and K are the coordinates of the arc center.</source>
       <translation>Falta {letter}; con G90 y G73 activos, I y K son las coordenadas del centro del arco.</translation>
     </message>
@@ -20360,8 +20385,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/c_axis.py" />
-      <source>C turns {turn} degrees, but the move at this feed needs {needed} degrees.</source>
-      <translation>C gira {turn} grados, pero el movimiento a este avance necesita {needed} grados.</translation>
+      <source>C is programmed to turn {turn} degrees, but at this feed the move needs {needed} degrees of C rotation.</source>
+      <translation>C está programado para girar {turn} grados, pero a este avance el movimiento necesita {needed} grados de giro de C.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/c_axis.py" />
@@ -20545,7 +20570,7 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycle_contour.py" />
-      <source>The contour changes modes or coordinates; their previous values are restored after the cycle.</source>
+      <source>The contour changes modes or coordinates; the previous ones are restored after the cycle.</source>
       <translation>El contorno cambia modos o coordenadas; después del ciclo se restablecen los valores anteriores.</translation>
     </message>
     <message>
@@ -21175,8 +21200,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
-      <source>Save the file with the line endings of this machine.</source>
-      <translation>Guarde el archivo con los finales de línea de esta máquina.</translation>
+      <source>Save the file with the line endings that this machine uses.</source>
+      <translation>Guarde el archivo con los finales de línea que usa esta máquina.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_program.py" />
@@ -21255,8 +21280,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>Keep only one of these words.</source>
-      <translation>Deje sólo una de estas palabras.</translation>
+      <source>Keep only one of the conflicting words.</source>
+      <translation>Deje sólo una de las palabras en conflicto.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
@@ -21325,8 +21350,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
-      <source>{word} has no meaning here. {habit}</source>
-      <translation>{word} no significa nada aquí. {habit}</translation>
+      <source>{word} has no meaning on this line. {habit}</source>
+      <translation>{word} no significa nada en esta línea. {habit}</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/omniturn_statement.py" />
@@ -21395,8 +21420,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/plane_switching.py" />
-      <source>Z{z} is past the spindle centerline; Z is the diameter at the tool tip.</source>
-      <translation>Z{z} está más allá del eje de giro del husillo; Z es el diámetro en la punta de la herramienta.</translation>
+      <source>Z{z} is past the spindle centerline; with (~PLZC), Z is the diameter at the tool tip.</source>
+      <translation>Z{z} está más allá del eje de giro del husillo; con (~PLZC), Z es el diámetro en la punta de la herramienta.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/program_size.py" />
@@ -21435,8 +21460,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>In {letter}, the start point is between the ends of the contour instead of beyond both ends.</source>
-      <translation>En {letter}, el punto de inicio está entre los extremos del contorno y no más allá de ambos.</translation>
+      <source>In {letter}, the start point is between the two ends of the contour, but it must be outside them.</source>
+      <translation>En {letter}, el punto inicial está entre los dos extremos del contorno, pero debe estar fuera de ellos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
@@ -21450,8 +21475,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>Move the start point beyond both ends of the contour.</source>
-      <translation>Ponga el punto de inicio más allá de ambos extremos del contorno.</translation>
+      <source>Move the start point so that both ends of the contour are on the same side of it, in X and in Z.</source>
+      <translation>Ponga el punto inicial de modo que ambos extremos del contorno queden al mismo lado, en X y en Z.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
@@ -21490,8 +21515,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
-      <source>The contour goes deeper right after its first point; begin the contour with a move up the face from the lowest X.</source>
-      <translation>El contorno baja justo después de su primer punto; empiece el contorno con un movimiento que suba por la cara desde la X más baja.</translation>
+      <source>The contour goes deeper immediately after its first point; start the contour at the lowest X and move up the face first.</source>
+      <translation>El contorno baja justo después de su primer punto; empiece el contorno en la X más baja y suba primero por la cara.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/roughing_cycles.py" />
@@ -21605,11 +21630,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>K is missing, but the line has {feed}.</source>
-      <translation>Falta K, pero la línea tiene {feed}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>Position the tool at the depth of the first pass before this line.</source>
       <translation>Posicione la herramienta a la profundidad de la primera pasada antes de esta línea.</translation>
     </message>
@@ -21627,6 +21647,11 @@
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
       <source>The acceleration distance is {run_up}, but the Z axis needs {needed} to reach the threading feed rate.</source>
       <translation>La distancia de aceleración es {run_up}, pero el eje Z necesita {needed} para alcanzar el avance de roscado.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/threading_cycles.py" />
+      <source>The lead K is missing, but the line contains {feed}.</source>
+      <translation>Falta el paso K, pero la línea contiene {feed}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
@@ -21680,11 +21705,6 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>G92 presets the position here and does not cut a thread. Threads are cut with G33.</source>
-      <translation>G92 preselecciona aquí la posición y no corta ninguna rosca. Las roscas se cortan con G33.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>G96 is active at a tool change, so the spindle drive must follow every sudden change in X.</source>
       <translation>G96 está activo en un cambio de herramienta, así que el accionamiento del husillo tiene que seguir cada cambio brusco de X.</translation>
     </message>
@@ -21695,13 +21715,18 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
+      <source>On this control, G92 presets the position and does not cut a thread. Threads are cut with G33.</source>
+      <translation>En este control, G92 preselecciona la posición y no corta ninguna rosca. Las roscas se cortan con G33.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
       <source>Set the tool offsets.</source>
       <translation>Ponga los correctores de las herramientas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
-      <source>Write G10 before a T.</source>
-      <translation>Escriba G10 antes de una T.</translation>
+      <source>Write G10 before a T word.</source>
+      <translation>Escriba G10 antes de una palabra T.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/tools_and_offsets.py" />
@@ -21885,13 +21910,13 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
-      <source>The tap is in the thread at the start of that line.</source>
-      <translation>El macho está dentro de la rosca al inicio de esa línea.</translation>
+      <source>The tap is in the thread at the start of the requested line.</source>
+      <translation>El macho está dentro de la rosca al inicio de la línea solicitada.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
-      <source>The threading tool is in the thread at the start of that line.</source>
-      <translation>La herramienta de roscar está dentro de la rosca al inicio de esa línea.</translation>
+      <source>The threading tool is in the thread at the start of the requested line.</source>
+      <translation>La herramienta de roscar está dentro de la rosca al inicio de la línea solicitada.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
@@ -22215,8 +22240,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
-      <source>Correct the values so that RTP, RFP and the depth follow each other in this order along the drilling direction.</source>
-      <translation>Corrija los valores para que RTP, RFP y la profundidad se sucedan en este orden en la dirección de taladrado.</translation>
+      <source>Correct RTP, RFP and the depth so that they follow in this order along the drilling direction.</source>
+      <translation>Corrija RTP, RFP y la profundidad para que se sucedan en este orden en la dirección de taladrado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
@@ -22800,8 +22825,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
-      <source>{name} has no effect here: {why}.</source>
-      <translation>{name} no tiene efecto aquí: {why}.</translation>
+      <source>{name} has no effect because {why}.</source>
+      <translation>{name} no tiene efecto porque {why}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/modes_and_offsets.py" />
@@ -22990,8 +23015,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
-      <source>G{code} needs a tool with a cutting edge.</source>
-      <translation>G{code} necesita una herramienta con filo.</translation>
+      <source>G{code} needs an active tool with a cutting edge (D number).</source>
+      <translation>G{code} necesita una herramienta activa con filo (número D).</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/radius_compensation.py" />
@@ -23100,8 +23125,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
-      <source>AR has neither an end point nor I and K.</source>
-      <translation>AR no tiene ni punto final ni I y K.</translation>
+      <source>AR is programmed without an end point and without I and K.</source>
+      <translation>AR está programado sin punto final y sin I y K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
@@ -23110,8 +23135,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
-      <source>Add one of these values.</source>
-      <translation>Agregue uno de estos valores.</translation>
+      <source>Add one of the missing values.</source>
+      <translation>Agregue uno de los valores que faltan.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
@@ -23140,8 +23165,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
-      <source>Keep only two of these values.</source>
-      <translation>Deje sólo dos de estos valores.</translation>
+      <source>Keep only two of the three: AR, the end point and the center.</source>
+      <translation>Deje sólo dos de los tres: AR, el punto final y el centro.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_arcs.py" />
@@ -23715,8 +23740,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
-      <source>Enter 0, or enter 4 after M3 or 3 after M4.</source>
-      <translation>Indique 0, o indique 4 tras M3 o 3 tras M4.</translation>
+      <source>Enter 0, or the reverse direction: 4 after M3, or 3 after M4.</source>
+      <translation>Indique 0 o el sentido inverso: 4 tras M3, o 3 tras M4.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
@@ -23750,6 +23775,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
+      <source>No spindle speed is programmed for {code}.</source>
+      <translation>No hay velocidad de husillo programada para {code}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
       <source>Write G97 with S and M3 or M4 before this block.</source>
       <translation>Escriba G97 con S y M3 o M4 antes de este bloque.</translation>
     </message>
@@ -23777,11 +23807,6 @@
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
       <source>{code} does not move along Z.</source>
       <translation>{code} no se mueve a lo largo de Z.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
-      <source>{code} has no spindle speed.</source>
-      <translation>{code} no tiene velocidad de husillo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
@@ -23845,8 +23870,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_chain_cycle.py" />
-      <source>{name} does not continue in the same Z direction</source>
-      <translation>{name} no continúa en la misma dirección Z</translation>
+      <source>{name} does not continue the thread in the same Z direction</source>
+      <translation>{name} no continúa la rosca en la misma dirección Z</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
@@ -24050,8 +24075,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
-      <source>Enter the tool as a whole number.</source>
-      <translation>Indique la herramienta como número entero.</translation>
+      <source>Enter the tool number as a whole number.</source>
+      <translation>Indique el número de herramienta como número entero.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tools_and_edges.py" />
@@ -24165,7 +24190,7 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformations.py" />
-      <source>{word} selects a data set other than the first, or groove walls, but only one data set without groove walls is available.</source>
+      <source>{word} selects groove walls or a data set other than the first, but only one data set, without groove walls, is available.</source>
       <translation>{word} selecciona un juego de datos distinto del primero, o paredes de ranura, pero sólo hay un juego de datos sin paredes de ranura.</translation>
     </message>
     <message>
@@ -24225,8 +24250,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformed_plane.py" />
-      <source>{word} is not an arc center in G{plane}.</source>
-      <translation>{word} no es un centro de arco en G{plane}.</translation>
+      <source>{word} is not an arc center word in G{plane}.</source>
+      <translation>{word} no es una palabra de centro de arco en G{plane}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/transformed_plane.py" />
@@ -24260,8 +24285,8 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
-      <source>Write "A", "B", "E" or "F"; program C and D with CYCLE96, and free form T block by block.</source>
-      <translation>Escriba "A", "B", "E" o "F"; programe C y D con CYCLE96, y la forma libre T bloque a bloque.</translation>
+      <source>Write form "A", "B", "E" or "F". For forms C and D, use CYCLE96. Program a free form (T) block by block.</source>
+      <translation>Escriba la forma "A", "B", "E" o "F". Para las formas C y D use CYCLE96. Programe la forma libre (T) bloque a bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/undercut_cycles.py" />
@@ -24375,13 +24400,13 @@
     </message>
     <message>
       <location filename="core/interpreter/turn_at_axis.py" />
-      <source>The path passes through the spindle centerline, where C turns by {angle} degrees.</source>
-      <translation>La trayectoria pasa por el eje del husillo, donde C gira {angle} grados.</translation>
+      <source>At the spindle centerline, the tool does not move while C turns; route the path around the centerline.</source>
+      <translation>En el eje del husillo, la herramienta no se mueve mientras gira C; lleve la trayectoria por un lado del eje.</translation>
     </message>
     <message>
       <location filename="core/interpreter/turn_at_axis.py" />
-      <source>The tool does not move while C turns; route the path around the spindle centerline.</source>
-      <translation>La herramienta no se mueve mientras gira C; lleve la trayectoria por un lado del eje del husillo.</translation>
+      <source>The path passes through the spindle centerline, where C turns by {angle} degrees.</source>
+      <translation>La trayectoria pasa por el eje del husillo, donde C gira {angle} grados.</translation>
     </message>
     <message>
       <location filename="core/language/diagnostics.py" />
@@ -24540,18 +24565,18 @@
     </message>
     <message>
       <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Write P1 = LBL 1 I2 = LBL 2.</source>
-      <translation>Escriba P1 = LBL 1 I2 = LBL 2.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Write P1 = LBL 1.</source>
-      <translation>Escriba P1 = LBL 1.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
       <source>Write QC and a number.</source>
       <translation>Escriba QC y un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>Write, for example, P1 = LBL 1 I2 = LBL 2.</source>
+      <translation>Escriba, por ejemplo, P1 = LBL 1 I2 = LBL 2.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/contour_blocks.py" />
+      <source>Write, for example, P1 = LBL 1.</source>
+      <translation>Escriba, por ejemplo, P1 = LBL 1.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
@@ -25255,8 +25280,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
-      <source>{what} is not supported here.</source>
-      <translation>{what} no se admite aquí.</translation>
+      <source>{what} is not supported on this control.</source>
+      <translation>{what} no se admite en este control.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
@@ -25450,6 +25475,11 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
+      <source>Mills a face as cycle 232 does; Q367 sets the face position relative to the current tool position, and Q350 selects the axis of the milling direction.</source>
+      <translation>Planea una cara como lo hace el ciclo 232; Q367 fija la posición de la cara respecto a la posición actual de la herramienta, y Q350, el eje de la dirección de fresado.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_milling_book.py" />
       <source>Mills a face from Q227 down to Q386; Q389 selects the milling strategy for the passes.</source>
       <translation>Planea una cara desde Q227 hasta Q386; Q389 elige la estrategia de fresado de las pasadas.</translation>
     </message>
@@ -25457,11 +25487,6 @@
       <location filename="core/language/klartext/klartext_milling_book.py" />
       <source>Mills a face in Q240 passes.</source>
       <translation>Planea una cara en Q240 pasadas.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills a face like cycle 232, relative to the current tool position (Q367), along the axis Q350.</source>
-      <translation>Planea una cara como el ciclo 232, respecto a la posición actual de la herramienta (Q367), a lo largo del eje Q350.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
@@ -26050,8 +26075,13 @@
     </message>
     <message>
       <location filename="core/language/klartext/pattern_block.py" />
-      <source>Close the parenthesis after the words.</source>
-      <translation>Cierre el paréntesis después de las palabras.</translation>
+      <source>After PATTERN DEF, write, for example, POS1 (X+0 Y+0 Z+0).</source>
+      <translation>Después de PATTERN DEF, escriba, por ejemplo, POS1 (X+0 Y+0 Z+0).</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/pattern_block.py" />
+      <source>Close the parenthesis after the last word.</source>
+      <translation>Cierre el paréntesis después de la última palabra.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/pattern_block.py" />
@@ -26067,11 +26097,6 @@
       <location filename="core/language/klartext/pattern_block.py" />
       <source>Unexpected word in {form}</source>
       <translation>Palabra inesperada en {form}</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/pattern_block.py" />
-      <source>Write POS1 (X+0 Y+0 Z+0) after PATTERN DEF.</source>
-      <translation>Escriba POS1 (X+0 Y+0 Z+0) después de PATTERN DEF.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/plane_block.py" />
@@ -26215,7 +26240,7 @@
     </message>
     <message>
       <location filename="core/language/klartext/q_parameters.py" />
-      <source>FN 20 with a condition of the machine builder's PLC</source>
+      <source>FN 20 with a condition from the machine builder's PLC</source>
       <translation>FN 20 con una condición del PLC del fabricante de la máquina</translation>
     </message>
     <message>
@@ -26545,11 +26570,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
-      <source>Write S(VC = 120).</source>
-      <translation>Escriba S(VC = 120).</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/structure_blocks.py" />
       <source>Write Z after BLK FORM 0.1.</source>
       <translation>Escriba Z después de BLK FORM 0.1.</translation>
     </message>
@@ -26562,6 +26582,11 @@
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>Write the unit after the name.</source>
       <translation>Escriba la unidad después del nombre.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/structure_blocks.py" />
+      <source>Write, for example, S(VC = 120).</source>
+      <translation>Escriba, por ejemplo, S(VC = 120).</translation>
     </message>
     <message>
       <location filename="core/language/klartext/structure_blocks.py" />
@@ -26670,11 +26695,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/text_blocks.py" />
-      <source>Write TOCHAR(DAT+Q5 DECIMALS3).</source>
-      <translation>Escriba TOCHAR(DAT+Q5 DECIMALS3).</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
       <source>Write the column names after the row number, as in 6/"X,Y".</source>
       <translation>Escriba los nombres de las columnas después del número de fila, como en 6/"X,Y".</translation>
     </message>
@@ -26682,6 +26702,11 @@
       <location filename="core/language/klartext/text_blocks.py" />
       <source>Write the string in quotes, or QS and a number.</source>
       <translation>Escriba el texto entre comillas, o QS y un número.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/text_blocks.py" />
+      <source>Write, for example, TOCHAR(DAT+Q5 DECIMALS3).</source>
+      <translation>Escriba, por ejemplo, TOCHAR(DAT+Q5 DECIMALS3).</translation>
     </message>
     <message>
       <location filename="core/language/klartext/text_blocks.py" />
@@ -26735,11 +26760,6 @@
     </message>
     <message>
       <location filename="core/language/omniturn/intended_code.py" />
-      <source>G92 presets the position here; the maximum rpm for constant surface speed is G77.</source>
-      <translation>G92 preselecciona la posición aquí; la velocidad máxima (rpm) con velocidad de corte constante es G77.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/intended_code.py" />
       <source>LinuxCNC O words are not supported. On this control, write a subroutine as }n … M99 and call it with M98Pn.</source>
       <translation>Las palabras O de LinuxCNC no se admiten. En este control, escriba una subrutina como }n … M99 y llámela con M98Pn.</translation>
     </message>
@@ -26770,13 +26790,18 @@
     </message>
     <message>
       <location filename="core/language/omniturn/intended_code.py" />
-      <source>On this control, G74 roughs a box; G83 drills in pecks.</source>
-      <translation>En este control, G74 desbasta un rectángulo; G83 taladra con picoteo.</translation>
+      <source>On this control, G74 is the box roughing cycle; G83 drills in pecks.</source>
+      <translation>En este control, G74 es el ciclo de desbaste rectangular; G83 taladra con picoteo.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/intended_code.py" />
       <source>On this control, G75 roughs a contour; it does not peck a groove.</source>
       <translation>En este control, G75 desbasta un contorno; no ranura con picoteo.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/intended_code.py" />
+      <source>On this control, G92 presets the position; use G77 to set the maximum rpm for constant surface speed.</source>
+      <translation>En este control, G92 fija la posición; use G77 para las rpm máximas con velocidad de corte constante.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/intended_code.py" />
@@ -26945,8 +26970,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>On this control, T selects the tool offset, and D selects a second offset.</source>
-      <translation>En este control, T selecciona el corrector de la herramienta, y D selecciona un segundo corrector.</translation>
+      <source>On this control, T selects the tool offset, and D selects a secondary offset.</source>
+      <translation>En este control, T selecciona el corrector de la herramienta, y D selecciona un corrector secundario.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -26995,6 +27020,16 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
+      <source>Put the contour between (~PLXC) and (END).</source>
+      <translation>Escriba el contorno entre (~PLXC) y (END).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
+      <source>Put the contour between (~PLZC) and (END).</source>
+      <translation>Ponga el contorno entre (~PLZC) y (END).</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/other_controls.py" />
       <source>Q belongs to cycles of other controls; the cycles of this control are G33, G74, G75, G81 and G83.</source>
       <translation>Q pertenece a los ciclos de otros controles; los ciclos de este control son G33, G74, G75, G81 y G83.</translation>
     </message>
@@ -27040,23 +27075,13 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>Write (~PLXC) … (END).</source>
-      <translation>Escriba (~PLXC) … (END).</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/other_controls.py" />
-      <source>Write (~PLZC) … (END).</source>
-      <translation>Escriba (~PLZC) … (END).</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/other_controls.py" />
       <source>Write F or K.</source>
       <translation>Escriba F o K.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>Write G77Sn or G92.</source>
-      <translation>Escriba G77Sn o G92.</translation>
+      <source>Write G77Sn for the maximum rpm, or G92 to preset the position.</source>
+      <translation>Escriba G77Sn para las rpm máximas, o G92 para fijar la posición.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
@@ -27155,8 +27180,8 @@
     </message>
     <message>
       <location filename="core/language/omniturn/other_controls.py" />
-      <source>{value} is a program number for other controls; this control uses the file name.</source>
-      <translation>{value} es un número de programa de otros controles; este control usa el nombre del archivo.</translation>
+      <source>{value} is a program number for another control; on this control, the file name is the program name.</source>
+      <translation>{value} es un número de programa de otro control; en este control, el nombre del archivo es el nombre del programa.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/plane_switching_lines.py" />
@@ -27260,11 +27285,6 @@
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
-      <source>A comma is not allowed anywhere.</source>
-      <translation>La coma no se permite en ninguna parte.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
       <source>A comment is inside another comment.</source>
       <translation>Un comentario está dentro de otro comentario.</translation>
     </message>
@@ -27287,6 +27307,11 @@
       <location filename="core/language/omniturn/word_faults.py" />
       <source>Add '(' or remove ')'.</source>
       <translation>Agregue '(' o quite ')'.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Commas are not allowed in a program.</source>
+      <translation>En un programa no se permiten comas.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -27490,8 +27515,8 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/array_values.py" />
-      <source>Write REP(0).</source>
-      <translation>Escriba REP(0).</translation>
+      <source>Write, for example, REP(0).</source>
+      <translation>Escriba, por ejemplo, REP(0).</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/call_arguments.py" />
@@ -27525,13 +27550,13 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/call_arguments.py" />
-      <source>Write PROC NAME(REAL LENGTH).</source>
-      <translation>Escriba PROC NAME(REAL LENGTH).</translation>
+      <source>Write, for example, PROC NAME(REAL LENGTH).</source>
+      <translation>Escriba, por ejemplo, PROC NAME(REAL LENGTH).</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/call_arguments.py" />
-      <source>Write PROC NAME(VAR REAL LIST[3]).</source>
-      <translation>Escriba PROC NAME(VAR REAL LIST[3]).</translation>
+      <source>Write, for example, PROC NAME(VAR REAL LIST[3]).</source>
+      <translation>Escriba, por ejemplo, PROC NAME(VAR REAL LIST[3]).</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/control_differences.py" />
@@ -28105,43 +28130,43 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write 1 GOTOF LABEL.</source>
-      <translation>Escriba 1 GOTOF LABEL.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.</source>
-      <translation>Escriba CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write CASE R1 OF 1 GOTOF A.</source>
-      <translation>Escriba CASE R1 OF 1 GOTOF A.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write DEF REAL NAME = 0.</source>
-      <translation>Escriba DEF REAL NAME = 0.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write FOR R1 = 1 TO 5.</source>
-      <translation>Escriba FOR R1 = 1 TO 5.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/program_jumps.py" />
       <source>Write MSG("TEXT").</source>
       <translation>Escriba MSG("TEXT").</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write SETAL(65000).</source>
-      <translation>Escriba SETAL(65000).</translation>
+      <source>Write a label, or N with a block number.</source>
+      <translation>Escriba una etiqueta, o N con un número de bloque.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
-      <source>Write a label, or N with a block number.</source>
-      <translation>Escriba una etiqueta, o N con un número de bloque.</translation>
+      <source>Write, for example, 1 GOTOF LABEL.</source>
+      <translation>Escriba, por ejemplo, 1 GOTOF LABEL.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write, for example, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.</source>
+      <translation>Escriba, por ejemplo, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write, for example, CASE R1 OF 1 GOTOF A.</source>
+      <translation>Escriba, por ejemplo, CASE R1 OF 1 GOTOF A.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write, for example, DEF REAL NAME = 0.</source>
+      <translation>Escriba, por ejemplo, DEF REAL NAME = 0.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write, for example, FOR R1 = 1 TO 5.</source>
+      <translation>Escriba, por ejemplo, FOR R1 = 1 TO 5.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/program_jumps.py" />
+      <source>Write, for example, SETAL(65000).</source>
+      <translation>Escriba, por ejemplo, SETAL(65000).</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/program_jumps.py" />
@@ -28395,8 +28420,8 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
-      <source>an R parameter must follow = or be assigned with =, as in R1=10; a radius is CR=, a rounding is RND=</source>
-      <translation>un parámetro R debe ir después de = o asignarse con =, como en R1=10; un radio es CR=, un redondeo es RND=</translation>
+      <source>an R parameter must follow an equals sign or be assigned a value, as in R1=10; write a radius as CR= and a rounding as RND=</source>
+      <translation>un parámetro R debe ir después de un signo igual o recibir un valor, como en R1=10; un radio se escribe CR= y un redondeo RND=</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_words.py" />
@@ -28700,8 +28725,8 @@
     </message>
     <message>
       <location filename="core/part/insert_codes.py" />
-      <source>{code}: character {place} ({left}) is one digit too many</source>
-      <translation>{code}: el carácter {place} ({left}) es un dígito de más</translation>
+      <source>{code}: character {place} ({left}) is an extra digit</source>
+      <translation>{code}: el carácter {place} ({left}) es un dígito sobrante</translation>
     </message>
     <message>
       <location filename="core/part/insert_codes.py" />
@@ -29050,8 +29075,8 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
-      <source>G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm here.</source>
-      <translation>G96 no tiene límite de velocidad, así que el husillo alcanza aquí su máximo de {maximum} rpm.</translation>
+      <source>G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm in this move.</source>
+      <translation>G96 no tiene límite de velocidad, así que el husillo alcanza en este movimiento su máximo de {maximum} rpm.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29085,8 +29110,8 @@
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
-      <source>The surface speed requires {slowest} rpm here, but the spindle maximum is {maximum} rpm.</source>
-      <translation>La velocidad de corte requiere aquí {slowest} rpm, pero el máximo del husillo es {maximum} rpm.</translation>
+      <source>The surface speed requires {slowest} rpm in this move, but the spindle maximum is {maximum} rpm.</source>
+      <translation>La velocidad de corte requiere {slowest} rpm en este movimiento, pero el máximo del husillo es {maximum} rpm.</translation>
     </message>
     <message>
       <location filename="core/proving/cutting_checks.py" />
@@ -29305,8 +29330,8 @@
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
-      <source>A cutting move feeds away from the part, so a cut that seems to be intended is not made.</source>
-      <translation>Un movimiento de corte avanza alejándose de la pieza, así que un corte que parece previsto no se hace.</translation>
+      <source>A cutting move feeds away from the part, so the cut that was probably intended is not made.</source>
+      <translation>Un movimiento de corte avanza alejándose de la pieza, así que no se hace el corte que probablemente se quería.</translation>
     </message>
     <message>
       <location filename="core/proving/part_checks.py" />
@@ -30180,8 +30205,8 @@
     </message>
     <message>
       <location filename="core/proving/part_making.py" />
-      <source>cuts by {tool} from line {line} on, while the spindle is stopped</source>
-      <translation>cortes de {tool} desde la línea {line}, con el husillo parado</translation>
+      <source>cuts made by {tool} with the spindle stopped, from line {line} on</source>
+      <translation>cortes de {tool} con el husillo parado, a partir de la línea {line}</translation>
     </message>
     <message>
       <location filename="core/proving/part_making.py" />
@@ -30620,8 +30645,8 @@
     </message>
     <message>
       <location filename="core/records/record.py" />
-      <source>the start time of the record, {started} s after 1970, is not valid</source>
-      <translation>la hora de comienzo del registro, {started} s después de 1970, no es válida</translation>
+      <source>the start time of the scope record, {started} s after January 1, 1970, is not valid</source>
+      <translation>la hora de inicio del registro, {started} s después del 1 de enero de 1970, no es válida</translation>
     </message>
     <message>
       <location filename="core/records/record_errors.py" />
@@ -30735,8 +30760,8 @@
     </message>
     <message>
       <location filename="core/records/step_response.py" />
-      <source>the commanded motion has no ramp at constant speed; use a longer ramp</source>
-      <translation>el movimiento ordenado no tiene rampa de velocidad constante; use una rampa más larga</translation>
+      <source>the commanded motion never reaches a constant speed; use a longer move</source>
+      <translation>el movimiento ordenado no llega a una velocidad constante; use un recorrido más largo</translation>
     </message>
     <message>
       <location filename="core/records/step_response.py" />
@@ -31100,18 +31125,18 @@
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>CYCLE93 can cut only square walls here: enter 0 for the slope, or use G1 by entering 0 as the D number of the other blade corner.</source>
-      <translation>CYCLE93 aquí solo puede cortar paredes rectas: introduzca 0 para la inclinación, o use G1 introduciendo 0 como número D de la otra esquina de la cuchilla.</translation>
+      <source>CYCLE93 can cut only square walls in this shape: enter 0 for the slope or, to use G1 instead, enter 0 as the D number of the other blade corner.</source>
+      <translation>En esta forma, CYCLE93 solo puede cortar paredes rectas: introduzca 0 para la inclinación o, para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>CYCLE93 cannot chamfer these edges: enter 0 for the chamfer, or use G1 by entering 0 as the D number of the other blade corner.</source>
-      <translation>CYCLE93 no puede achaflanar estos cantos: introduzca 0 para el chaflán, o use G1 introduciendo 0 como número D de la otra esquina de la cuchilla.</translation>
+      <source>CYCLE93 cannot chamfer these edges: enter 0 for the chamfer or, to use G1 instead, enter 0 as the D number of the other blade corner.</source>
+      <translation>CYCLE93 no puede achaflanar estos cantos: introduzca 0 para el chaflán o, para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>CYCLE93 does not support a tool at negative X: use G1 by entering 0 as the D number of the other blade corner.</source>
-      <translation>CYCLE93 no admite herramientas en X negativa: use G1 introduciendo 0 como número D de la otra esquina de la cuchilla.</translation>
+      <source>CYCLE93 does not support a tool at negative X: to use G1 instead, enter 0 as the D number of the other blade corner.</source>
+      <translation>CYCLE93 no admite herramientas en X negativa: para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
@@ -31150,8 +31175,8 @@
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
-      <source>Edges of sloped walls cannot be chamfered here: enter 0.</source>
-      <translation>Los cantos de paredes inclinadas no se pueden achaflanar aquí: introduzca 0.</translation>
+      <source>Edges of sloped walls cannot be chamfered in this shape: enter 0.</source>
+      <translation>En esta forma no se pueden achaflanar los cantos de paredes inclinadas: introduzca 0.</translation>
     </message>
     <message>
       <location filename="core/shapes/grooving.py" />
@@ -31340,8 +31365,8 @@
     </message>
     <message>
       <location filename="core/shapes/live_tools.py" />
-      <source>{number} holes at {number2}° go around the part more than once: enter a smaller angle.</source>
-      <translation>{number} agujeros a {number2}° dan más de una vuelta a la pieza: introduzca un ángulo menor.</translation>
+      <source>{number} holes spaced {number2}° apart go around the part more than once: enter a smaller angle.</source>
+      <translation>{number} agujeros separados {number2}° dan más de una vuelta a la pieza: introduzca un ángulo menor.</translation>
     </message>
     <message>
       <location filename="core/shapes/parting.py" />
@@ -31520,8 +31545,8 @@
     </message>
     <message>
       <location filename="core/shapes/tapping.py" />
-      <source>{series} cannot be tapped here: cut the thread with G33.</source>
-      <translation>{series} no se puede roscar aquí con macho: corte la rosca con G33.</translation>
+      <source>{series} threads cannot be tapped with this shape: cut the thread with G33.</source>
+      <translation>Las roscas {series} no se pueden roscar con macho en esta forma: corte la rosca con G33.</translation>
     </message>
     <message>
       <location filename="core/shapes/templates.py" />
@@ -31550,18 +31575,18 @@
     </message>
     <message>
       <location filename="core/shapes/templates.py" />
-      <source>positions a stop, opens the collet and feeds the bar; the part program is a subroutine</source>
-      <translation>coloca un tope, abre la pinza y avanza la barra; el programa de la pieza es una subrutina</translation>
+      <source>makes roughing passes down to a contour whose points you edit by hand</source>
+      <translation>hace pasadas de desbaste hasta un contorno cuyos puntos se editan a mano</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/templates.py" />
+      <source>positions a stop, opens the collet and feeds the bar, with the part program as a subroutine</source>
+      <translation>coloca un tope, abre la pinza y avanza la barra, con el programa de la pieza como subrutina</translation>
     </message>
     <message>
       <location filename="core/shapes/templates.py" />
       <source>retracts, changes the tool, starts the spindle and moves to the part</source>
       <translation>retira, cambia la herramienta, arranca el husillo y va a la pieza</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/templates.py" />
-      <source>roughing passes down to a contour of points, which you edit by hand</source>
-      <translation>pasadas de desbaste hasta un contorno de puntos, que se editan a mano</translation>
     </message>
     <message>
       <location filename="core/shapes/templates.py" />
@@ -31645,11 +31670,6 @@
     </message>
     <message>
       <location filename="core/shapes/threading.py" />
-      <source>This thread needs more than 60 passes: reduce the number of passes.</source>
-      <translation>Esta rosca necesita más de 60 pasadas: reduzca el número de pasadas.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/threading.py" />
       <source>Thread relief missing: the tool cuts a ring where it stops. Enter the relief width, or set pull-out to YES.</source>
       <translation>Falta la salida de rosca: la herramienta corta un anillo donde para. Introduzca su ancho, o ponga SÍ en salir sin parar.</translation>
     </message>
@@ -31702,11 +31722,6 @@
       <location filename="core/shapes/turning.py" />
       <source>A finishing allowance of {leave} is more than a pass of {rough}: enter a smaller allowance.</source>
       <translation>Un sobrante para acabado de {leave} es más que una pasada de {rough}: introduzca un sobrante menor.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/turning.py" />
-      <source>A hole of {hole} is not less than the bore diameter of {across}, so nothing is cut.</source>
-      <translation>Un agujero de {hole} no es menor que el diámetro del taladro de {across}, así que no se corta nada.</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
@@ -31797,6 +31812,11 @@
       <location filename="core/shapes/turning.py" />
       <source>The contour cuts deeper directly after its first point, and roughing cannot return past that point: add a point before the first point, at the same Z and at the lowest X.</source>
       <translation>El contorno corta más hondo justo después de su primer punto, y el desbaste no puede volver más allá de ese punto: añada un punto antes del primer punto, en la misma Z y en la X más baja.</translation>
+    </message>
+    <message>
+      <location filename="core/shapes/turning.py" />
+      <source>The hole diameter of {hole} is not less than the bore diameter of {across}, so nothing is cut.</source>
+      <translation>El diámetro del agujero, {hole}, no es menor que el diámetro del mandrinado, {across}, así que no se corta nada.</translation>
     </message>
     <message>
       <location filename="core/shapes/turning.py" />
@@ -32010,8 +32030,8 @@
     </message>
     <message>
       <location filename="core/store/backup.py" />
-      <source>{source} is the data store itself; name a backup</source>
-      <translation>{source} es el almacén de datos mismo; indique un respaldo</translation>
+      <source>{source} is the data store itself, not a backup; specify a backup file</source>
+      <translation>{source} es el almacén de datos mismo, no un respaldo; indique un archivo de respaldo</translation>
     </message>
     <message>
       <location filename="core/store/backup.py" />
@@ -32020,7 +32040,7 @@
     </message>
     <message>
       <location filename="core/store/backup.py" />
-      <source>{target} is the data store itself; name another file for the backup</source>
+      <source>{target} is the data store itself; specify another file for the backup</source>
       <translation>{target} es el almacén de datos mismo; indique otro archivo para el respaldo</translation>
     </message>
     <message>
@@ -32065,8 +32085,8 @@
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
-      <source>count the parts and enter them, or restore a backup</source>
-      <translation>cuente las piezas e introdúzcalas, o restaure un respaldo</translation>
+      <source>count the parts and enter the number, or restore a backup</source>
+      <translation>cuente las piezas e introduzca el número, o restaure un respaldo</translation>
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
@@ -32160,12 +32180,12 @@
     </message>
     <message>
       <location filename="core/store/database.py" />
-      <source>{path} is a database of another program and was not changed. Name another file</source>
+      <source>{path} is a database of another program and was not changed. Specify another file</source>
       <translation>{path} es una base de datos de otro programa y no se cambió. Indique otro archivo</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
-      <source>{path} is a folder, a pipe or a device, not a file, and was not changed. Move it to another place</source>
+      <source>{path} is a folder, a pipe or a device, not a file, and was not changed. Move it to another location</source>
       <translation>{path} es una carpeta, una tubería o un dispositivo, no un archivo, y no se cambió. Muévalo a otro lugar</translation>
     </message>
     <message>
@@ -32445,8 +32465,8 @@
     </message>
     <message>
       <location filename="core/store/offset_undo.py" />
-      <source>no tool would be left for cutting edge {orphans}; clear this cutting edge first</source>
-      <translation>no quedaría herramienta para el filo {orphans}; borre antes ese filo</translation>
+      <source>cutting edge {orphans} would be left without a tool; clear this cutting edge first</source>
+      <translation>el filo {orphans} quedaría sin herramienta; borre antes ese filo</translation>
     </message>
     <message>
       <location filename="core/store/offset_undo.py" />
@@ -32465,8 +32485,8 @@
     </message>
     <message>
       <location filename="core/store/people.py" />
-      <source>the list of users must contain one user with SERVICE level who can enter the others; enter this user first</source>
-      <translation>la lista de usuarios debe contener un usuario de nivel SERVICIO que pueda introducir a los demás; introduzca antes a ese usuario</translation>
+      <source>the list of users must contain one user with SERVICE level who can add the others; add this user first</source>
+      <translation>la lista de usuarios debe contener un usuario de nivel SERVICIO que pueda añadir a los demás; añada antes a ese usuario</translation>
     </message>
     <message>
       <location filename="core/store/people.py" />
@@ -32580,7 +32600,7 @@
     </message>
     <message>
       <location filename="core/store/store_export.py" />
-      <source>{folder} is not empty; name a new folder for the export</source>
+      <source>{folder} is not empty; specify a new folder for the export</source>
       <translation>{folder} no está vacía; indique una carpeta nueva para la exportación</translation>
     </message>
     <message>

@@ -213,7 +213,7 @@ def test_a_board_without_hal_has_nobody_to_drive() -> None:
     (error, *_) = caught.value.errors
     assert error.path == "hal"
     assert (
-        "missing; [board] needs this table, because [board] describes the hardware "
+        "missing; [board] requires the table [hal], because [board] describes the hardware "
         "connected to the pins that [hal] specifies"
     ) in str(error)
 

@@ -43,7 +43,7 @@ LABELS = {
     "SAVE": {"file", "store"},
     "SAV+MENU": {"file", "store"},
     "SAV+LOAD": {"file", "store", "load"},
-    **{label: {"store"} for label in ("SET HERE", "UNDO", "ACTIVATE", "TOUCH", "TOUCH L")},
+    **{label: {"store"} for label in ("SET POS.", "UNDO", "ACTIVATE", "TOUCH", "TOUCH L")},
 }
 """What a function key may change, by its label; any other changes what is seen, and nothing else."""
 ALL = len(MACHINES)

@@ -315,7 +315,7 @@ def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
     elements = list(figure.elements)
     if not elements:
         raise told.tool.refuse(
-            Message("The contour {figure} does not contain any elements.", figure=figure.label),
+            Message("Contour {figure} does not contain any elements.", figure=figure.label),
             ("Add path functions to the contour."),
         )
     if not figure.side:

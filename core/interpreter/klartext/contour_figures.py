@@ -158,7 +158,7 @@ def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool
             column,
             INPUT_VALUE,
             Message("The contours cannot be combined: {problem}.", problem=problem),
-            ("Correct these entries."),
+            ("Correct the entries named in the message."),
         ) from None
     if not found:
         text = "The contours do not enclose an area because the islands cover the pockets."
@@ -169,12 +169,12 @@ def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool
 def _closed(state: State, figure: ContourFigure, column: int) -> Loop:
     """The contour as a loop. Raises ProgramError for an open one."""
     if not figure.elements:
-        text = Message("The contour {figure} does not contain any elements.", figure=figure.label)
+        text = Message("Contour {figure} does not contain any elements.", figure=figure.label)
         raise state.refuse(column, CYCLE_MISSING, text, "Add path functions to the contour.")
     gap = math.dist(figure.elements[-1].end, figure.elements[0].start)
     if gap > OPEN:
         text = Message(
-            "The contour {figure} ends {gap} mm from its start.", figure=figure.label, gap=f"{gap:.10g}"
+            "Contour {figure} ends {gap} mm from its start.", figure=figure.label, gap=f"{gap:.10g}"
         )
         raise state.refuse(column, INPUT_VALUE, text, "End the contour at its start point.")
     return follows(figure.elements)
@@ -184,7 +184,7 @@ def _is_pocket(state: State, figure: ContourFigure, loop: Loop, column: int) -> 
     if figure.pocket is not None:
         return figure.pocket
     if not figure.side:
-        text = Message("The side on which contour {figure} is milled is not programmed.", figure=figure.label)
+        text = Message("No machining side is programmed for contour {figure}.", figure=figure.label)
         raise state.refuse(column, CYCLE_MISSING, text, ("Write RL or RR in the first block of the contour."))
     return goes_round(loop) == (figure.side == "L")
 

@@ -257,7 +257,7 @@ def bore_milling(tool: CycleTool) -> Iterator[Block]:
     if way < 0.0 or pitch <= 0.0 or feed <= 0.0:
         raise tool.refuse(
             ("The tool, infeed or feed rate of cycle 208 is not valid for the hole."),
-            ("Correct these entries."),
+            ("Correct the entries named in the message."),
         )
     yield tool.to(clear)
     if way < SMALLEST:

@@ -297,7 +297,8 @@ def _warn_of_shift(state: State, made: WorkingPlane | None) -> None:
     if made is None or state.plane is None or state.shift == ORIGIN:
         return
     text = Message(
-        "The datum was shifted in the tilted coordinate system of line {line}.", line=state.plane.line
+        "The datum was shifted in the tilted coordinate system that is defined on line {line}.",
+        line=state.plane.line,
     )
     hint = (
         "If the shift is meant for the workpiece coordinate system, write PLANE RESET STAY "

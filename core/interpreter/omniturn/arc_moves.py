@@ -68,7 +68,7 @@ def _centre_by_radius(state: State, statement: Statement, start: Point, *, clock
         hint = "Correct R or the end point."
         halved = dist((start[0] / 2, start[1]), (state.x / 2, state.z))
         if not state.modal.diameter and halved <= 2 * radius + _TOLERANCE:
-            hint = "X is a radius here (G73). If the X words are diameters, write G72 before them."
+            hint = "G73 is active, so X is a radius. If the X words are diameters, write G72 before them."
         raise statement.refuse("R", "arc-radius", text, hint)
     return centre_from_radius(start, (state.x, state.z), radius, clockwise=clockwise)
 

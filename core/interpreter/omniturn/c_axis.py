@@ -148,7 +148,8 @@ def _check_turns(state: State, statement: Statement, word: Word, way: float, tur
     needed = way / feed * _TURN
     if turn < needed * (1.0 - 1e-9):
         text = Message(
-            "C turns {turn} degrees, but the move at this feed needs {needed} degrees.",
+            "C is programmed to turn {turn} degrees, but at this feed the move needs {needed} "
+            "degrees of C rotation.",
             turn=f"{turn:g}",
             needed=f"{round(needed, 4):g}",
         )

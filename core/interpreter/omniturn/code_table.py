@@ -41,7 +41,7 @@ _SLOWLY = "M05\nG94F30"  # before the spindle is made an axis
 
 # fmt: off
 # Sentences and rules that several entries share.
-_CORNER_BOTH = Refusal("corner-both", "The line has both C and R.", "Keep only one of these words.")
+_CORNER_BOTH = Refusal("corner-both", "The line has both C and R.", "Keep only one of the conflicting words.")
 _CORNER_SIZE = WordRule(
     "the corner size", least=0, over=True,
     wrong=Refusal(
@@ -136,7 +136,7 @@ _c_word = partial(
     Code, acts=Acts.WORD, f=FWord.NONE, handler="c_axis.c_move",
     apart=(Together(("C", "CA", "CI"), Refusal(
         "word-twice",
-        "The line contains both {first} and {word}.", "Keep only one of these words.")),),
+        "The line contains both {first} and {word}.", "Keep only one of the conflicting words.")),),
     not_when={When.C_FREE: Refusal(
         "c-unlocked",
         "{word} rotates the C axis, but the spindle is not locked as the C axis.",
@@ -149,8 +149,7 @@ _NOT_READY = {
             "Write G40 and a departure move before the cycle."),
     When.TOOL_NOT_MOVED: Refusal(
         "tool-first-move",
-        "{code} is the first move after the T on line {line}, so its start point is "
-            "unknown.",
+        "{code} is the first move after the T word on line {line}, so its start point is unknown.",
             "Program a move to X and Z of the start point before the cycle."),
     When.NO_FEED: Refusal(
         "feed-missing",
@@ -219,7 +218,7 @@ _PULL_OUT = WordRule(
     "the pull-out from the thread",
     numbered=Refusal(
         "thread-word",
-        "{word}: {letter} must not have a number here.",
+        "{word}: {letter} must not have a number in this line.",
             "Write {letter} without a number."),
 )
 _END = WordRule(
@@ -272,7 +271,7 @@ _plane = partial(
             "Write G40 before the (~PLXC) or (~PLZC) line.", 1),
         When.TOOL_NOT_MOVED: Refusal(
             "tool-first-move",
-            "No X and Z move is programmed after the T on line {line}.",
+            "No X and Z move is programmed after the T word on line {line}.",
             "Program a move to X and Z before the (~PLXC) or (~PLZC) line.", 1),
     },
 )
@@ -538,7 +537,7 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
     )),
     ("Program flow", (
         _flow("LS", "LSn",
-        "Repeats the following lines, up to LF, n times.", "LS3\nG91\nZ-.1\nG90\nLF",
+        "Repeats the following lines n times, up to the line with LF.", "LS3\nG91\nZ-.1\nG90\nLF",
             handler="loops_and_subroutines.Flow.steer", words=names("LS"), deletable=False,
             not_in_mdi=
                 "{code} cannot start a loop in MDI; a loop needs more than one line, with LF at the end.",
@@ -581,7 +580,7 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
                 "{code} cannot call a subroutine in MDI; subroutine calls are possible only in a program.",
             rules={
                 "C": WordRule(
-                "required state of the input: on (1) or off (0)", least=0, most=1, whole=True, wrong=Refusal(
+                "required state of the input, on (1) or off (0)", least=0, most=1, whole=True, wrong=Refusal(
                     "condition",
                     "The line contains {word}, which is neither C1 (on) nor C0 (off).",
                     "Write C1 or C0.")),

@@ -91,8 +91,8 @@ class _Reader:
         for mode in _MODES:
             if getattr(self._own.modal, mode) != getattr(self._state.modal, mode):
                 text = (
-                    "The contour changes modes or coordinates; their previous values are restored after "
-                    "the cycle."
+                    "The contour changes modes or coordinates; the previous ones are restored after the "
+                    "cycle."
                 )
                 self._state.log.warn(self._made.line, self._made.code_column, "cycle-modes", text)
                 break

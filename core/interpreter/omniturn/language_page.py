@@ -22,9 +22,9 @@ This page is the reference for all OmniTurn codes. For the language by subject, 
 
 {contents}
 This page is generated from `core/interpreter/omniturn/code_table.py`, which the tests
-also use. Do not edit this page. To run an example, insert it in place of the line `…` in this
-program, with every tool offset at part zero. If the example itself contains `…`, insert its lines
-after `…` after M30:
+also use. Do not edit this page. To run an example, put it in place of the line `…` in this
+program, and set every tool offset to zero. If the example itself contains `…`, put the lines below
+its `…` after M30:
 
 ```
 {head}…
@@ -104,7 +104,7 @@ def _rule(rule: WordRule) -> str:
     if rule.missing is not None:
         said.append("required")
     if rule.numbered is not None:
-        said.append("no number allowed after the word")
+        said.append("must be written without a number")
     if rule.bare is not None:
         said.append(f"{_shown(rule.bare)} if no number follows")
     if rule.nonzero:

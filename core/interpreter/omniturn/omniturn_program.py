@@ -54,7 +54,7 @@ _KINDS = {
     ),
     "line-ends": (
         "The lines end with a carriage return.",
-        ("Save the file with the line endings of this machine."),
+        ("Save the file with the line endings that this machine uses."),
     ),
     "last-newline": ("The last line has no line ending.", "Press Enter at the end of the last line."),
 }

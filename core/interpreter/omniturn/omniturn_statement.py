@@ -185,7 +185,7 @@ def _check_groups(statement: Statement, line: Line, modal: list[Word]) -> None:
             what = Message(
                 "This line contains two codes of the same group ({group}).", group=G_CODES[code].group
             )
-            raise _refused(line, word, "modal-conflict", what, "Keep only one of these words.")
+            raise _refused(line, word, "modal-conflict", what, "Keep only one of the conflicting words.")
 
 
 def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
@@ -243,7 +243,9 @@ def _check_words(statement: Statement, line: Line) -> None:
         if letter not in allowed:
             habit = other_controls.meaning_here(letter)
             if habit is not None:
-                message = Message("{word} has no meaning here. {habit}", word=word.text, habit=habit[0])
+                message = Message(
+                    "{word} has no meaning on this line. {habit}", word=word.text, habit=habit[0]
+                )
                 raise statement.refuse(word, "word-unused", message, habit[1])
             what = Message("This line contains {word}, which no code on the line uses.", word=word.text)
             raise _refused(line, word, "word-unused", what, "Remove the word, or add the code that uses it.")

@@ -61,7 +61,7 @@ def _target(state: State, statement: Statement, mill: Mill) -> Spot:
     z = plane_length(state, statement, "Z", mill.z * 2 if side else mill.z)
     if side and z < 0.0:
         text = Message(
-            "Z{z} is past the spindle centerline; Z is the diameter at the tool tip.",
+            "Z{z} is past the spindle centerline; with (~PLZC), Z is the diameter at the tool tip.",
             z=state.modal.length_text(z),
         )
         raise plane_refusal(statement, "plane-side", text, "Correct Z.", "Z")

@@ -64,8 +64,8 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
         hint = "Move the start point away from the contour."
         if _falls_at_once(view.from_start(contour)[0]):
             hint = (
-                "The contour goes deeper right after its first point; begin the contour with a "
-                "move up the face from the lowest X."
+                "The contour goes deeper immediately after its first point; start the contour at the "
+                "lowest X and move up the face first."
             )
         raise statement.refuse("G", "cycle-start-near", text, hint) from None
     if area.turns_back:
@@ -126,12 +126,18 @@ def _view(state: State, statement: Statement, contour: list[Element]) -> Contour
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
         if to_first * to_last < 0:
             text = Message(
-                "In {letter}, the start point is between the ends of the contour instead of beyond "
-                "both ends.",
+                "In {letter}, the start point is between the two ends of the contour, but it must be "
+                "outside them.",
                 letter=letter,
             )
             raise statement.refuse(
-                "G", "cycle-quadrant", text, ("Move the start point beyond both ends of the contour.")
+                "G",
+                "cycle-quadrant",
+                text,
+                (
+                    "Move the start point so that both ends of the contour are on the same side of it, "
+                    "in X and in Z."
+                ),
             )
         if to_first == to_last == 0:
             text = Message(

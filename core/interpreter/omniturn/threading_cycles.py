@@ -89,7 +89,7 @@ def read_thread(state: State, statement: Statement) -> Thread:
 def _lead(state: State, statement: Statement) -> float:
     lead, feed = statement.value("K"), statement.words.get("F")
     if lead is None and feed is not None:
-        text = Message("K is missing, but the line has {feed}.", feed=feed.text)
+        text = Message("The lead K is missing, but the line contains {feed}.", feed=feed.text)
         raise statement.refuse(
             "F", "thread-lead-missing", text, Message("Did you mean K{feed}?", feed=feed.text[1:])
         )

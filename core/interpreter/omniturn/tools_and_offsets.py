@@ -89,7 +89,9 @@ def preset(state: State, statement: Statement) -> Iterator[Block]:
     """G92: the current point gets these coordinates. Raises ProgramError without any."""
     check_together(statement, statement.entry)
     if {"X", "Z", "F"} <= statement.words.keys():
-        text = "G92 presets the position here and does not cut a thread. Threads are cut with G33."
+        text = (
+            "On this control, G92 presets the position and does not cut a thread. Threads are cut with G33."
+        )
         state.log.warn(statement.line, statement.column("F"), "preset-thread", text, "Write G33XnZnInKn.")
     x, z = on_step(state, statement, "X"), on_step(state, statement, "Z")
     x, z = state.x if x is None else x, state.z if z is None else z
@@ -105,4 +107,4 @@ def warn_of_idle_shifts(state: State) -> None:
     for line, taken in state.pending_shift.items():
         if not taken:
             text = "No T follows this G10, so its work shift never takes effect."
-            state.log.warn(line, 0, "shift-without-tool", text, "Write G10 before a T.")
+            state.log.warn(line, 0, "shift-without-tool", text, "Write G10 before a T word.")

@@ -314,8 +314,8 @@ def found_on_lathe(
 
 
 _HOW = {
-    ToolPlace.TAP: "The tap is in the thread at the start of that line.",
-    ToolPlace.THREAD: "The threading tool is in the thread at the start of that line.",
+    ToolPlace.TAP: "The tap is in the thread at the start of the requested line.",
+    ToolPlace.THREAD: "The threading tool is in the thread at the start of the requested line.",
 }
 
 

@@ -67,8 +67,8 @@ def hole_of(cycle: Cycle) -> Hole:
             name,
             text,
             (
-                "Correct the values so that RTP, RFP and the depth follow each other in this order "
-                "along the drilling direction."
+                "Correct RTP, RFP and the depth so that they follow in this order along the drilling "
+                "direction."
             ),
             REFERENCE_PLANE,
         )

@@ -211,7 +211,7 @@ def tell_idle(state: State, statement: Statement, word: Word, name: str, why: st
     if why and name not in state.told:
         state.told.add(name)
         found = statement.warning(
-            word, "no-effect", Message("{name} has no effect here: {why}.", name=name, why=why), ""
+            word, "no-effect", Message("{name} has no effect because {why}.", name=name, why=why), ""
         )
         state.log.add(replace(found, severity=Severity.NOTE))
 

@@ -107,7 +107,7 @@ class Compensation:
             text = Message("the first move with G{code} is not a straight line.", code=code)
             raise _fault(block, "comp-approach", text, "Approach with G0 or G1, then begin the contour.")
         if not state.modal.edge:
-            text = Message("G{code} needs a tool with a cutting edge.", code=code)
+            text = Message("G{code} needs an active tool with a cutting edge (D number).", code=code)
             raise _fault(block, "comp-no-edge", text, "Write T and D before this block.")
         edge = state.edge
         if not edge.nose_radius:

@@ -137,7 +137,7 @@ def _centre(
     words, by_centre = statement.words, {"I", "K"} & statement.words.keys()
     if "CR" in words and ("AR" in words or by_centre):
         text = "the arc has CR and another definition of its center."
-        raise statement.refuse(words["CR"], "arc-both", text, "Keep only one of these words.")
+        raise statement.refuse(words["CR"], "arc-both", text, "Keep only one of the conflicting words.")
     if "CR" in words:
         return _by_radius(state, statement, travel, clockwise), travel
     if "AR" in words:
@@ -147,7 +147,7 @@ def _centre(
     if not by_centre:
         text = "the arc needs CR, AR, or I and K."
         raise statement.refuse(
-            statement.g.get("motion"), "arc-centre-missing", text, ("Add one of these values.")
+            statement.g.get("motion"), "arc-centre-missing", text, ("Add one of the missing values.")
         )
     centre = _by_words(state, statement, travel)
     _check_radii(statement, travel, centre)
@@ -199,7 +199,7 @@ def _by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise:
             word,
             "arc-both",
             ("the arc has AR, an end point and a center, but only two of them are allowed."),
-            "Keep only two of these values.",
+            "Keep only two of the three: AR, the end point and the center.",
         )
     # To the right of the chord for a clockwise arc; for more than half a turn the cotangent changes side.
     aside = (0.5 if clockwise else -0.5) / tan(half)
@@ -213,8 +213,8 @@ def _turned(
     """AR and the centre: the end is the start turned about it."""
     word = statement.words["AR"]
     if not {"I", "K"} & statement.words.keys():
-        text = "AR has neither an end point nor I and K."
-        raise statement.refuse(word, "arc-centre-missing", text, "Add one of these values.")
+        text = "AR is programmed without an end point and without I and K."
+        raise statement.refuse(word, "arc-centre-missing", text, "Add one of the missing values.")
     centre = _by_words(state, statement, travel)
     x, z = travel.x0 - centre[0], travel.z0 - centre[1]
     if hypot(x, z) < NO_WAY:

@@ -277,7 +277,7 @@ class Interpreter(Interpretation):
             )
         if line.call not in self._state.told:
             self._state.told.add(line.call)
-            why = Message("{name} has no effect here: {why}.", name=line.call, why=CYCLES_TAKEN[line.call])
+            why = Message("{name} has no effect because {why}.", name=line.call, why=CYCLES_TAKEN[line.call])
             found = fault(line.number, line.call_column, "no-effect", line.block, why, "")
             self._log.add(replace(found, severity=Severity.NOTE))
 

@@ -124,7 +124,7 @@ def _sort(statement: Statement, word: Word) -> None:
             word,
             TWICE,
             Message("{word} is programmed twice in the block.", word=word.name),
-            "Keep only one of these words.",
+            "Keep only one of the conflicting words.",
         )
     else:
         statement.words[word.name] = word
@@ -176,7 +176,7 @@ def _check_m(statement: Statement) -> None:
                 "M{value} and M{value2} cannot be in the same block.", value=found[0], value2=found[1]
             )
             raise statement.refuse(
-                statement.m[found[1]], "m-conflict", text, ("Keep only one of these words.")
+                statement.m[found[1]], "m-conflict", text, ("Keep only one of the conflicting words.")
             )
 
 
@@ -213,7 +213,7 @@ def _check_corner(statement: Statement) -> None:
             "{corners} and {corners2} cannot be in the same block.", corners=corners[0], corners2=corners[1]
         )
         raise statement.refuse(
-            statement.words[corners[1]], "corner-both", text, ("Keep only one of these words.")
+            statement.words[corners[1]], "corner-both", text, ("Keep only one of the conflicting words.")
         )
     if corners and not (known.PLACES - {"C"}) & statement.words.keys():
         text = Message("{corners} is in a block without X or Z.", corners=corners[0])

@@ -157,7 +157,7 @@ def compensating(cycle: Cycle) -> Iterator[Block]:
         raise cycle.wrong(
             "SDR",
             ("{name} does not reverse the spindle for the tap"),
-            ("Enter 0, or enter 4 after M3 or 3 after M4."),
+            ("Enter 0, or the reverse direction: 4 after M3, or 3 after M4."),
         )
     lead = abs(lead_of_tap(cycle))
     if not lead and not by_feed:
@@ -228,7 +228,10 @@ def tap(state: State, statement: Statement) -> Block:
     rpm = state.modal.rpm
     if not rpm:
         raise statement.refuse(
-            word, "speed-missing", Message("{code} has no spindle speed.", code=code), "Write S in the block."
+            word,
+            "speed-missing",
+            Message("No spindle speed is programmed for {code}.", code=code),
+            "Write S in the block.",
         )
     rpm = min(rpm, state.setup.limits.c_max_rpm)
     # Into the hole, G331, a lead over 0 turns as M3 does; G332 is the same the other way round.

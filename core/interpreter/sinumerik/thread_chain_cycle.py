@@ -24,8 +24,8 @@ def thread_chain(cycle: Cycle) -> Iterator[Block]:
         if along * (b[1] - a[1]) < _SAME:
             raise cycle.wrong(
                 f"PO{k}",
-                ("{name} does not continue in the same Z direction"),
-                ("PO1 to PO4 lie one behind the other."),
+                ("{name} does not continue the thread in the same Z direction"),
+                "PO1 to PO4 must follow each other in the same Z direction.",
             )
     depths = depths_of(cycle, equal_chip=kind in {3, 4})
     shifts, (first, starts) = shifts_of(cycle, depths), starts_of(cycle)

@@ -51,7 +51,7 @@ def _number(state: State, statement: Statement, word: Word) -> int:
             text = Message(
                 "{word} results in {value}, which is not a tool number.", word=word.text, value=f"{value:g}"
             )
-            raise statement.refuse(word, WRONG_TOOL, text, "Enter the tool as a whole number.")
+            raise statement.refuse(word, WRONG_TOOL, text, "Enter the tool number as a whole number.")
         return int(value)
     wanted = word.string.casefold()
     for key, offset in sorted(state.setup.tools.items()):

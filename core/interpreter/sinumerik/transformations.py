@@ -104,8 +104,8 @@ def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
     if any(value not in {0.0, 1.0} for value in sets[:1]) or any(sets[1:]):
         text: str = Message(
             (
-                "{word} selects a data set other than the first, or groove walls, but only one data "
-                "set without groove walls is available."
+                "{word} selects groove walls or a data set other than the first, but only one data "
+                "set, without groove walls, is available."
             ),
             word=word.text,
         )

@@ -139,7 +139,9 @@ class Transformation:
                 made = self._resolved(statement, word)
                 words[names.centres[name]] = made._replace(name=names.centres[name])
             elif name in {"I", "J", "K"}:
-                text = Message("{word} is not an arc center in G{plane}.", word=word.text, plane=names.plane)
+                text = Message(
+                    "{word} is not an arc center word in G{plane}.", word=word.text, plane=names.plane
+                )
                 raise statement.refuse(
                     word, "word-unused", text, ("Use the arc center words for this plane.")
                 )

@@ -166,7 +166,10 @@ def undercut(cycle: Cycle) -> Iterator[Block]:
     """
     form = cycle.text("FORM")
     if form not in {"A", "B", "E", "F"}:
-        hint = 'Write "A", "B", "E" or "F"; program C and D with CYCLE96, and free form T block by block.'
+        hint = (
+            'Write form "A", "B", "E" or "F". For forms C and D, use CYCLE96. Program a free '
+            "form (T) block by block."
+        )
         raise cycle.wrong(
             "FORM",
             Message("{name} is {form}, which is not supported", form=form or "missing", name="FORM"),

@@ -42,11 +42,12 @@ def definition(cursor: Cursor, column: int) -> ContourDef:
                     cursor.line, cursor.column, ("CONTOUR DEF with a separate depth for one contour")
                 )
             raise cursor.expected(
-                "CONTOUR DEF accepts only pockets (P) and islands (I)", "Write P1 = LBL 1 I2 = LBL 2."
+                "CONTOUR DEF accepts only pockets (P) and islands (I)",
+                "Write, for example, P1 = LBL 1 I2 = LBL 2.",
             )
         parts.append(_where(cursor)._replace(pocket=match.group(1) == "P"))
     if not parts:
-        raise cursor.expected("CONTOUR DEF does not name a contour", "Write P1 = LBL 1.")
+        raise cursor.expected("CONTOUR DEF does not name a contour", "Write, for example, P1 = LBL 1.")
     return ContourDef(tuple(parts), column)
 
 

@@ -89,7 +89,7 @@ _HOLE = "Q200=2 Q201=-20 Q206=150"
 _MILL = "Q207=400 Q351=+1 Q201=-10 Q202=5"
 _INFEED = f"Q369=0 Q206=150 Q338=0 Q200=2 {_HEIGHTS} Q370=1"
 _OF_A_CYCLE = {
-    200: ("DRILLING", "Drills in several infeeds.", f"{_HOLE} Q202=5 Q210=0 {_HEIGHTS} Q211=0"),
+    200: ("DRILLING", "Drills in several pecks.", f"{_HOLE} Q202=5 Q210=0 {_HEIGHTS} Q211=0"),
     201: ("REAMING", "Reams a hole and retracts at a feed rate.", f"{_HOLE} Q211=0 Q208=300 {_HEIGHTS}"),
     202: (
         "BORING",
@@ -101,7 +101,7 @@ _OF_A_CYCLE = {
     ),
     203: (
         "UNIVERSAL DRILLING",
-        "Drills with decreasing infeeds and chip breaking.",
+        "Drills in pecks of decreasing depth, with chip breaking.",
         f"{_HOLE} Q202=5 Q210=0 {_HEIGHTS} Q212=0.2 Q213=3 Q205=1 Q211=0 Q208=500 Q256=0.2",
     ),
     205: (

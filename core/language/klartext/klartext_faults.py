@@ -69,4 +69,6 @@ def syntax(line: int, column: int, message: str, hint: str = "") -> ProgramError
 def unsupported(line: int, column: int, what: str) -> ProgramError:
     """What the control may know and this one does not, by name."""
     hint = "Use L moves and PLANE instead, or run the program on a control that supports this function."
-    return fault(line, column, NOT_SUPPORTED, Message("{what} is not supported here.", what=what), hint)
+    return fault(
+        line, column, NOT_SUPPORTED, Message("{what} is not supported on this control.", what=what), hint
+    )

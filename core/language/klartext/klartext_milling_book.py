@@ -113,7 +113,10 @@ _OF_A_CYCLE = {
     ),
     233: (
         "FACE MILLING",
-        ("Mills a face like cycle 232, relative to the current tool position (Q367), along the axis Q350."),
+        (
+            "Mills a face as cycle 232 does; Q367 sets the face position relative to the current "
+            "tool position, and Q350 selects the axis of the milling direction."
+        ),
         f"Q215=0 Q389=0 Q350=1 Q218=80 Q219=60 Q227=+2 Q386=-3 {_FACE} Q347=0 Q348=0 Q349=0",
         ("Q347=0", "Q347=1", "limit"),
     ),

@@ -34,7 +34,9 @@ def pattern(cursor: Cursor, column: int) -> PatternDef:
             )
         parts.append(PatternPart(match.group(1), _words(cursor, match.group(1)), at))
     if not parts:
-        raise cursor.expected("PATTERN DEF has no points", ("Write POS1 (X+0 Y+0 Z+0) after PATTERN DEF."))
+        raise cursor.expected(
+            "PATTERN DEF has no points", ("After PATTERN DEF, write, for example, POS1 (X+0 Y+0 Z+0).")
+        )
     return PatternDef(tuple(parts), column)
 
 
@@ -44,7 +46,7 @@ def _words(cursor: Cursor, form: str) -> tuple[AxisWord, ...]:
         at, match = cursor.column, cursor.take(_WORD)
         if match is None:
             raise cursor.expected(
-                Message("Unexpected word in {form}", form=form), "Close the parenthesis after the words."
+                Message("Unexpected word in {form}", form=form), "Close the parenthesis after the last word."
             )
         name = match.group(1)
         if name in found:

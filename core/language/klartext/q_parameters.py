@@ -240,7 +240,7 @@ def _whole_jump(cursor: Cursor, condition: Formula, texts: tuple[TextPart, TextP
 def _wait(cursor: Cursor, column: int) -> Unheeded:
     """FN 20: WAIT FOR SYNC waits for what is read ahead. Raises ProgramError for a condition of the PLC."""
     if not cursor.keyword("WAIT FOR SYNC") or not cursor.done:
-        raise unsupported(cursor.line, column, "FN 20 with a condition of the machine builder's PLC")
+        raise unsupported(cursor.line, column, "FN 20 with a condition from the machine builder's PLC")
     return Unheeded("FN 20 WAIT FOR SYNC", column)
 
 

@@ -143,7 +143,9 @@ def tool_call(cursor: Cursor) -> ToolCall:
         if cursor.take(_CUTTING_SPEED):
             words["VC"] = cursor.value("VC")
             if not cursor.take(_CLOSED):
-                raise cursor.expected("The closing parenthesis after VC is missing", "Write S(VC = 120).")
+                raise cursor.expected(
+                    "The closing parenthesis after VC is missing", "Write, for example, S(VC = 120)."
+                )
             continue
         match = cursor.take(_TOOL_WORD)
         if match is None or (match.group(2) and match.group(1) != "F"):

@@ -98,7 +98,7 @@ def _made(cursor: Cursor, name: str, column: int) -> TextPart:
     _bracket(cursor, name, _OPEN)
     if name == "TOCHAR":
         if cursor.take(_DATA) is None:
-            raise cursor.expected("TOCHAR needs DAT", "Write TOCHAR(DAT+Q5 DECIMALS3).")
+            raise cursor.expected("TOCHAR needs DAT", "Write, for example, TOCHAR(DAT+Q5 DECIMALS3).")
         made = TextPart(name, column=column, first=cursor.value("DAT").formula)
         made = made._replace(second=_count(cursor, "DECIMALS"))
     else:

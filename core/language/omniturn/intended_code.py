@@ -105,7 +105,7 @@ _PATTERNS = (
     ),
     _Pattern(
         re.compile(r"(?<=G74)(?=.*[PQRW])"),
-        "On this control, G74 roughs a box; G83 drills in pecks.",
+        "On this control, G74 is the box roughing cycle; G83 drills in pecks.",
         _always("Write G83ZnKnFn."),
     ),
     _Pattern(
@@ -125,7 +125,10 @@ _PATTERNS = (
     ),
     _Pattern(
         re.compile(r"(?<=G92)(?=S[0-9.]+$)"),
-        ("G92 presets the position here; the maximum rpm for constant surface speed is G77."),
+        (
+            "On this control, G92 presets the position; use G77 to set the maximum rpm for "
+            "constant surface speed."
+        ),
         lambda match: Message("Write G77{string}.", string=match.string[match.end() :]),
     ),
     _Pattern(

@@ -12,8 +12,11 @@ LOOK_UP = "For the list of codes, press Shift+F1 in the editor."
 
 _HERE: dict[str, tuple[str, str]] = {
     "G05": ("This control has no code for high-speed modes.", "Remove this text from the program."),
-    "G07": ("On this control, (~PLZC) starts milling around the part.", "Write (~PLZC) … (END)."),
-    "G12": ("On this control, (~PLXC) starts face milling.", "Write (~PLXC) … (END)."),
+    "G07": (
+        "On this control, (~PLZC) starts milling around the part.",
+        ("Put the contour between (~PLZC) and (END)."),
+    ),
+    "G12": ("On this control, (~PLXC) starts face milling.", ("Put the contour between (~PLXC) and (END).")),
     "G13": ("On this control, (END) ends face milling.", "Write (END)."),
     "G17": ("On this control, the plane is always XZ.", "Remove this text from the program."),
     "G18": ("On this control, the plane is always XZ.", "Remove this text from the program."),
@@ -37,7 +40,7 @@ _HERE: dict[str, tuple[str, str]] = {
     "G49": ("On this control, T0 cancels the tool offset.", "Write T0."),
     "G50": (
         "On this control, G77Sn sets the maximum rpm under G96, and G92 presets the position.",
-        "Write G77Sn or G92.",
+        "Write G77Sn for the maximum rpm, or G92 to preset the position.",
     ),
     "G53": ("On this control, T0 selects machine coordinates.", "Write T0 before the move."),
     "G54": (
@@ -71,7 +74,7 @@ _HERE: dict[str, tuple[str, str]] = {
         "Remove this text from the program.",
     ),
     "M60": ("On this control, M00 stops the program.", "Write M00."),
-    "H": ("On this control, T selects the tool offset, and D selects a second offset.", "Write T or D."),
+    "H": ("On this control, T selects the tool offset, and D selects a secondary offset.", "Write T or D."),
     "Q": (
         ("Q belongs to cycles of other controls; the cycles of this control are G33, G74, G75, G81 and G83."),
         LOOK_UP,
@@ -141,7 +144,8 @@ def whole_line(code: str) -> tuple[str, str, str] | None:
         return (
             "program-number",
             Message(
-                "{value} is a program number for other controls; this control uses the file name.",
+                "{value} is a program number for another control; on this control, the file name is "
+                "the program name.",
                 value=shown,
             ),
             "Remove this text from the program.",

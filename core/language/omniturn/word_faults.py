@@ -12,7 +12,7 @@ from core.message import Message
 _MOST_DIGITS = 15
 _MOST_SHOWN = 40  # characters of a text
 _SIGNS = {
-    ",": ("comma", "A comma is not allowed anywhere.", "Write a decimal point."),
+    ",": ("comma", "Commas are not allowed in a program.", "Write a decimal point."),
     ")": ("comment-close", "')' has no opening parenthesis.", "Add '(' or remove ')'."),
     "/": (
         "block-delete-place",

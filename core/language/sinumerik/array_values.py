@@ -49,7 +49,9 @@ def read_values(text: str, at: int, *, bare: bool) -> tuple[Values, int] | None:
     if match[1] != "REP":
         return Values(tuple(found)), at
     if found[0] is None or len(found) > 2:
-        raise FormulaError(match.end(), "REP accepts only a value and a number of elements", "Write REP(0).")
+        raise FormulaError(
+            match.end(), "REP accepts only a value and a number of elements", "Write, for example, REP(0)."
+        )
     return Values((found[0],), repeated=True, times=found[1] if found[1:] else None), at
 
 

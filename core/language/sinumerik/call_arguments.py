@@ -90,7 +90,9 @@ def read_parameters(text: str, written: str, at: int) -> tuple[tuple[Parameter, 
     while True:
         match = _PARAMETER.match(text, at)
         if match is None:
-            raise FormulaError(at, "A parameter needs a type and a name", "Write PROC NAME(REAL LENGTH).")
+            raise FormulaError(
+                at, "A parameter needs a type and a name", "Write, for example, PROC NAME(REAL LENGTH)."
+            )
         sizes = _sizes(match)
         at, default = match.end(), None
         if match[5]:
@@ -116,7 +118,7 @@ def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:
     if None in found or not match[1]:
         raise FormulaError(match.start(3),
             "An array parameter needs VAR and whole numbers as its sizes",
-                           "Write PROC NAME(VAR REAL LIST[3]).")  # fmt: skip
+                           "Write, for example, PROC NAME(VAR REAL LIST[3]).")  # fmt: skip
     return tuple(int(each[1][:9]) if each is not None and each[1] else None for each in found)
 
 

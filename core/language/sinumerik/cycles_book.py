@@ -139,12 +139,11 @@ STANDARD_CYCLES = (
     ),
     _entry(
         "CYCLE95",
-        "Turns the contour of a subprogram or between two labels (\"START:END\") from "
-        "the stock: passes of MID, allowances FALZ, FALX (radius) or FAL, and feeds "
-        "FF1, FF2 for plunging into reliefs and FF3 for finishing. VARI 1 to 4 rough, "
-        "5 to 8 finish, and 9 to 12 do both, each in this order: along Z outside, "
-        "along X outside, along Z inside, along X inside. The nose radius is taken "
-        "into account.",
+        "Turns a contour from the stock. The contour is described in a subprogram or between " "two "
+        "labels (\"START:END\"). Parameters: passes of MID, allowances FALZ, FALX (radius) " "or "
+        "FAL, and feeds FF1, FF2 for plunging into reliefs and FF3 for finishing. VARI 1 " "to 4 "
+        "rough, 5 to 8 finish, and 9 to 12 do both, each in this order: along Z " "outside, along X "
+        "outside, along Z inside, along X inside. The nose radius is taken " "into account.",
         _CUT + 'CYCLE95("KONTUR", 2, 0.1, 0.2, , 0.3, 0.1, 0.12, 9)',
         _CUT + 'CYCLE95("KONTUR", , 0.1, 0.2, , 0.3, 0.1, 0.12, 9)', "MID", _KONTUR,
     ),

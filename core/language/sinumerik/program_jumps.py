@@ -194,7 +194,9 @@ class _Reader:
         condition, choices = self._formula(), list[Choice]()
         match = _OF.match(self._text, self._at)
         if match is None:
-            raise FormulaError(self._at, "CASE needs OF", "Write CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.")
+            raise FormulaError(
+                self._at, "CASE needs OF", "Write, for example, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B."
+            )
         self._at = match.end()
         while self._text[self._at :].strip():
             default = _DEFAULT.match(self._text, self._at)
@@ -203,22 +205,24 @@ class _Reader:
             formula = None if default else self._formula()
             jump = _GOTO.match(self._text, self._at)
             if jump is None:
-                raise FormulaError(self._at, "A CASE branch needs a jump", "Write 1 GOTOF LABEL.")
+                raise FormulaError(
+                    self._at, "A CASE branch needs a jump", "Write, for example, 1 GOTOF LABEL."
+                )
             self._at = jump.end()
             choices.append(Choice(formula, Steering(jump.group(1)), self._target()))
         if not choices:
-            raise FormulaError(self._at, "CASE has no branch", "Write CASE R1 OF 1 GOTOF A.")
+            raise FormulaError(self._at, "CASE has no branch", "Write, for example, CASE R1 OF 1 GOTOF A.")
         return Jump(Steering.CASE, self._column, condition, choices=tuple(choices))
 
     def _for(self) -> Jump:
         match = _NAME.match(self._text, self._at)
         if match is None:
-            raise FormulaError(self._at, "FOR needs a variable and =", "Write FOR R1 = 1 TO 5.")
+            raise FormulaError(self._at, "FOR needs a variable and =", "Write, for example, FOR R1 = 1 TO 5.")
         self._at = match.end()
         first = self._formula()
         to = _TO.match(self._text, self._at)
         if to is None:
-            raise FormulaError(self._at, "FOR needs TO", "Write FOR R1 = 1 TO 5.")
+            raise FormulaError(self._at, "FOR needs TO", "Write, for example, FOR R1 = 1 TO 5.")
         self._at = to.end()
         last = self._formula()
         return Jump(Steering.FOR, self._column, name=match.group(1), first=first, last=last)
@@ -241,7 +245,9 @@ class _Reader:
     def _definitions(self) -> list[Defined]:
         match = _TYPE.match(self._text, self._at)
         if match is None:
-            raise FormulaError(self._at, "DEF needs REAL, INT, BOOL or STRING", "Write DEF REAL NAME = 0.")
+            raise FormulaError(
+                self._at, "DEF needs REAL, INT, BOOL or STRING", "Write, for example, DEF REAL NAME = 0."
+            )
         if match[1] not in _NUMBERS | {"STRING"}:
             text = Message("Variables of type {name} are not supported", name=match[1])
             raise FormulaError(self._at, text, "Use REAL, INT, BOOL or STRING.")
@@ -255,7 +261,9 @@ class _Reader:
     def _defined(self, kind: str) -> Defined:
         variable = _VARIABLE.match(self._text, self._at)
         if variable is None:
-            raise FormulaError(self._at, "DEF needs a variable name", "Write DEF REAL NAME = 0.")
+            raise FormulaError(
+                self._at, "DEF needs a variable name", "Write, for example, DEF REAL NAME = 0."
+            )
         self._at = variable.end()
         made, after = Defined(variable.group(1), None, kind), variable.group(2)
         if after == "[":
@@ -310,7 +318,7 @@ class _Reader:
             raise FormulaError(
                 self._at,
                 Message("{steering} needs a subprogram name", steering=self._steering),
-                "Write PROC NAME(REAL LENGTH).",
+                "Write, for example, PROC NAME(REAL LENGTH).",
             )
         self._at = match.end()
         parameters = tuple[Parameter, ...]()
@@ -340,7 +348,9 @@ class _Reader:
     def _alarm(self) -> Jump:
         rest = self._text[self._at :]
         if not rest.lstrip().startswith("("):
-            raise FormulaError(self._at, ("SETAL needs a number in parentheses"), "Write SETAL(65000).")
+            raise FormulaError(
+                self._at, ("SETAL needs a number in parentheses"), "Write, for example, SETAL(65000)."
+            )
         self._at += len(rest) - len(rest.lstrip()) + 1
         number = self._formula()
         self._at = len(self._text)

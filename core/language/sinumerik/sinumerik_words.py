@@ -154,7 +154,8 @@ LETTERS_OUTSIDE = {
     "W": "this lathe has no W axis; write incremental values with IC( ), as in Z=IC(1)",
     "P": "P is allowed only after a subprogram name",
     "R": (
-        "an R parameter must follow = or be assigned with =, as in R1=10; a radius is CR=, a rounding is RND="
+        "an R parameter must follow an equals sign or be assigned a value, as in R1=10; "
+        "write a radius as CR= and a rounding as RND="
     ),
 }
 """Letters that a program of the trade may hold, and what to do about them here."""

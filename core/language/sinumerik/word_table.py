@@ -147,7 +147,9 @@ FUNCTIONS: Mapping[str, Entry] = {
         ("Approaches and leaves the contour on a straight line, perpendicular to the contour."),
         "NORM",
     ),
-    "KONT": Entry(APPROACH, "Approaches and leaves the contour on a path around its end point.", "KONT"),
+    "KONT": Entry(
+        APPROACH, "Approaches and leaves the contour on a path around the end point of the contour.", "KONT"
+    ),
     "G450": Entry(CORNER, "Goes around outside corners on an arc.", "G450"),
     "G451": Entry(CORNER, "Goes around outside corners through the intersection point.", "G451"),
     "G500": Entry(SETTABLE, "Turns the settable offset off.", "G500"),
@@ -332,9 +334,11 @@ WORDS: Mapping[str, Entry] = {
         "T1 D1|G0 X40 Z2|DIAMOF|G17|TRANSMIT|G1 X15 Y0 F200|G3 X0 Y15 I-15 J0|G0 Z5|TRAFOOF|G18",
     ),
     "CR": Entry(
-        "arc", "Radius; a negative value means more than half a circle.", "G1 X20 Z0 F200|G2 X30 Z-5 CR=5"
+        "arc",
+        "Radius; a negative value gives an arc of more than half a circle.",
+        "G1 X20 Z0 F200|G2 X30 Z-5 CR=5",
     ),
-    "AR": Entry("arc", "Opening angle of an arc.", "G1 X20 Z0 F200|G3 X30 Z-5 AR=90"),
+    "AR": Entry("arc", "Included angle of an arc.", "G1 X20 Z0 F200|G3 X30 Z-5 AR=90"),
     "I1": Entry("arc", "X coordinate of the intermediate point for CIP.", _ARC_THROUGH),
     "K1": Entry("arc", "Z coordinate of the intermediate point for CIP.", _ARC_THROUGH),
     "RP": Entry(
@@ -377,8 +381,8 @@ WORDS: Mapping[str, Entry] = {
     "WAITS": Entry(
         "spindle",
         (
-            "Waits for SPOSA. This is not necessary here, because SPOSA itself waits until the "
-            "spindle is at its angle."
+            "Waits for SPOSA. This is not necessary on this control, because SPOSA itself waits "
+            "until the spindle is at its angle."
         ),
         "SPOSA=90|WAITS(1)",
     ),

@@ -289,7 +289,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         yield Finding(
             "hal",
             "",
-            "missing; [board] needs this table, because [board] describes the hardware "
+            "missing; [board] requires the table [hal], because [board] describes the hardware "
             "connected to the pins that [hal] specifies",
         )
     if kind in _ADDRESS and values.has("board.address"):
@@ -372,7 +372,7 @@ def _number_expected(place: str, number: int, expected: str) -> Finding:
 
 
 _Stated = Mapping[str, tuple[tuple[str, str], ...]]
-_GAIN = ("p", "the P gain for the axis's pid component in 1/s, as measured on the machine")
+_GAIN = ("p", "the P gain of the axis's pid component in 1/s, as determined on the machine")
 _STEPS = (("step", "the pin for the step signal"), ("direction", "the pin for the direction signal"))
 _STATED: _Stated = {
     PARPORT: _STEPS,
@@ -447,7 +447,8 @@ def _fast_enough(file: FileReading, axis: str) -> Iterator[Finding]:
             path,
             "",
             Message(
-                "expected at least axis.{axis}.vmax, because the board outputs no more than 10 V", axis=axis
+                "expected a value of at least axis.{axis}.vmax, because the board outputs no more than 10 V",
+                axis=axis,
             ),
         )
 
@@ -489,7 +490,10 @@ def _spindle_rules(file: FileReading, kind: str) -> Iterator[Finding]:
         yield Finding(
             speeds[0],
             "",
-            Message("missing; {key} specifies an output for the spindle speed", key=f"{_SPINDLE}.{scale}"),
+            Message(
+                "missing; this pin is required because {key} specifies an output for the spindle speed",
+                key=f"{_SPINDLE}.{scale}",
+            ),
         )
     channel = values.whole(f"{_SPINDLE}.channel")
     if told and kind == MESA_SERVO and channel not in (4, 5):

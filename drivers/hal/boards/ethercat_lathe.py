@@ -35,8 +35,8 @@ def ethercat_lathe(lathe: Lathe) -> HalFile:
             "drive to make a quick stop when bus communication is lost"
         ),
         (
-            "spindle: determine the value of object 60FF at 1 rpm and the sign of that "
-            "value; object 6064 is a 32-bit value and wraps around"
+            "spindle: find the value of object 60FF that gives 1 rpm, and its sign. Object 6064 "
+            "is a 32-bit counter that wraps around"
         ),
     ]
     drives = [axis.name.lower() for axis in lathe.driven]
@@ -116,7 +116,9 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     sign = -1.0 if board.reversed else 1.0
     file.setp(f"{pin}.pos-scale", sign / axis.count, f"increments per {axis.unit}: 1 / count")
     file.setp(
-        f"{pin}.auto-fault-reset", 1, "a drive fault is reset when Reset and DRIVES ON request power again"
+        f"{pin}.auto-fault-reset",
+        1,
+        "a drive fault is reset when power is requested again with Reset and DRIVES ON",
     )
     _drive(file, name)
     file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.pos-cmd", place=place, needed=True)

@@ -8,8 +8,8 @@ from drivers.hal.boards.spindle_as_c import turns
 _WATCHDOG = 5_000_000  # ns without a word of this computer until the card lets everything fall
 NOTES = (
     (
-        "use a real-time kernel and a separate network port for the card; halrun alone must "
-        "maintain a 1 ms period for an hour"
+        "use a real-time kernel and a separate network port for the card; test halrun on its "
+        "own: it must maintain a 1 ms period for an hour"
     ),
     "axis.NAME.count: check this value against a dial gauge over a 10 mm jog; X positions are radii",
     (

@@ -35,8 +35,8 @@ def mesa_servo_lathe(lathe: Lathe) -> HalFile:
             "hums, then halve p. Set ff2 last, using the scope"
         ),
         (
-            "drift: adjust the balance of the drive at 0 V until the axis stays at rest "
-            "with only the P gain (p) set"
+            "drift: with only the P gain (p) set, adjust the balance of the drive at 0 V until "
+            "the axis stays at rest"
         ),
     ]
     turns = bool(lathe.encoder_lines and lathe.names.get("hal.spindle.position"))

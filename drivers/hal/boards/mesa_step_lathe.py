@@ -81,7 +81,7 @@ def _timing(file: HalFile) -> None:
     file.setp(
         f"{_CARD}.dpll.01.timer-us",
         _LATCHED_US,
-        "time between latching and reading the step counts; must be longer than the worst delay",
+        "time between latching and reading the step counts; must be longer than the worst-case delay",
     )
     file.setp(f"{_CARD}.stepgen.timer-number", 1)
 

@@ -368,7 +368,7 @@ class Bridge:
         left = pieces[0].t - sign * (self.player.turns.at(t) - zero)  # turns
         if left < 0.0:
             if self.player.rests:
-                self._trip("the thread setpoints arrived too late to be executed", "late")
+                self._trip("the threading setpoints arrived too late to be executed", "late")
             return  # what was handed over before is a whole pass too
         count = int(number(head, "way"))
         self.player.mesh(zero, sign, pieces[:count], pieces[count:])
