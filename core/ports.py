@@ -148,6 +148,7 @@ class BlockSink(Protocol):
 
 
 FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
 Fault = faults.Fault
 FaultCode = faults.FaultCode
 DriverError = faults.DriverError

@@ -20,6 +20,7 @@ class SampleLog:
         self._kept = kept
         self._bytes = bytearray(kept * self._row.size)
         self._added = self._taken = 0
+        self._rows = np.frombuffer(self._bytes, dtype=np.float64).reshape(kept, self.width)
         self._none = np.empty((0, self.width))
         self.last = -np.inf  # time of the newest row
 
@@ -29,6 +30,16 @@ class SampleLog:
         self._added += 1
         self.last = t
 
+    def extend(self, rows: FloatArray) -> None:
+        """Add the newest of these rows, as many as the log has room for."""
+        rows = rows[-self._kept :]
+        at = self._added % self._kept
+        head = rows[: self._kept - at]
+        self._rows[at : at + len(head)] = head
+        self._rows[: len(rows) - len(head)] = rows[len(head) :]
+        self._added += len(rows)
+        self.last = rows[-1, 0]
+
     def take(self, most: int = KEPT) -> FloatArray:
         """The oldest rows that have not been taken, ``most`` at a time."""
         first = max(self._taken, self._added - self._kept)
@@ -37,5 +48,6 @@ class SampleLog:
             return self._none
         self._taken = first + count
         at = first % self._kept
-        data = np.frombuffer(self._bytes, dtype=np.float64).reshape(self._kept, self.width)
-        return np.concatenate((data[at : at + count], data[: max(0, at + count - self._kept)]))
+        if at + count <= self._kept:
+            return self._rows[at : at + count].copy()
+        return np.concatenate((self._rows[at:], self._rows[: at + count - self._kept]))

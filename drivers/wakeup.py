@@ -73,9 +73,11 @@ class Touch:
 
     def __init__(self, lock: AbstractContextManager[object], ring: Callable[[], None]) -> None:
         self._lock, self._ring = lock, ring
+        self.count = 0  # how many times it was taken
 
     def __enter__(self) -> None:
         self._lock.__enter__()
+        self.count += 1
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None

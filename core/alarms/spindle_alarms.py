@@ -161,7 +161,7 @@ SPINDLE: Entries = {
     ),
     "spindle-switch": hold(
         223,
-        "spindle switch at OFF",
+        "spindle switch off",
         ("the spindle switch is at OFF",),
         (
             "Set the spindle switch to AUTO, then press Cycle Start: the spindle starts as shown, "

@@ -212,6 +212,19 @@ class AxisDrive:
 
     # --- motion -------------------------------------------------------------------------------------------
 
+    @property
+    def rests(self) -> bool:
+        """Whether further steps change nothing until a frame or a hand comes."""
+        servo = self.servo
+        if servo.v or self.v:
+            return False
+        if not self.power.powered:
+            return True
+        busy = self.power.braking or self.playing or self._homing or self._going
+        if busy or servo.p != self.p or not servo.sound:
+            return False
+        return not self._steps_to_target or self.p == self.target * servo.axis.count
+
     def step(self, dt: float) -> None:
         """One step of drive and slide."""
         if not self.power.powered:
@@ -227,7 +240,7 @@ class AxisDrive:
             self._look_for_home(dt)
         elif self._going:
             self._towards(self.target * self.servo.axis.count, dt)
-        elif self.mode == CSP or self.interpolates:
+        elif self._steps_to_target:
             self._step_to_target(dt)
         if self.servo.follow(self.p, self.v, dt):
             self._fail(EMCY_FOLLOWING)
@@ -261,6 +274,10 @@ class AxisDrive:
     def _period(self) -> float:
         """Time from setpoint to setpoint."""
         return float(self.values.get((od.IP_TIME, 1), 0) * 10.0 ** self.values.get((od.IP_TIME, 2), -3))
+
+    @property
+    def _steps_to_target(self) -> bool:
+        return self.mode == CSP or self.interpolates
 
     def _step_to_target(self, dt: float) -> None:
         """In a straight line, so that it is there when the next is due; then it stays."""

@@ -40,18 +40,31 @@ class DevicePlant(Plant):
         now = self.clock.now()
         with self.lock:
             self._break(now)
-            step = self.config.step
+            step, rests = self.config.step, False
             while self._at + step <= now + _SETTLED:
                 self._at += step
-                if self.spindle_drive is not None:
-                    self.spindle_drive.step(self._at)
-                for drive in self.drives.values():
-                    drive.step(step)
-                if self.spindle.faults.belt:
-                    self.spindle.cut_load(self._at, cutting=self.cuts())
+                if not rests:
+                    self._step_drives(step)
+                    rests = self._drives_rest()
+            if self.spindle_drive is not None:
+                self.spindle_drive.at = self._at
             if now > self.spindle.t:
                 self.spindle.advance(now)
         return now
+
+    def _step_drives(self, step: float) -> None:
+        if self.spindle_drive is not None:
+            self.spindle_drive.step(self._at)
+        for drive in self.drives.values():
+            drive.step(step)
+        if self.spindle.faults.belt:
+            self.spindle.cut_load(self._at, cutting=self.cuts())
+
+    def _drives_rest(self) -> bool:
+        """Whether further steps change nothing until a frame or a hand comes."""
+        if self.spindle.faults.belt or (self.spindle_drive is not None and not self.spindle_drive.rests):
+            return False
+        return all(drive.rests for drive in self.drives.values())
 
     def trip(self, fault: str) -> None:
         """The drive named before the colon gives up, with an EMCY."""
@@ -61,7 +74,7 @@ class DevicePlant(Plant):
 
     def press_estop(self) -> None:
         """The hardware chain: drives brake and lose power, the spindle too."""
-        with self.lock:
+        with self.touch:
             now = self.advance()
             self.panel.estop = True
             for drive in self.drives.values():
@@ -107,10 +120,14 @@ class CanopenDevices:
                 break
             wait = 0.0
             if not self.cut and not message.is_error_frame:
-                for node in self.nodes.values():
-                    node.take(message.arbitration_id, bytes(message.data))
+                self._deliver(message.arbitration_id, bytes(message.data))
         for node in self.nodes.values():
             node.tick(now)
+
+    def _deliver(self, can_id: int, data: bytes) -> None:
+        for node in self.nodes.values():
+            if can_id in node.hears:
+                node.take(can_id, data)
 
     def cable(self, *, out: bool) -> None:
         """Pull the cable out or put it in again: nothing is heard on either side."""

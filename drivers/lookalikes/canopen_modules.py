@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
+from core.ports import StationState
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_nodes import CanTerminal
 from drivers.lookalikes.plant import Plant
 
-_STATION = ("estop", "start", "hold", "spindle_auto")
+_STATION = frozenset({"estop", "start", "hold", "spindle_auto"})
 
 
 class TerminalBoard:
@@ -25,6 +26,11 @@ class TerminalBoard:
         for name_of_input, where in config.inputs.items():
             if where.node == name:
                 self._wired.setdefault(where.sub, []).append((name_of_input, where))
+        self._hands: object = None  # of the plant, as ``_bytes`` of the inputs show them
+        self._bytes: dict[int, int] = {}
+        self._pots = {
+            pot.terminal.sub: (of, pot) for of, pot in config.pots.items() if pot.terminal.node == name
+        }
         for output, model in config.outputs.items():
             if plant.terminals.outputs.get(output):
                 self.outputs[model.terminal.sub - 1] |= 1 << model.terminal.bit
@@ -72,29 +78,30 @@ class TerminalBoard:
                 board.write(name, on, now)
 
     def _inputs(self, sub: int) -> int:
-        wired = self._wired.get(sub)
-        if wired is None:
-            return 0
-        now = self._plant.clock.now()
-        state, states = self._plant.panel.state(now), self._plant.terminals.read(now)
+        hands = self._plant.hands(self._plant.clock.now())
+        if hands is not self._hands:
+            self._hands, self._bytes = hands, {}
+        if sub not in self._bytes:
+            self._bytes[sub] = self._byte(sub, *hands)
+        return self._bytes[sub]
+
+    def _byte(self, sub: int, state: StationState, inputs: Mapping[str, bool]) -> int:
         byte = 0
-        for name, where in wired:
-            on = getattr(state, name) if name in _STATION else states.get(name)
+        for name, where in self._wired.get(sub, ()):
+            on = getattr(state, name) if name in _STATION else inputs.get(name)
             byte |= (bool(on) is not where.active_low) << where.bit
         return byte
 
     def _analog(self, sub: int) -> int:
-        state = self._plant.panel.state(self._plant.clock.now())
-        wheel = self._config.pots.get("handwheel")
-        if wheel is not None and wheel.terminal.node == self._name and wheel.terminal.sub == sub:
+        if sub not in self._pots:
+            return 0
+        name, pot = self._pots[sub]
+        state, _ = self._plant.hands(self._plant.clock.now())
+        if name == "handwheel":
             return (state.handwheel + 2**15) % 2**16 - 2**15
-        load = self._plant.spindle.load
-        shown = {"feed_pot": state.feed_pot, "spindle_pot": state.spindle_pot, "spindle_load": load}
-        for name, pot in self._config.pots.items():
-            if pot.terminal.node == self._name and pot.terminal.sub == sub and name in shown:
-                fraction = (shown[name] - pot.low) / (pot.high - pot.low)
-                return round(32767 * min(max(fraction, 0.0), 1.0))
-        return 0
+        shown = self._plant.spindle.load if name == "spindle_load" else getattr(state, name)
+        fraction = (shown - pot.low) / (pot.high - pot.low)
+        return round(32767 * min(max(fraction, 0.0), 1.0))
 
 
 # --- A CiA 406 encoder on the simulated spindle, and the second input of a drive with one behind it.

@@ -137,10 +137,15 @@ class DeviceNode:
         self.device.reset()
         self.network.send_message(0x700 + self.id, b"\x00")
 
+    @property
+    def hears(self) -> frozenset[int]:
+        """Identifiers of the frames that it takes in."""
+        return self._told().hears
+
     def take(self, can_id: int, data: bytes) -> None:
-        """One frame of the bus."""
+        """One frame of those that it hears."""
         told = self._told()
-        if self.silent or can_id not in told.hears:
+        if self.silent:
             return
         if can_id == 0 and len(data) >= 2 and data[1] in {0, self.id}:
             self._command(data[0])
@@ -221,7 +226,10 @@ class DeviceNode:
         """As the library's node has it, which takes longer."""
         value = self.device.read(index, sub)
         if value is None:
-            return bytes(self.local.get_data(index, sub))
+            stored = self.local.data_store.setdefault(index, {})
+            if sub not in stored:
+                stored[sub] = bytes(self.local.get_data(index, sub))
+            return bytes(stored[sub])
         return value.to_bytes(size, "little", signed=value < 0)
 
     def _told(self) -> _Communication:

@@ -80,7 +80,7 @@ class SpindleDrive:
         self.target = 0
         self._counts = counts
         self._ordered: int | None = None
-        self._at = 0.0
+        self.at = 0.0  # time of the last step, s
         self.values: dict[tuple[int, int], int] = {}
         self._readers: dict[int, Callable[[], int]] = {
             od.DEVICE_TYPE: lambda: 0x00020192,
@@ -147,9 +147,15 @@ class SpindleDrive:
         self.mode = self.target = 0
         self.values.clear()
 
+    @property
+    def rests(self) -> bool:
+        """Whether further steps change nothing until a frame comes or the motor's speed changes."""
+        obeyed = self.power.powered == (self._ordered is not None)
+        return obeyed and not self.as_axis and not self.power.braking
+
     def step(self, now: float) -> None:
         """Obey; lose power when braked."""
-        dt, self._at = now - self._at, now
+        dt, self.at = now - self.at, now
         if self.motor.faults.fault and self.power.state is not DriveState.FAULT:
             self.power.trip()
             self.emergency(EMCY_FAULT)

@@ -285,13 +285,17 @@ class Firmware:
 
     def advance(self) -> None:
         """Up to the clock."""
-        now = self.clock.now()
+        now, idle = self.clock.now(), self._idle
         while self.k + _STEP <= now + 1e-9:
             self.k += _STEP
+            if idle:
+                continue
             self.spindle.advance(self.k)
             step(self)
             self._take_in()
             self.program.pump()
+        if idle:
+            self.spindle.advance(self.k)
 
     def reset(self) -> None:
         """0x18: modes are lost, a moving slide's position too."""
@@ -309,6 +313,12 @@ class Firmware:
         self.alarm = 11 if int(self.registers[22]) & 5 == 5 else 0
 
     # --- inside -------------------------------------------------------------------------------------------
+
+    @property
+    def _idle(self) -> bool:
+        """Whether only the spindle changes until the host sends something."""
+        busy = self.slides.queue or self.homing is not None or not self.program.reads_on
+        return not (busy or self.rx or self._wire)
 
     def _take_in(self) -> None:
         while self._wire and self.rx_free > _GATE and not (self.waits and self.quirks.mute):

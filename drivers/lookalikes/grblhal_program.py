@@ -235,14 +235,14 @@ class Program:
         if self._waits is not None:
             line, self._waits = self._waits, None
             self._carry_out(line)
-        while self._reads_on and machine.reads and machine.slides.free > 0:
+        while self.reads_on and machine.reads and machine.slides.free > 0:
             line_ = machine.next_line()
             if line_ is None:
                 return
             self._line(line_)
 
     @property
-    def _reads_on(self) -> bool:
+    def reads_on(self) -> bool:
         """Whether the line before is done."""
         return self._waits is None and not self._cuts and self.wait is None
 

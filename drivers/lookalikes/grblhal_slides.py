@@ -31,24 +31,35 @@ class PlannedBlock:
     per_rev: bool = False
     thread: bool = False
     jog: bool = False
+    limits: tuple[float, float] | None = None  # the most that the slides do on it: mm/s, mm/s²
 
     def heading(self, at: float) -> Place:
         """Direction of the way (unit length) close to a distance."""
+        if isinstance(self.way, _Line):
+            return self.way.heading
         first = min(max(at - _NEAR, 0.0), max(self.length - _NEAR, 0.0))
         (x0, z0), (x1, z1) = self.way(first), self.way(min(first + _NEAR, self.length))
         way = math.hypot(x1 - x0, z1 - z0) or 1.0
         return (x1 - x0) / way, (z1 - z0) / way
 
 
+class _Line:
+    """Way from ``start`` to ``end``, whose ``heading`` is the same everywhere."""
+
+    def __init__(self, start: Place, end: Place) -> None:
+        self._start, self._dx, self._dz = start, end[0] - start[0], end[1] - start[1]
+        self.length = math.dist(start, end)
+        self.heading = self._dx / (self.length or 1.0), self._dz / (self.length or 1.0)
+
+    def __call__(self, s: float) -> Place:
+        part = s / self.length if self.length else 1.0
+        return self._start[0] + part * self._dx, self._start[1] + part * self._dz
+
+
 def straight(start: Place, end: Place) -> Shape:
     """Length and way of a line."""
-    length = math.dist(start, end)
-
-    def way(s: float) -> Place:
-        part = s / length if length else 1.0
-        return start[0] + part * (end[0] - start[0]), start[1] + part * (end[1] - start[1])
-
-    return length, way
+    line = _Line(start, end)
+    return line.length, line
 
 
 def circle(start: Place, end: Place, centre: Place, *, counter: bool) -> Shape | None:
@@ -118,41 +129,52 @@ class Slides:
         if not self.queue:
             self.v = 0.0
             return
-        goal = 0.0 if self.held else self._speed(self.queue[0], self._s, turns_per_s)
-        change = self._accel(self.queue[0], self._s) * dt
+        block = self.queue[0]
+        most, accel = self._limits(block, self._s)
+        goal = 0.0 if self.held else self._speed(block, most, turns_per_s)
+        change = accel * dt
         self.v = min(self.v + change, goal) if self.v < goal else max(self.v - change, goal)
-        self.v = min(self.v, self._allowed(turns_per_s))
+        self.v = min(self.v, self._allowed(accel, turns_per_s))
         if self.held and self.v < 1.5 * change:
             self.v = 0.0
         self._go(self.v * dt)
 
-    def _speed(self, block: PlannedBlock, at: float, turns_per_s: float) -> float:
+    def _limits(self, block: PlannedBlock, at: float) -> tuple[float, float]:
+        """Return the most that the slides do ``at`` mm from the block's beginning; a line has one limit."""
+        if block.limits is None or not isinstance(block.way, _Line):
+            heading = block.heading(at)
+            block.limits = self._along(_RATE, heading) / 60.0, self._along(_ACCELERATION, heading)
+        return block.limits
+
+    def _speed(self, block: PlannedBlock, most: float, turns_per_s: float) -> float:
         """mm/s, no slide faster than it may. A jog knows no override, a thread none either."""
-        most = self._along(_RATE, block.heading(at)) / 60.0
         speed = min(block.speed * turns_per_s if block.per_rev else block.speed, most)
         if block.rapid:
             return speed * self.rapid
         return speed if block.jog or block.thread else min(speed * self.feed, most)
 
-    def _accel(self, block: PlannedBlock, at: float) -> float:
-        return self._along(_ACCELERATION, block.heading(at))
-
     def _along(self, first: int, heading: Place) -> float:
         """The most on a way of this direction by the settings of X and Z, from ``first`` on (planner.c)."""
-        shares = ((self._registers[first], abs(heading[0])), (self._registers[first + 2], abs(heading[1])))
-        return min((most / share for most, share in shares if share), default=self._registers[first])
+        x, z = abs(heading[0]), abs(heading[1])
+        along_x = self._registers[first] / x if x else math.inf
+        along_z = self._registers[first + 2] / z if z else math.inf
+        return min(along_x, along_z) if x or z else self._registers[first]
 
-    def _allowed(self, turns_per_s: float) -> float:
-        """Speed from which every corner ahead, and the end, can still be taken as slowly as it has to be."""
+    def _allowed(self, accel: float, turns_per_s: float) -> float:
+        """Speed from which every corner ahead, and the end, can still be taken as slowly as it has to be.
+
+        ``accel``: mm/s², in the present block.
+        """
         before = self.queue[0]
         left = max(before.length - self._s, 0.0)
-        most, brakes = math.inf, 2.0 * self._accel(before, self._s) * left
+        most, brakes = math.inf, 2.0 * accel * left
         for block in itertools.islice(self.queue, 1, None):
-            corner = min(self._corner(before, block), self._speed(block, 0.0, turns_per_s))
+            most_there, accel = self._limits(block, 0.0)
+            corner = min(self._corner(before, block), self._speed(block, most_there, turns_per_s))
             most = min(most, math.sqrt(corner**2 + brakes))
             if brakes > self.v**2:
                 return most + _CREEP
-            before, brakes = block, brakes + 2.0 * self._accel(block, 0.0) * block.length
+            before, brakes = block, brakes + 2.0 * accel * block.length
         return min(most, math.sqrt(brakes)) + _CREEP
 
     def _corner(self, before: PlannedBlock, block: PlannedBlock) -> float:

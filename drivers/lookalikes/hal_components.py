@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
+from typing import Any
 
 Cells = dict[str, float]  # by signal, or by pin where it is on none
 Pin = Callable[[str], str]  # a pin's name to its cell
@@ -49,59 +50,56 @@ class Fifo:
         return self._rows.popleft()
 
 
-def step_of(component: str, name: str, cells: Cells, at: Pin, value: Callable[[str], float]) -> Step:
-    """The function of one instance. ``value`` has what was set for a pin or parameter."""
-    kinds: dict[str, Callable[[], Step]] = {
-        "near": lambda: _near(cells, name, at, value),
-        "not": lambda: _of_one(cells, name, at, lambda a: not a),
-        "abs": lambda: _of_one(cells, name, at, abs),
-        "and2": lambda: _of_two(cells, name, at, lambda a, b: bool(a and b)),
-        "or2": lambda: _of_two(cells, name, at, lambda a, b: bool(a or b)),
-        "mult2": lambda: _of_two(cells, name, at, lambda a, b: a * b),
-        "sum2": lambda: _sum2(cells, name, at, value),
-        "mux2": lambda: _mux2(cells, *(at(f"{name}.{pin}") for pin in ("sel", "in0", "in1", "out"))),
-        "flipflop": lambda: _flipflop(cells, *(at(f"{name}.{pin}") for pin in ("set", "reset", "out"))),
-        "estop_latch": lambda: _latch(cells, name, at),
-        "timedelay": lambda: _timedelay(cells, name, at, value),
-        "limit3": lambda: _limit3(cells, name, at, value),
-    }
-    return kinds[component]()
+# What a component without memory calculates, by its pins and parameters.
+_FORMULAS = {
+    "near": "abs({in1} - {in2}) <= {difference}",
+    "not": "not {in}",
+    "abs": "abs({in})",
+    "and2": "bool({in0} and {in1})",
+    "or2": "bool({in0} or {in1})",
+    "mult2": "{in0} * {in1}",
+    "sum2": "{gain0} * {in0} + {gain1} * {in1}",
+    "mux2": "{in1} if {sel} else {in0}",
+}
 
 
-def _assign(cells: Cells, out: str, of: Callable[[], float]) -> Step:
-    def step(_period: float) -> None:
-        cells[out] = of()
+class Program:
+    """The calls of a thread in their order, as one function on ``cells``."""
 
-    return step
+    def __init__(self, cells: Cells) -> None:
+        self._cells = cells
+        self._steps: list[Step] = []
+        self._lines: list[str] = []
 
+    def add(self, step: Step) -> None:
+        """Append a call."""
+        self._lines.append(f"steps[{len(self._steps)}](period)")
+        self._steps.append(step)
 
-def _of_one(cells: Cells, name: str, at: Pin, of: Callable[[float], float]) -> Step:
-    one = at(f"{name}.in")
-    return _assign(cells, at(f"{name}.out"), lambda: of(cells[one]))
+    def add_component(self, component: str, name: str, at: Pin, value: Callable[[str], float]) -> None:
+        """Append the function of one instance; ``value`` returns what was set for a pin or parameter."""
+        if component in _FORMULAS:
+            self._lines.append(f"cells[{at(f'{name}.out')!r}] = {_formula(component, name, at, value)}")
+        else:
+            self.add(_STEPS[component](self._cells, name, at, value))
 
-
-def _of_two(cells: Cells, name: str, at: Pin, of: Callable[[float, float], float]) -> Step:
-    one, other, out = (at(f"{name}.{pin}") for pin in ("in0", "in1", "out"))
-    return _assign(cells, out, lambda: of(cells[one], cells[other]))
-
-
-def _near(cells: Cells, name: str, at: Pin, value: Callable[[str], float]) -> Step:
-    difference = value(f"{name}.difference")
-    one, other = at(f"{name}.in1"), at(f"{name}.in2")
-    return _assign(cells, at(f"{name}.out"), lambda: abs(cells[one] - cells[other]) <= difference)
-
-
-def _sum2(cells: Cells, name: str, at: Pin, value: Callable[[str], float]) -> Step:
-    one, other, out = (at(f"{name}.{pin}") for pin in ("in0", "in1", "out"))
-    first, second = (value(f"{name}.gain{n}") or 1.0 for n in range(2))
-    return _assign(cells, out, lambda: first * cells[one] + second * cells[other])
-
-
-def _mux2(cells: Cells, sel: str, one: str, other: str, out: str) -> Step:
-    return _assign(cells, out, lambda: cells[other] if cells[sel] else cells[one])
+    def compiled(self) -> Step:
+        """Return the function: to call each component costs several times what it calculates."""
+        names: dict[str, Any] = {"cells": self._cells, "steps": self._steps}
+        exec("\n    ".join(["def run(period):", *self._lines, "return"]), names)
+        run: Step = names["run"]
+        return run
 
 
-def _flipflop(cells: Cells, set_: str, reset: str, out: str) -> Step:
+def _formula(component: str, name: str, at: Pin, value: Callable[[str], float]) -> str:
+    pins = {pin: f"cells[{at(f'{name}.{pin}')!r}]" for pin in ("in", "in0", "in1", "in2", "sel")}
+    gains = {f"gain{n}": value(f"{name}.gain{n}") or 1.0 for n in range(2)}
+    return _FORMULAS[component].format(**pins, **gains, difference=value(f"{name}.difference"))
+
+
+def _flipflop(cells: Cells, name: str, at: Pin, _value: Callable[[str], float]) -> Step:
+    set_, reset, out = (at(f"{name}.{pin}") for pin in ("set", "reset", "out"))
+
     def step(_period: float) -> None:
         if cells[reset]:
             cells[out] = False
@@ -111,7 +109,7 @@ def _flipflop(cells: Cells, set_: str, reset: str, out: str) -> Step:
     return step
 
 
-def _latch(cells: Cells, name: str, at: Pin) -> Step:
+def _latch(cells: Cells, name: str, at: Pin, _value: Callable[[str], float]) -> Step:
     ok_in, fault_in, reset, ok_out, watchdog = (
         at(f"{name}.{pin}") for pin in ("ok-in", "fault-in", "reset", "ok-out", "watchdog")
     )
@@ -164,6 +162,9 @@ def _limit3(cells: Cells, name: str, at: Pin, value: Callable[[str], float]) -> 
         cells[out] = place + was[1] * period
 
     return step
+
+
+_STEPS = {"flipflop": _flipflop, "estop_latch": _latch, "timedelay": _timedelay, "limit3": _limit3}
 
 
 def streamer(cells: Cells, fifo: Fifo, enable: str, pins: list[str]) -> Step:

@@ -8,22 +8,25 @@ from __future__ import annotations
 
 import math
 import re
-from collections import defaultdict, deque
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
+from typing import NamedTuple
 
 from core.ports import Clock, DriverError
 from drivers.hal.bridge.hal_bridge import Bridge
 from drivers.hal.bridge.packets import Head, unpack
 from drivers.hal.hal_border import Border, border_of
-from drivers.hal.hal_config import HalConfig
+from drivers.hal.hal_config import HalAxis, HalConfig
 from drivers.hal.hal_session import bridge_config
-from drivers.lookalikes.hal_components import Cells, Fifo, Step, sampler, step_of, streamer, watchdog
+from drivers.lookalikes.hal_components import Cells, Fifo, Program, sampler, streamer, watchdog
 from drivers.lookalikes.plant import Plant
 from drivers.lookalikes.plant_config import SimConfig
 from drivers.lookalikes.plant_hands import PlantHands
+from drivers.lookalikes.servo_axis import Servo
 
 _ROUND, _REPORT = 2, 4  # periods between two rounds of the bridge, between two reports
-_STATION = ("estop", "start", "hold", "spindle_auto")
+_STATION = frozenset({"estop", "start", "hold", "spindle_auto"})
 _HAIR = 1e-9
 _PACKET_ERRORS = 5  # of hm2_eth: 10 / 2, its packet-error-limit and -increment
 _INDEX = 0.3  # turns, where the spindle's index is
@@ -33,37 +36,36 @@ class HalThread:
     """Everything of ours in the servo thread, in its order; ``cells`` by signal, or pin."""
 
     def __init__(self, border: Border) -> None:
-        self.cells: Cells = defaultdict(float)
+        self.cells: Cells = {}
         self._cell: dict[str, str] = {pin: signal for signal, pins in border.nets.items() for pin in pins}
         self.theirs = {link.pin: link.ours[0] for link in border.links}  # cells of the machine's pins
+        self.cells.update(dict.fromkeys([*border.nets, *self.theirs.values()], 0.0))
         self.streams = (Fifo(), Fifo())
         self.samples = Fifo()
         component = {name: kind for kind, names in border.modules.items() for name in names}
         values = dict(border.values)
-        steps = (self._step(call, component, values) for call in border.calls)
-        self._steps: list[Step] = [step for step in steps if step is not None]
+        program = Program(self.cells)
+        for call in border.calls:
+            self._add(program, call, component, values)
+        self.run = program.compiled()  # one period of the thread, whose length in s it is given
 
     def at(self, pin: str) -> str:
         """The cell of a pin of ours."""
-        return self._cell.get(pin, pin)
+        cell = self._cell.get(pin, pin)
+        self.cells.setdefault(cell, 0.0)
+        return cell
 
-    def run(self, period: float) -> None:
-        """One period of the thread."""
-        for step in self._steps:
-            step(period)
-
-    def _step(self, call: str, component: dict[str, str], values: dict[str, float]) -> Step | None:
+    def _add(self, program: Program, call: str, component: dict[str, str], values: dict[str, float]) -> None:
         if call.startswith("streamer."):
-            number = int(call.removeprefix("streamer."))
-            return streamer(self.cells, self.streams[number], self.at(f"{call}.enable"), self._pins(call))
-        if call == "sampler.0":
-            return sampler(self.cells, self.samples, self._pins(call))
-        if call == "watchdog.process":
+            fifo = self.streams[int(call.removeprefix("streamer."))]
+            program.add(streamer(self.cells, fifo, self.at(f"{call}.enable"), self._pins(call)))
+        elif call == "sampler.0":
+            program.add(sampler(self.cells, self.samples, self._pins(call)))
+        elif call == "watchdog.process":
             input_, enable, out = (self.at(f"watchdog.{pin}") for pin in ("input-0", "enable-in", "ok-out"))
-            return watchdog(self.cells, input_, enable, out, values["watchdog.timeout-0"])
-        if call not in component:
-            return None
-        return step_of(component[call], call, self.cells, self.at, lambda pin: values.get(pin, 0.0))
+            program.add(watchdog(self.cells, input_, enable, out, values["watchdog.timeout-0"]))
+        elif call in component:
+            program.add_component(component[call], call, self.at, lambda pin: values.get(pin, 0.0))
 
     def _pins(self, call: str) -> list[str]:
         """Cells of the numbered pins of a streamer or sampler."""
@@ -76,13 +78,26 @@ class ThreadPins:
     """The bridge's component: its pins on the thread's cells."""
 
     def __init__(self, thread: HalThread) -> None:
-        self._cells, self._at = thread.cells, thread.at
+        self._cells = thread.cells
+        self._at = cache(lambda name: thread.at(f"turndesk.{name}"))
 
     def __getitem__(self, name: str) -> float:
-        return self._cells[self._at(f"turndesk.{name}")]
+        return self._cells[self._at(name)]
 
     def __setitem__(self, name: str, value: float) -> None:
-        self._cells[self._at(f"turndesk.{name}")] = value
+        self._cells[self._at(name)] = value
+
+
+class _AxisCells(NamedTuple):
+    """An axis and the cells of its pins; empty: it has no such pin."""
+
+    name: str
+    servo: Servo
+    feedback: str
+    fault: str
+    home: str
+    command: str
+    enable: str
 
 
 class HalPlant(Plant):
@@ -111,7 +126,7 @@ class HalPlant(Plant):
 
     def press_estop(self) -> None:
         """The chain of relays: drives and spindle lose power, whatever any thread says."""
-        with self.lock:
+        with self.touch:
             now = self.advance()
             self.panel.estop = True
             self.spindle.cut(now)
@@ -137,13 +152,21 @@ class HalFarEnd:
         self.garbled = False  # what is told is no packet
         self.has_index = True  # phase Z of the spindle's encoder is wired
         self._orients = False
+        self._hands: object = None  # of the plant, as they were read last
         self.late = 0  # reports that are held back
         self._outbox: deque[bytes] = deque()
         self._count = 0
         self._rpm = 0.0
         self._turns = self._index_at = 0.0  # as its encoder counts, and where it has begun to count anew
+        self._axes = [self._wire(axis) for axis in config.driven]
         self._place = {axis.name: 0.0 for axis in config.driven}
         self.bridge = self._start()
+
+    def _wire(self, axis: HalAxis) -> _AxisCells:
+        servo, pins = self.plant.servos[self.plant.names.index(axis.name)], axis.pins
+        assert pins is not None
+        wired = (pins.feedback, pins.fault, pins.home, pins.command, pins.enable)
+        return _AxisCells(axis.name, servo, *(self.thread.theirs[pin] if pin else "" for pin in wired))
 
     def _start(self) -> Bridge:
         pins = ThreadPins(self.thread)
@@ -163,7 +186,7 @@ class HalFarEnd:
         self.errors = 0
         if self.killed or self.bridge.gone:
             self.killed = False
-            self.thread = HalThread(border_of(self.config))
+            self.thread, self._hands = HalThread(border_of(self.config)), None
             self.bridge = self._start()
         self._outbox.clear()
         return self
@@ -224,8 +247,8 @@ class HalFarEnd:
 
     def _coast(self, t: float, period: float) -> None:
         """A board without its computer: its watchdog takes power, spindle and outputs."""
-        for axis in self.config.driven:
-            self.plant.servos[self.plant.names.index(axis.name)].roll(period)
+        for axis in self._axes:
+            axis.servo.roll(period)
         if self._rpm:
             self._rpm = 0.0
             self.plant.spindle.order(t, 0.0)
@@ -242,20 +265,29 @@ class HalFarEnd:
 
     def _read(self, t: float) -> None:
         """What HAL reads of the machine."""
-        plant, config = self.plant, self.config
-        for axis in config.driven:
-            servo, pins = plant.servos[plant.names.index(axis.name)], axis.pins
-            assert pins is not None
-            self._set(pins.feedback, servo.reading)
-            self._set(pins.fault, axis.name in plant.faulty)
-            self._set(pins.home, servo.p <= servo.switch)
+        plant, config, cells = self.plant, self.config, self.thread.cells
+        for axis in self._axes:
+            servo = axis.servo
+            cells[axis.feedback] = servo.reading
+            if axis.fault:
+                cells[axis.fault] = axis.name in plant.faulty
+            if axis.home:
+                cells[axis.home] = servo.p <= servo.switch
         if config.spindle.pins.position:
             self._encode(plant.spindle.counted)
         self._set(config.spindle.pins.velocity, plant.spindle.speed / 60.0)
-        state = plant.panel.state(t)
-        states = {**plant.terminals.read(t), **{name: getattr(state, name) for name in _STATION}}
+        self._read_hands(t)
+
+    def _read_hands(self, t: float) -> None:
+        """Read inputs and pots, where they may have changed."""
+        hands = self.plant.hands(t)
+        if hands is self._hands:
+            return
+        self._hands = hands
+        (state, inputs), config, cells, theirs = hands, self.config, self.thread.cells, self.thread.theirs
         for name, wired in config.inputs.items():
-            self._set(wired.pin, bool(states.get(name)) is not wired.active_low)
+            on = getattr(state, name) if name in _STATION else inputs.get(name)
+            cells[theirs[wired.pin]] = bool(on) is not wired.active_low
         for name, pot in config.pots.items():
             if name == "handwheel":
                 self._set(pot.pin, state.handwheel)
@@ -275,13 +307,12 @@ class HalFarEnd:
 
     def _drive(self, t: float, period: float) -> None:
         """What HAL drives; without power slides roll out. Boards of a thread that stands take the power."""
-        plant, config = self.plant, self.config
-        for axis in config.driven:
-            servo, pins = plant.servos[plant.names.index(axis.name)], axis.pins
-            assert pins is not None
-            goal, last = self._get(pins.command), self._place[axis.name]
+        plant, config, cells = self.plant, self.config, self.thread.cells
+        powered = not self.stands and not plant.panel.estop
+        for axis in self._axes:
+            servo, goal, last = axis.servo, cells[axis.command], self._place[axis.name]
             self._place[axis.name] = goal
-            if self._get(pins.enable) and not self.stands and not plant.panel.estop:
+            if powered and cells[axis.enable]:
                 servo.follow(goal, (goal - last) / period, period)
                 if goal == last:
                     servo.settle(goal)

@@ -5,16 +5,29 @@ The model steps on a grid of fixed times, so what happens does not depend on who
 
 from __future__ import annotations
 
-import math
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
+
+import numpy as np
 
 from core.message import Message
-from core.ports import Cam, Clock, DriverError, Fault, Segments, Stop, code_of
+from core.ports import (
+    BoolArray,
+    Cam,
+    Clock,
+    DriverError,
+    Fault,
+    FloatArray,
+    Segments,
+    StationState,
+    Stop,
+    code_of,
+)
+from drivers.lookalikes.drive_limits import check_cam, check_limits
+from drivers.lookalikes.foreseen_motion import ForeseenMotion, foresee
 from drivers.lookalikes.plant_config import SimConfig
 from drivers.lookalikes.plant_terminals import Terminals
 from drivers.lookalikes.servo_axis import Servo
-from drivers.lookalikes.servo_response import Setpoints
 from drivers.lookalikes.spindle_motor import SpindleMotor
 from drivers.lookalikes.tool_setter import ToolSetter
 from drivers.operator_station import Panel
@@ -23,72 +36,12 @@ from drivers.setpoint_queue import Tolerance, straight
 from drivers.spindle_gear import GearedQueue, Phase, Slides
 from drivers.wakeup import Touch, Wakeup
 
-# --- The drives' own limits, the last line behind the control's: setpoints beyond them are refused.
-
-
-_STANDS = 10.0  # rpm; faster than this the spindle's drive turns, and cannot position
-_SLIPS = 1.1  # of an axis' speed: a spindle that asks for more is refused, one that asks for less slips
-
-
-def check_limits(segments: Segments, servos: Sequence[Servo], rpm: float) -> None:
-    """Raises DriverError for setpoints too fast, out of the travel, or of C while the spindle turns."""
-    for i, servo in enumerate(servos):
-        axis = servo.axis
-        fastest = abs(segments.v[:, i]).max(initial=0.0)
-        if fastest > axis.vmax * 1.001 + 0.01:
-            raise DriverError(
-                Message(
-                    "{axis}: the setpoint speed exceeds {vmax}/s; nothing was queued",
-                    axis=axis.name,
-                    vmax=f"{axis.vmax:.1f}",
-                ),
-                "drive-limits",
-                reason="too-fast",
-            )
-        if axis.name == "C" and not axis.own_drive and fastest > 0.0 and abs(rpm) > _STANDS:
-            raise DriverError(
-                Message(
-                    "C axis: the spindle is turning at {rpm} rpm, so no setpoints were queued",
-                    rpm=f"{rpm:.0f}",
-                ),
-                "drive-limits",
-            )
-        if axis.travel is None or not servo.homed:
-            continue
-        low, high = _reach(axis.travel, servo)
-        if segments.p[:, i].min(initial=low) < low - 0.01 or segments.p[:, i].max(initial=high) > high + 0.01:
-            raise DriverError(
-                Message(
-                    ("{axis}: setpoints are outside the travel range {low}…{high}; no setpoints were queued"),
-                    axis=axis.name,
-                    low=f"{low:.2f}",
-                    high=f"{high:.2f}",
-                ),
-                "drive-limits",
-                reason="leaves-travel",
-            )
-
-
-def _reach(travel: tuple[float, float], servo: Servo) -> tuple[float, float]:
-    """The travel, and for a slide that stands beyond it the way back: as drives have it, and no further."""
-    return min(travel[0], servo.reading), max(travel[1], servo.reading)
-
-
-def check_cam(cam: Cam, servos: Sequence[Servo], rpm: float) -> None:
-    """The same for motion over the turns of a spindle that turns at ``rpm``."""
-    by_time = cam.way.v * (abs(rpm) / 60.0 / _SLIPS)
-    check_limits(cam.way._replace(v=by_time), servos, rpm)
-    if cam.then is not None:
-        check_limits(cam.then, servos, rpm)
-
-
 _NEVER = float("inf")
 Motion = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]
 _PAST = 0.1  # s of setpoints that may still be asked for
 _HALT = 0.2  # s
 _HOME_SETTLE = 0.2  # s between the end of a homing move and the reference
-_FEEDS, _CUTS = 0.05, 0.25  # mm/s, and the fraction of the rapid above which nothing is cut
-_WORTH_GLIDING = 4  # steps; fewer are quicker one by one
+_FREE = (0.0, 0.0, 0.0, 0.0)  # columns of a sample: of the spindle three, and of the queue
 _AT_REST = 0.1  # s between two samples of a machine on which nothing changes
 
 
@@ -121,10 +74,18 @@ class Plant:
         self._homing: tuple[Servo, float] | None = None
         self.due: Callable[[float], None] | None = None  # what breaks by itself as time passes
         self.log: SampleLog | None = None  # samples of every grid point, once somebody takes them
-        self._turned = (0.0, 0.0, 0.0)  # speed, turns and load of the spindle at the present grid point
+        self._turned: tuple[float, ...] = (
+            0.0,
+            0.0,
+            0.0,
+        )  # speed, turns and load of the spindle at the present grid point
         self._changed = True  # something was sampled that is not at rest
         self._k = int(clock.now() / config.step)
         self.spindle.t = clock.now()
+        self._hands: tuple[StationState, Mapping[str, bool]] | None = None
+        self._hands_at: int | None = None  # count of changes at that reading; None: they change by themselves
+        self._looked_at = -_NEVER  # time of the last look, s
+        self._ahead: ForeseenMotion | None = None
 
     @property
     def t(self) -> float:
@@ -135,7 +96,10 @@ class Plant:
         """Bring everything up to the clock; returns the clock's time."""
         now = self.clock.now()
         with self.lock:
+            if now == self._looked_at:
+                return now
             self._break(now)
+            self._looked_at = now
             last = int(now / self.config.step + 1e-6)
             if last > self._k:
                 self._slides(last)
@@ -143,6 +107,15 @@ class Plant:
             if now > self.spindle.t:
                 self.spindle.advance(now)
         return now
+
+    def hands(self, t: float) -> tuple[StationState, Mapping[str, bool]]:
+        """Return what station and inputs say at ``t`` (s); they are read again only where they may differ."""
+        changes = self.touch.count + self.terminals.writes
+        if self._hands is None or changes != self._hands_at:
+            still = self.terminals.setter is None and self.terminals.settled(t) and self.panel.settled(t)
+            self._hands_at = changes if still else None
+            self._hands = self.panel.state(t), self.terminals.read(t)
+        return self._hands
 
     def settled(self) -> bool:
         """Whether nothing changes any more until somebody's hand is on it; what breaks by the clock may."""
@@ -293,71 +266,56 @@ class Plant:
             servo.power_lost()
 
     def _slides(self, last: int) -> None:
-        """Step the servos up to grid point ``last``; a machine at rest is left alone."""
+        """Move the axes up to grid point ``last``; a machine at rest is left alone."""
         while self._k < last:
             if self.t >= self._off_at:
                 self._power_off()
             if self._resting():
-                self.spindle.cuts = False
-                if self.spindle.slips:
-                    self.spindle.cut_load(self.t, cutting=False)
-                until = max(self._k + 1, int(min(self._off_at / self.config.step + 1, last)))
-                if self.log is not None:
-                    self._sample_rest(until)
-                self._k = until
-            elif self._undisturbed():
-                self._follow(last)
-            else:
+                self._rest(last)
+            elif not (self._undisturbed() and self._glide(last)):
                 self._step()
             self._reference()
 
-    def _undisturbed(self) -> bool:
-        """Whether the slides have nothing but setpoints in time to go by, and nobody looks at every step."""
-        ordered = self.enabled and self._off_at == _NEVER and self._homing is None and not self.fault
-        watched = self.log is not None or self.terminals.setter is not None or self.spindle.faults.belt
-        return ordered and not watched and not self.queue.meshed
+    def _rest(self, last: int) -> None:
+        """Let time pass up to grid point ``last``, or until the drives are switched off."""
+        self.spindle.cuts = False
+        if self.spindle.slips:
+            self.spindle.cut_load(self.t, cutting=False)
+        until = max(self._k + 1, int(min(self._off_at / self.config.step + 1, last)))
+        if self.log is not None:
+            self._sample_rest(until)
+        self._k = until
 
-    def _follow(self, last: int) -> None:
-        """Move up to grid point ``last``, a trip or the end of the setpoints, at once where no limit acts."""
-        dt, ends = self.config.step, self.queue.horizon(-_NEVER)
-        while True:
-            if self._k * dt >= ends or not self._glide(last):
-                p, v = self.queue.demand_at(self._k * dt)
-                self._k += 1
-                self._servos_follow(p, v, dt)
-            if self.fault or self._k >= last or self._k * dt >= ends:
-                break
-        self.spindle.cuts = self.cuts()
+    def _undisturbed(self) -> bool:
+        """Whether the axes follow setpoints in time alone, and no device needs every step."""
+        ordered = self.enabled and self._off_at == _NEVER and self._homing is None and not self.fault
+        return (
+            ordered
+            and self.terminals.setter is None
+            and not self.spindle.faults.belt
+            and not self.queue.meshed
+        )
 
     def _glide(self, last: int) -> bool:
-        """Move to the end of the setpoint piece, at most to ``last``; return False where that needs steps."""
-        dt, t = self.config.step, self.t
-        piece, until = self.queue.piece_at(t)
-        steps = min(last - self._k, math.ceil((until - t) / dt))
-        if (self._k + steps - 1) * dt >= until:
-            steps -= 1
-        if steps < _WORTH_GLIDING:
+        """Move along the setpoint piece, at most to grid point ``last``; False where that needs steps."""
+        ahead = self._ahead
+        piece, until = self.queue.piece_at(self.t)
+        if ahead is None or not ahead.holds(piece, until, self._k):
+            ahead = self._ahead = foresee(self.servos, piece, until, self._k, self.config.step)
+        if ahead is None:
             return False
-        u, half = t - piece.t, 0.5 * dt * dt
-        setpoints = [
-            Setpoints(p + (v + 0.5 * a * u) * u, (v + a * u) * dt, a * half)
-            for p, v, a in zip(piece.p, piece.v, piece.a, strict=True)
-        ]
-        responses = []
-        for servo, ahead in zip(self.servos, setpoints, strict=True):
-            response = servo.foresee(ahead, steps)
-            if response is None:
-                return False
-            responses.append(response)
-        for servo, ahead, response in zip(self.servos, setpoints, responses, strict=True):
-            servo.glide(ahead, response, steps)
-        self._k += steps
+        last = min(last, ahead.last)
+        if self.log is not None:
+            self._sample_ahead(ahead, last)
+        ahead.move_to(last)
+        self._k = last
+        self.spindle.cuts = self.cuts()
         return True
 
     def _resting(self) -> bool:
         if not self.enabled:
             return all(servo.v == 0.0 for servo in self.servos)
-        if self.queue.horizon(self.t) > self.t:
+        if self.queue.meshed or self.queue.horizon(self.t) > self.t:
             return False
         rest, _ = self.queue.demand_at(self.t)
         settled = [servo.settle(p) for servo, p in zip(self.servos, rest, strict=True)]
@@ -393,8 +351,8 @@ class Plant:
         return bool(self.fault)
 
     def cuts(self) -> bool:
-        """Whether a slide feeds: much slower than its rapid, which is as near to a cut as this gets."""
-        return any(_FEEDS < abs(servo.v) < _CUTS * servo.axis.vmax for servo in self.servos)
+        """Whether a slide feeds."""
+        return any(servo.cuts for servo in self.servos)
 
     def _setpoint(self, t: float) -> Motion:
         """What the drives get, its velocity, and what is queued; by the spindle's encoder the first makes up
@@ -419,12 +377,45 @@ class Plant:
         self.log.add(t, *(demand or actual), *actual, *load, *self._turned, left)
         self._changed = True
 
+    def _sample_turning(self, demand: tuple[float, ...] | None, until: int) -> None:
+        """The spindle up to grid point ``until`` (without it), while the axes rest."""
+        assert self.log is not None
+        actual = self._readings()
+        row = [0.0, *(demand or actual), *actual, *(servo.load for servo in self.servos), *_FREE]
+        rows = np.tile(np.array(row), (until - self._k, 1))
+        rows[:, 0] = np.arange(self._k, until) * self.config.step
+        self._turn_ahead(rows, np.zeros(len(rows), dtype=np.bool_))
+        self.log.extend(rows)
+        self._k, self._changed = until, True
+
+    def _sample_ahead(self, ahead: ForeseenMotion, last: int) -> None:
+        """All grid points up to ``last`` (without it) of a motion that is known ahead."""
+        assert self.log is not None
+        rows = ahead.rows(self._k, last)
+        self._turn_ahead(rows, ahead.cuts(self._k + 1, last + 1))
+        rows[:, -1] = self.queue.horizon(self.t) - rows[:, 0]
+        self.log.extend(rows)
+        self._changed = True
+
+    def _turn_ahead(self, rows: FloatArray, cuts: BoolArray) -> None:
+        """Fill the columns of the spindle, and turn it one grid point further than the last row; ``cuts``:
+        whether a tool cuts at each grid point behind the first.
+        """
+        rows[:, -4:-1] = self._turned
+        if self._turned[0] or not self.spindle.still:
+            following = self.spindle.turn(rows[:, 0] + self.config.step, cuts)
+            rows[1:, -4:-1] = following[:-1]
+            self._turned = tuple(following[-1].tolist())
+
     def _sample_rest(self, until: int) -> None:
         """Up to grid point ``until`` the slides rest: only a spindle that turns has anything to tell."""
         assert self.log is not None
         demand = self.queue.demand_at(self.t)[0] if self.enabled else None
         while self._k < until:
             turns = not self.spindle.still or self._turned[0] != 0.0
+            if self.spindle.even and not self.spindle.still:
+                self._sample_turning(demand, until)
+                return
             if turns or self._changed or self.t >= self.log.last + _AT_REST:
                 self._sample(self.t, demand)
                 self._changed = turns

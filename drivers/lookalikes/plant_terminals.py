@@ -23,6 +23,7 @@ class Terminals:
         self.outputs = {name: model.initial for name, model in outputs.items()}
         self.inputs = {name: name == _GUARD for name in inputs}  # it begins with the guard closed
         self.sensor_stuck = False
+        self.writes = 0  # how many outputs were written
         self.setter: ToolSetter | None = None
         self._collet = collet
         self._random = random.Random(seed)
@@ -39,6 +40,7 @@ class Terminals:
             self._closed_at = now + self._late(self._collet.close_time) if on else float("inf")
             self._opened_at = now + self._late(self._collet.open_time)
         self.outputs[name] = on
+        self.writes += 1
 
     def safe(self, now: float) -> None:
         """Every output to its safe state; those without one keep what they do."""

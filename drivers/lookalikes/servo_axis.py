@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 
 from drivers.lookalikes.plant_config import SimAxis
-from drivers.lookalikes.servo_response import Response, ServoLoop, Setpoints
+from drivers.lookalikes.servo_response import AT_REST, Number, Response, ServoLoop, Setpoints
 from drivers.lookalikes.worn_axis import WornAxis
 
+_FEEDS, _CUTS = 0.05, 0.25  # mm/s, and the fraction of the rapid above which nothing is cut
 _SETTLED = 1e-4  # mm or degrees, and per second: below this the slide is put on its setpoint
 
 
@@ -28,6 +29,7 @@ class Servo:
         self.worn = WornAxis()
         self.over = 0.0  # seconds outside the following window
         self.load = 0.0  # per cent of what the drive can, signed
+        self.feeds = (_FEEDS, _CUTS * axis.vmax)  # between these speeds it is taken to cut
         self._wn = 2 * math.pi * axis.bandwidth
         self._loop = ServoLoop(self._wn * step, axis.feed_forward) if self._wn * step < 0.5 else None
 
@@ -39,6 +41,20 @@ class Servo:
         worn = self.worn
         p = worn.slide if worn.gib else worn.counted(self.p) if worn.deceives else self.p
         return round(p / self.axis.count) * self.axis.count
+
+    @property
+    def sound(self) -> bool:
+        """Whether nothing is wrong with slide, drive or encoder."""
+        worn = self.worn
+        return not (
+            self.jammed or self.runaway or worn.gib or worn.ripple or worn.missed or self.stuck is not None
+        )
+
+    @property
+    def cuts(self) -> bool:
+        """Whether it feeds: much slower than its rapid, which is as near to a cut as this gets."""
+        least, most = self.feeds
+        return least < abs(self.v) < most
 
     @property
     def where(self) -> float:
@@ -91,12 +107,13 @@ class Servo:
 
         The bounds are those of ``follow``: the first force exactly, everything else by the sum of its parts.
         """
-        faulty = self.jammed or self.runaway or self.stuck is not None or self.worn.gib or self.worn.deceives
         loop, axis, dt = self._loop, self.axis, self._step
-        if faulty or loop is None:
+        if not self.sound or loop is None:
             return None
-        response = loop.response(self.p, self.v * dt, setpoints)
         p, dp, ddp = setpoints
+        if self.p == p and not (self.v or dp or ddp):
+            return AT_REST
+        response = loop.response(self.p, self.v * dt, setpoints)
         lag, drift, slow, fast = response
         slow, fast = abs(slow), abs(fast)
         if abs(lag) + abs(drift) * steps + slow + fast > axis.following_window:
@@ -105,25 +122,22 @@ class Servo:
         first = self._wn * (self._wn * (p - self.p) + 2.0 * (axis.feed_forward * dp / dt - self.v))
         if max(bent / (dt * dt), abs(first)) > axis.amax * axis.reserve:
             return None
-        fastest = abs(dp) + 2.0 * abs(ddp) * steps + abs(drift) + slow + fast
+        fastest = max(abs(dp), abs(dp + 2.0 * ddp * steps)) + abs(drift) + slow + fast
         return response if fastest <= axis.vmax * 1.1 * dt else None
 
     def glide(self, setpoints: Setpoints, response: Response, steps: int) -> None:
         """Move as ``steps`` calls of ``follow`` do, by the response that ``foresee`` returned."""
-        assert self._loop is not None
-        p, dp, ddp = setpoints
-        lag, drift, slow, fast = response
-        dt, slow_mode, fast_mode = self._step, self._loop.slow_mode, self._loop.fast_mode
-        slow, fast = slow * slow_mode ** (steps - 1), fast * fast_mode ** (steps - 1)
-        self.p = p + dp * steps + ddp * steps * steps + lag + drift * steps
-        self.p += slow * slow_mode + fast * fast_mode
-        moved = dp + ddp * (2 * steps - 1) + drift + slow * (slow_mode - 1.0) + fast * (fast_mode - 1.0)
-        bent = (
-            2.0 * ddp + (slow * self._loop.slow_bend / slow_mode) + (fast * self._loop.fast_bend / fast_mode)
-        )
-        self.v = moved / dt
-        self.load = 100.0 * bent / (dt * dt) / (self.axis.amax * self.axis.reserve)
+        self.p, self.v, self.load = self.states(setpoints, response, steps)
         self.over = 0.0
+
+    def states(
+        self, setpoints: Setpoints, response: Response, steps: Number
+    ) -> tuple[Number, Number, Number]:
+        """Return position, velocity and load after ``steps`` grid points, one number or many."""
+        assert self._loop is not None
+        dt = self._step
+        place, moved, bent = self._loop.states(setpoints, response, steps)
+        return place, moved / dt, 100.0 * bent / (dt * dt) / (self.axis.amax * self.axis.reserve)
 
     def _seen(self) -> float:
         """What the drive takes for its place."""

@@ -8,7 +8,11 @@ replaces any number of steps; both agree within rounding (1e-9 mm).
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
+
+from core.ports import FloatArray
+
+Number = TypeVar("Number", float, FloatArray)
 
 
 class Setpoints(NamedTuple):
@@ -26,6 +30,9 @@ class Response(NamedTuple):
     drift: float
     slow: float
     fast: float
+
+
+AT_REST = Response(0.0, 0.0, 0.0, 0.0)
 
 
 class ServoLoop:
@@ -55,3 +62,16 @@ class ServoLoop:
         after = (2.0 - 2.0 * w - w * w) * now - (1.0 - 2.0 * w) * before
         slow = (after - self.fast_mode * now) / (self.slow_mode - self.fast_mode)
         return Response(lag, drift, slow, now - slow)
+
+    def states(self, setpoints: Setpoints, response: Response, k: Number) -> tuple[Number, Number, Number]:
+        """Return the position at grid point ``k``, the move that led there and its change, all in mm
+        (or degrees) and intervals of the grid.
+        """
+        (p, dp, ddp), (lag, drift, slow_part, fast_part) = setpoints, response
+        slow, fast = slow_part * self.slow_mode ** (k - 1), fast_part * self.fast_mode ** (k - 1)
+        place = p + dp * k + ddp * k * k + lag + drift * k
+        place = place + (slow * self.slow_mode + fast * self.fast_mode)
+        moved = dp + ddp * (2 * k - 1) + drift
+        moved = moved + slow * (self.slow_mode - 1.0) + fast * (self.fast_mode - 1.0)
+        bent = 2.0 * ddp + slow * self.slow_bend / self.slow_mode + fast * self.fast_bend / self.fast_mode
+        return place, moved, bent

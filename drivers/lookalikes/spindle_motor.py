@@ -7,6 +7,9 @@ from collections import deque
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
+import numpy as np
+
+from core.ports import BoolArray, FloatArray
 from drivers.lookalikes.plant_config import SimSpindle
 
 _BEARINGS, _SPEEDS_UP, _IN_CUT = 10.0, 70.0, 30.0  # per cent
@@ -102,6 +105,13 @@ class SpindleMotor:
         return not self._even and not self._target and not self._orders and not self._turning_there
 
     @property
+    def even(self) -> bool:
+        """Whether its speed stays the same until something is ordered or breaks."""
+        faults = self.faults
+        target = 0.0 if faults.fault else self._target * faults.bog
+        return self._even == target and not (self._orders or self._orient or faults.wander or self.slips)
+
+    @property
     def counted(self) -> float:
         """Turns as the encoder counts them, in steps of its four edges."""
         edges = 4 * self.config.ppr
@@ -169,8 +179,31 @@ class SpindleMotor:
             self.t = max(self.t, at)
             self._target, self._coasting = rpm, coast
         self._ramp(now - self.t)
-        self._turn_there(now)
+        if self._orient is not None:
+            self._turn_there(now)
         self.t = now
+
+    def turn(self, times: FloatArray, cuts: BoolArray) -> FloatArray:
+        """Turn to the last of ``times`` (s); return speed, counted turns and load at each of them, (n, 3).
+
+        ``cuts``: whether a tool cuts then.
+        """
+        if not self.even:
+            return np.array(
+                [self._turn_to(*each) for each in zip(times.tolist(), cuts.tolist(), strict=True)]
+            )
+        edges, self.cuts = 4 * self.config.ppr, False
+        rows = np.empty((len(times), 3))
+        rows[:, 0] = self._even
+        rows[:, 1] = np.rint((self.turns + self._even / 60.0 * (times - self.t)) * edges) / edges
+        rows[:, 2] = self.load + _IN_CUT * cuts if self._even else 0.0
+        self.advance(float(times[-1]))
+        return rows
+
+    def _turn_to(self, t: float, cuts: bool) -> tuple[float, float, float]:
+        self.cuts = cuts
+        self.advance(t)
+        return self.speed, self.counted, self.load
 
     def cut_load(self, now: float, *, cutting: bool) -> None:
         """A tool is in the metal or not: under it a belt that slips lets go and grabs again."""
@@ -184,6 +217,9 @@ class SpindleMotor:
         faults, t, held = self.faults, self.t, 1.0 - self.slips
         target = 0.0 if faults.fault else self._target * faults.bog
         while dt > 0.0:
+            if self._even == target:
+                self.turns += held * self._even / 60.0 * (dt + self._swung(t, dt))
+                return
             braking = self._even * target <= 0.0 < abs(self._even) or abs(target) < abs(self._even)
             rate = self.config.decel if braking else self.config.accel
             if braking and (self._coasting or faults.fault):

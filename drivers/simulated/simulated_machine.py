@@ -257,7 +257,7 @@ class SimStation(_OnPlant):
         """The station as the control reads it now."""
         plant = self._plant
         with plant.lock:
-            state = plant.panel.state(plant.clock.now())
+            state, _ = plant.hands(plant.clock.now())
             load = plant.spindle.load if plant.config.measures_load else None
         return state if load is None else replace(state, spindle_load=load)
 

@@ -2300,11 +2300,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>SPINDLE SWITCH AT OFF</source>
-      <translation>INTERRUPTOR DE HUSILLO EN OFF</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>STARTS</source>
       <translation>ENTRADAS</translation>
     </message>
@@ -16320,8 +16315,8 @@
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
-      <source>spindle switch at OFF</source>
-      <translation>interruptor del husillo en OFF</translation>
+      <source>spindle switch off</source>
+      <translation type="unfinished">interruptor del husillo en OFF</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />

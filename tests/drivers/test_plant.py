@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import pytest
 
@@ -268,3 +269,31 @@ def test_c_is_not_positioned_by_a_spindle_that_turns() -> None:
     sim.ports.axes.splice(turn._replace(t=turn.t + 2.0))
     play(sim, clock, 1.0)
     assert sim.ports.axes.sample().actual[2] == pytest.approx(100.0 * 0.2333, abs=0.05)
+
+
+def test_the_station_is_read_again_only_after_a_change() -> None:
+    sim, clock = simulation()
+    station = sim.ports.station
+    play(sim, clock, 1.0)
+    first = station.snapshot()
+    play(sim, clock, 1.0)
+    assert station.snapshot() is first
+    sim.machine.set_feed_pot(0.5)
+    assert station.snapshot().feed_pot == pytest.approx(0.5)
+    sim.ports.io.write("coolant", True)
+    assert station.snapshot() is not first
+
+
+@pytest.mark.parametrize("act", ["start", "noise", "silence"])
+def test_a_station_that_changes_by_itself_is_read_each_time(act: str) -> None:
+    sim, clock = simulation()
+    acts: dict[str, Callable[[], None]] = {
+        "start": sim.machine.press_start,  # its contact opens again after a pulse
+        "noise": lambda: sim.machine.pot_noise(0.1),
+        "silence": sim.machine.station_silent,
+    }
+    acts[act]()
+    clock.advance(0.05)
+    before = sim.ports.station.snapshot()
+    clock.advance(0.2)
+    assert sim.ports.station.snapshot() != before

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from core.ports import FloatArray, Stop
+from core.ports import FloatArray, Segments, Stop
+from drivers.lookalikes import plant
 from drivers.sample_log import SampleLog
 from drivers.simulated.simulated_machine import Simulation
 from tests.drivers.machines import play, ramp, simulation
@@ -55,6 +56,38 @@ def test_the_samples_are_the_same_whoever_looks_when(tick: float) -> None:
         return found[:489]
 
     np.testing.assert_allclose(sampled(tick), sampled(0.003), rtol=0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("act", ["nothing", "push", "jam", "new setpoints", "drive fault"])
+def test_a_foreseen_motion_is_the_stepped_one(act: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def sampled() -> FloatArray:
+        sim, clock = simulation()
+        taken(sim)
+        sim.ports.spindle.run(900.0)
+        sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.4))
+        play(sim, clock, 0.2)
+        if act == "push":
+            sim.machine.push("X", 0.01)
+        elif act == "jam":
+            sim.machine.jam("X")
+        elif act == "drive fault":
+            sim.machine.drive_fault("X")
+        elif act == "new setpoints":
+            t = clock.now() + 0.05
+            p, v = sim.ports.axes.demand_at(t)
+            sim.ports.axes.splice(braking(t, p, v))
+        play(sim, clock, 0.5)
+        return taken(sim)
+
+    foreseen = sampled()
+    monkeypatch.setattr(plant, "foresee", lambda *_: None)
+    np.testing.assert_allclose(foreseen, sampled(), rtol=0.0, atol=1e-9)
+
+
+def braking(t: float, p: tuple[float, ...], v: tuple[float, ...]) -> Segments:
+    """To rest in 0.1 s."""
+    a = [-each / 0.1 for each in v]
+    return Segments(np.array([t]), np.array([0.1]), np.array([p]), np.array([v]), np.array([a]))
 
 
 def test_a_spindle_is_sampled_also_while_the_slides_rest_and_its_ripple_is_the_known_one() -> None:
@@ -117,6 +150,21 @@ def test_a_log_gives_each_row_once_the_oldest_first() -> None:
     log.add(6.0, 0.0, 0.0, 0.0, 0.0)
     assert log.take()[:, T].tolist() == [5.0, 6.0]
     assert log.take().shape == (0, 5)
+
+
+def test_rows_added_at_once_are_as_those_one_by_one() -> None:
+    for count in (1, 3, 4, 5, 9):
+        single, block = SampleLog(0, kept=4), SampleLog(0, kept=4)
+        rows = np.arange(5.0 * count).reshape(count, 5)
+        for log in (single, block):
+            log.add(-2.0, 0.0, 0.0, 0.0, 0.0)
+            log.add(-1.0, 0.0, 0.0, 0.0, 0.0)
+            log.take(1)
+        for row in rows:
+            single.add(*row)
+        block.extend(rows)
+        assert block.last == single.last
+        np.testing.assert_array_equal(block.take(), single.take())
 
 
 def test_the_spindle_bears_its_bearings_its_speeding_up_and_the_cut() -> None:

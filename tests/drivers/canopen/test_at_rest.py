@@ -134,3 +134,32 @@ def test_a_bus_that_moves_or_that_is_not_heard_needs_every_round(sleeping: Sleep
     assert machine.idle(True) > 0.0
     machine.bus.lost("the interface has failed")
     assert machine.idle(True) == 0.0
+
+
+def test_a_slide_without_power_rolls_out_and_rests_where_it_is_pushed_to(bench: CanBench) -> None:
+    plant = bench.peers.plant
+    bench.run(0.1)
+    assert plant.drives["X"].rests
+    plant.drives["X"].servo.v = 20.0  # it rolls
+    assert not plant.drives["X"].rests
+    bench.run(0.1)
+    at = bench.machine.axes.sample().actual[0]
+    assert at > 0.0
+    bench.peers.machine.push("X", 1.0)
+    bench.run(0.1)
+    assert bench.machine.axes.sample().actual[0] == pytest.approx(at + 1.0, abs=0.002)
+
+
+@pytest.mark.parametrize("act", ["moves", "jammed", "pushed"])
+def test_a_drive_that_something_acts_on_does_not_rest(bench: CanBench, act: str) -> None:
+    drive = bench.peers.plant.drives["X"]
+    bench.machine.axes.enable(True)
+    bench.run(0.3)
+    if act == "moves":
+        bench.machine.axes.splice(ramp(bench.clock.now() + 0.2, (0.0, 0.0, 0.0), 20.0, 0.5))
+        bench.run(0.4)
+    elif act == "jammed":
+        bench.peers.machine.jam("X")
+    else:
+        bench.peers.machine.push("X", 0.5)
+    assert not drive.rests

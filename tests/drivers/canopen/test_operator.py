@@ -37,8 +37,8 @@ def make() -> Iterator[Callable[..., BusRig]]:
 
 def test_a_start_that_is_on_at_power_up_is_no_press(make: Callable[..., BusRig]) -> None:
     rig = make()
-    rig.bench.peers.plant.panel.relay.press("left", rig.clock.now())
-    rig.bench.peers.plant.panel.relay.press("right", rig.clock.now())
+    rig.bench.peers.machine.press_left()
+    rig.bench.peers.machine.press_right()
     rig.bench.run(0.1)
     rig.executor = type(rig.executor)(rig.machine, rig.bench.machine.ports, rig.events.append)
     rig.ready()
@@ -227,7 +227,7 @@ def test_clicks_on_the_bus_are_thousandths(turned: Turned) -> None:
 def test_a_counter_that_goes_round_goes_on(turned: Turned) -> None:
     turned.page = None
     turned.run(0.5)
-    turned.bench.peers.plant.panel.handwheel = 32766
+    turned.bench.peers.machine.turn_handwheel(32766)
     turned.run(0.2)
     turned.post(EnableDrives())
     turned.post(WheelOff())
@@ -253,7 +253,7 @@ def test_a_module_that_restarts_counts_from_nought_and_moves_nothing(turned: Tur
     turned.until(State.IDLE, limit=2.0)
     at = turned.bench.peers.machine.true_position()[1]
     turned.bench.peers.nodes["io"].boot()
-    turned.bench.peers.plant.panel.handwheel = 0
+    turned.bench.peers.machine.turn_handwheel(-200)  # back to 0
     turned.run(1.0)
     assert turned.state is State.FAULT
     assert turned.bench.peers.machine.true_position()[1] == pytest.approx(at, abs=1e-3)

@@ -6,6 +6,8 @@ import math
 
 import pytest
 
+from drivers.clocks import StepClock
+from drivers.lookalikes.grblhal_firmware import Firmware
 from drivers.lookalikes.grblhal_settings import Quirks, Registers
 from drivers.lookalikes.grblhal_slides import Place, PlannedBlock, Slides, straight
 
@@ -75,3 +77,33 @@ def test_a_slower_block_begins_at_its_own_speed() -> None:
     seen = run(slides)
     assert max(v for (_, z), v in seen if z > 20.0) <= 5.0 + 2.0 * ACCEL * STEP
     assert max(v for (_, z), v in seen if z > 20.5) <= 5.0 + 1e-6
+
+
+# From standstill in 0.08 s + 1000 / 1500 s, then 1000 rpm up to 2 s.
+TURNS = 1000.0 / 60.0 * (0.5 * 1000.0 / 1500.0 + 2.0 - 0.08 - 1000.0 / 1500.0)
+
+
+@pytest.mark.parametrize("tick", [0.002, 0.5])
+@pytest.mark.parametrize(
+    ("lines", "place", "turns"),
+    [
+        (b"G18G94\nM3S1000\n", (0.0, 0.0), TURNS),
+        (b"G18G94\nG1X3Z-2F600\nG2X5Z-4I2K0\n", (5.0, -4.0), 0.0),
+        (b"$J=G91Z5F300\n", (0.0, 5.0), 0.0),
+        (b"G94\nG4P0.3\nG1Z1F100\n", (0.0, 1.0), 0.0),
+    ],
+    ids=["spindle", "arc", "jog", "dwell"],
+)
+def test_a_controller_that_was_idle_carries_out_its_lines_whoever_looks_when(
+    lines: bytes, place: Place, turns: float, tick: float
+) -> None:
+    clock = StepClock()
+    firmware = Firmware(clock, Quirks())
+    clock.sleep_until(2.0)
+    firmware.feed(lines)
+    while clock.now() < 4.0 - 1e-9:
+        clock.advance(tick)
+        firmware.advance()
+    assert firmware.slides.place == pytest.approx(place, abs=1e-9)
+    assert firmware.spindle.turns == pytest.approx(turns, abs=1e-3)
+    assert firmware.take() == b"ok\r\n" * lines.count(b"\n")
