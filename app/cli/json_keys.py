@@ -159,7 +159,7 @@ t1 | number | s | End of the block.
 EXPAND_OMNITURN = Output(
     "expand FILE --json, OmniTurn",
     "One object for each elementary block, one per line, in the order of execution. Keys "
-    "that do not apply are null. Lengths are in inches, also for metric programs.",
+    "that do not apply are null. Lengths are in inches, even for metric programs.",
     (
         *_BLOCK,
         *keys(

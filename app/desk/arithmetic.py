@@ -22,7 +22,11 @@ def value_of(entry: str) -> float:
         raise EntryError("no value entered; type a number")
     if len(entry) > LONGEST:
         raise EntryError(
-            Message("the entry is longer than {longest} characters; type the result", longest=LONGEST)
+            Message(
+                "the expression is longer than {longest} characters; calculate it yourself and type "
+                "the result",
+                longest=LONGEST,
+            )
         )
     entry = " ".join(entry.split())
     reader = _Reader(entry)

@@ -296,7 +296,7 @@ class HandFunctions:
 
     def _failed(self, why: str) -> None:
         self._forget()
-        self.desk.say(tr(Message("THE LINE CANNOT BE PROVED: {why}", why=why)))
+        self.desk.say(tr(Message("THE LINE CANNOT BE CHECKED: {why}", why=why)))
 
     # --- every frame ---------------------------------------------------------------------------------
 

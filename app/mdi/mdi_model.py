@@ -178,7 +178,7 @@ class MdiModel:
         return ""
 
     def _failed(self, why: str) -> None:
-        self.say(tr(Message("THE LINE CANNOT BE PROVED: {why}", why=why)))
+        self.say(tr(Message("THE LINE CANNOT BE CHECKED: {why}", why=why)))
 
     def _refused(self, error: Diagnostic) -> None:
         self.typing.refuse(error.column)

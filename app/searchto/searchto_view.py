@@ -304,7 +304,7 @@ class SearchtoPage(ModelPage):
         title, visit = tr(Message("STATE AT LINE {line}", line=plan.found.line)), plan.found.visit
         if visit.of < 2:
             return StateShown(title, plan.rows, whole=self._whole)
-        words = tr(Message("EXECUTION {number} OF {count}", number=visit.number, count=visit.of))
+        words = tr(Message("REPETITION {number} OF {count}", number=visit.number, count=visit.of))
         return StateShown(f"{title}, {words}", plan.rows, passes=words, whole=self._whole)
 
     def _near(self, key: str, label: str, line: int) -> NearestGood:
@@ -328,7 +328,7 @@ class SearchtoPage(ModelPage):
             choices.append(
                 tr("COOLANT WILL START. F5: CHANGE")
                 if model.choices.coolant
-                else tr("COOLANT WILL NOT START. F5: CHANGE")
+                else tr("COOLANT WILL NOT START. F5: START COOLANT TOO")
             )
         if plan.way:
             choices.append(tr(Message("PATH: {legs}", legs=", ".join(plan.way))))

@@ -32,7 +32,7 @@ class LoggedEvents(SpecialFunction):
     """F4 searches, F5 filters. While a search is typed every letter belongs to it."""
 
     name = "EVENT LOG"
-    use = "event history with times; search"
+    use = "event history with times and a search function"
 
     def __init__(self, desk: Desk, persistence: Persistence, worker: Latest) -> None:
         super().__init__(desk)

@@ -173,7 +173,9 @@ class _Guard:
     def path(self, piece: Piece) -> None:
         box = piece.element.box
         if self._too_near(piece.element, box, self._contour):
-            raise GougeError(piece.source, "the offset path of the move would cut into another move")
+            raise GougeError(
+                piece.source, "the compensated path of the move would gouge another part of the contour"
+            )
         self._path.append((piece.element, box))
 
     def _too_near(self, element: Element, box: Box, others: deque[tuple[Element, Box]]) -> bool:

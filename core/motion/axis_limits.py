@@ -64,7 +64,7 @@ class MotionLimits:
         if not 0.0 <= self.grain < math.inf:
             raise MotionError(
                 Message(
-                    "The rounding step of the axes is {grain} mm. Enter 0 or a positive number.",
+                    "The axis resolution is {grain} mm. Enter 0 or a positive number.",
                     grain=self.grain,
                 ),
                 "grain",

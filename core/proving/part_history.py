@@ -70,7 +70,7 @@ class PartGathering:
             return ""
         way = "use 'turndesk prove --stock' for longer programs"
         return Message(
-            "The program has {blocks} blocks, but TurnDesk computes the part only up to "
+            "The program has {blocks} blocks, but TurnDesk can simulate the part for at most "
             "{most_moves} blocks; {details}",
             blocks=self._blocks,
             most_moves=MOST_MOVES,

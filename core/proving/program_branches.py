@@ -373,8 +373,8 @@ class Branches:
                 "{what} Branches not proved: {never}.", what=text, never=", ".join(sorted(never)[:5])
             )
         hint = (
-            "So that every possible path can be proved, use fewer conditional calls in "
-            "loops, or end each subroutine at its start position."
+            "Use fewer conditional calls in loops, or end each subroutine at its start position, "
+            "so that TurnDesk can prove every possible path."
         )
         line = min((choice.line for choice in last), default=0)
         yield Diagnostic(line, 0, Severity.WARNING, "unreached-branch", text, hint, check="unreached-branch")

@@ -600,8 +600,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Cuts a thread undercut (DIN 76) at the shoulder SPL, after a coarse thread of size DIATH: forms A and B (short) are outside, forms C and D (short) are inside; VARI has the same meaning as in CYCLE94.</source>
-      <translation>Talla una garganta de rosca (DIN 76) en el hombro SPL, tras una rosca gruesa de medida DIATH: las formas A y B (corta) son por fuera, las formas C y D (corta) por dentro; VARI significa lo mismo que en CYCLE94.</translation>
+      <source>Cuts a thread undercut (DIN 76) at the shoulder SPL, for a coarse thread of size DIATH: forms A and B (short) are external, forms C and D (short) are internal; VARI has the same meaning as in CYCLE94.</source>
+      <translation>Mecaniza una salida de rosca (DIN 76) en el hombro SPL, para una rosca de paso normal de tamaño DIATH: las formas A y B (corta) son exteriores, las formas C y D (corta) son interiores; VARI significa lo mismo que en CYCLE94.</translation>
     </message>
     <message>
       <location filename="" />
@@ -4950,8 +4950,8 @@
     </message>
     <message>
       <location filename="app/desk/arithmetic.py" />
-      <source>the entry is longer than {longest} characters; type the result</source>
-      <translation>la entrada tiene más de {longest} caracteres; escriba el resultado</translation>
+      <source>the expression is longer than {longest} characters; calculate it yourself and type the result</source>
+      <translation>la expresión tiene más de {longest} caracteres; calcúlela y escriba el resultado</translation>
     </message>
     <message>
       <location filename="app/desk/arithmetic.py" />
@@ -7370,7 +7370,7 @@
     </message>
     <message>
       <location filename="app/jog/hand_functions.py" />
-      <source>THE LINE CANNOT BE PROVED: {why}</source>
+      <source>THE LINE CANNOT BE CHECKED: {why}</source>
       <translation>LA LÍNEA NO SE PUEDE COMPROBAR: {why}</translation>
     </message>
     <message>
@@ -12810,8 +12810,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
-      <source>COOLANT WILL NOT START. F5: CHANGE</source>
-      <translation>NO ARRANCARÁ EL REFRIGERANTE. F5: CAMBIAR</translation>
+      <source>COOLANT WILL NOT START. F5: START COOLANT TOO</source>
+      <translation>NO ARRANCARÁ EL REFRIGERANTE. F5: ARRANCARLO TAMBIÉN</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
@@ -12822,11 +12822,6 @@
       <location filename="app/searchto/searchto_view.py" />
       <source>ENTER OR TAP: REBUILD STATE AT LINE {line}</source>
       <translation>ENTER O TOQUE: RECONSTRUIR EL ESTADO EN LA LÍNEA {line}</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>EXECUTION {number} OF {count}</source>
-      <translation>EJECUCIÓN {number} DE {count}</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
@@ -12852,6 +12847,11 @@
       <location filename="app/searchto/searchto_view.py" />
       <source>PREVIOUS VALID</source>
       <translation>ANTERIOR VÁLIDA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_view.py" />
+      <source>REPETITION {number} OF {count}</source>
+      <translation>REPETICIÓN {number} DE {count}</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
@@ -14040,8 +14040,8 @@
     </message>
     <message>
       <location filename="app/special/logged_events.py" />
-      <source>event history with times; search</source>
-      <translation>historial de eventos con hora; buscar</translation>
+      <source>event history with times and a search function</source>
+      <translation>historial de eventos con hora y búsqueda</translation>
     </message>
     <message>
       <location filename="app/special/logged_events.py" />
@@ -16316,7 +16316,7 @@
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
       <source>spindle switch off</source>
-      <translation type="unfinished">interruptor del husillo en OFF</translation>
+      <translation>interruptor del husillo en OFF</translation>
     </message>
     <message>
       <location filename="core/alarms/spindle_alarms.py" />
@@ -18230,6 +18230,11 @@
     </message>
     <message>
       <location filename="core/geometry/contour_offset.py" />
+      <source>the compensated path of the move would gouge another part of the contour</source>
+      <translation>la trayectoria compensada del movimiento cortaría otra parte del contorno</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/contour_offset.py" />
       <source>the inside radius of the move is too small for the offset path</source>
       <translation>el radio interior del movimiento es demasiado pequeño para la trayectoria compensada</translation>
     </message>
@@ -18247,11 +18252,6 @@
       <location filename="core/geometry/contour_offset.py" />
       <source>the offset path of another move would cut into this move</source>
       <translation>la trayectoria compensada de otro movimiento cortaría este movimiento</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/contour_offset.py" />
-      <source>the offset path of the move would cut into another move</source>
-      <translation>la trayectoria compensada del movimiento cortaría otro movimiento</translation>
     </message>
     <message>
       <location filename="core/geometry/pocket_area.py" />
@@ -20590,8 +20590,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycle_contour.py" />
-      <source>Write the contour line by line, with only moves, arcs and corners.</source>
-      <translation>Escriba el contorno línea por línea, sólo con movimientos, arcos y esquinas.</translation>
+      <source>Write the contour block by block, with only straight moves, arcs, chamfers and roundings.</source>
+      <translation>Escriba el contorno bloque por bloque, solo con movimientos rectos, arcos, chaflanes y redondeos.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/cycle_contour.py" />
@@ -21610,8 +21610,8 @@
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
-      <source>Correct I, the depth of the first pass, or K.</source>
-      <translation>Corrija I, la profundidad de la primera pasada, o K.</translation>
+      <source>Correct I (the depth of the first pass) or K.</source>
+      <translation>Corrija I (la profundidad de la primera pasada) o K.</translation>
     </message>
     <message>
       <location filename="core/interpreter/omniturn/threading_cycles.py" />
@@ -21745,8 +21745,8 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/loop_passes.py" />
-      <source>Line {line} is executed only {blocks_count} times, so execution {number} does not exist.</source>
-      <translation>La línea {line} se ejecuta sólo {blocks_count} veces, así que la ejecución {number} no existe.</translation>
+      <source>Line {line} is executed only {blocks_count} times, so repetition {number} does not exist.</source>
+      <translation>La línea {line} solo se ejecuta {blocks_count} veces; la repetición {number} no existe.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/loop_passes.py" />
@@ -27350,11 +27350,6 @@
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
-      <source>Split the number into two words.</source>
-      <translation>Divida el número en dos palabras.</translation>
-    </message>
-    <message>
-      <location filename="core/language/omniturn/word_faults.py" />
       <source>The comment has no closing parenthesis.</source>
       <translation>El comentario no tiene paréntesis de cierre.</translation>
     </message>
@@ -27412,6 +27407,11 @@
       <location filename="core/language/omniturn/word_faults.py" />
       <source>Write two digits.</source>
       <translation>Escriba dos cifras.</translation>
+    </message>
+    <message>
+      <location filename="core/language/omniturn/word_faults.py" />
+      <source>Write two words, each with its own letter.</source>
+      <translation>Escriba dos palabras, cada una con su letra.</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/word_faults.py" />
@@ -28540,8 +28540,8 @@
     </message>
     <message>
       <location filename="core/motion/axis_limits.py" />
-      <source>The rounding step of the axes is {grain} mm. Enter 0 or a positive number.</source>
-      <translation>El paso de redondeo de los ejes es {grain} mm. Ponga 0 o un número positivo.</translation>
+      <source>The axis resolution is {grain} mm. Enter 0 or a positive number.</source>
+      <translation>La resolución de los ejes es {grain} mm. Ponga 0 o un número positivo.</translation>
     </message>
     <message>
       <location filename="core/motion/axis_limits.py" />
@@ -30190,8 +30190,8 @@
     </message>
     <message>
       <location filename="core/proving/part_history.py" />
-      <source>The program has {blocks} blocks, but TurnDesk computes the part only up to {most_moves} blocks; {details}</source>
-      <translation>El programa tiene {blocks} bloques, pero TurnDesk calcula la pieza solo hasta {most_moves} bloques; {details}</translation>
+      <source>The program has {blocks} blocks, but TurnDesk can simulate the part for at most {most_moves} blocks; {details}</source>
+      <translation>El programa tiene {blocks} bloques, pero TurnDesk puede simular la pieza como máximo hasta {most_moves} bloques; {details}</translation>
     </message>
     <message>
       <location filename="core/proving/part_history.py" />
@@ -30230,13 +30230,13 @@
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
-      <source>So that every possible path can be proved, use fewer conditional calls in loops, or end each subroutine at its start position.</source>
-      <translation>Para que se puedan comprobar todos los recorridos posibles, use menos llamadas condicionales en bucles, o termine cada subrutina en su posición inicial.</translation>
+      <source>Subroutine {number} is never called, so it was not proved.</source>
+      <translation>La subrutina {number} no se llama nunca, así que no se comprobó.</translation>
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />
-      <source>Subroutine {number} is never called, so it was not proved.</source>
-      <translation>La subrutina {number} no se llama nunca, así que no se comprobó.</translation>
+      <source>Use fewer conditional calls in loops, or end each subroutine at its start position, so that TurnDesk can prove every possible path.</source>
+      <translation>Use menos llamadas condicionales en bucles o termine cada subrutina en su posición inicial, para que TurnDesk pueda comprobar todos los recorridos posibles.</translation>
     </message>
     <message>
       <location filename="core/proving/program_branches.py" />

@@ -154,7 +154,7 @@ def test_accepted_words_are_words_to_avoid(word: str) -> None:
     assert [use for use in uses if not any(use in page.prose for page in ALL)] == []
 
 
-def _arguments(command: str) -> list[str] | None:
+def arguments_of(command: str) -> list[str] | None:
     """Return the words after ``turndesk``, with values for placeholders; None for another command."""
     text = re.sub(r"\[(--[^\]]*)\]", r"\1", command)  # an option that may be left out
     lexer = shlex.shlex(text, posix=True, punctuation_chars="&>|;()<")
@@ -166,11 +166,11 @@ def _arguments(command: str) -> list[str] | None:
     return [PLACEHOLDERS.get(word, word) for word in words[1 : min(ends, default=len(words))]]
 
 
-def _commands(page: Page) -> Iterator[tuple[Command, list[str]]]:
+def commands_of(page: Page) -> Iterator[tuple[Command, list[str]]]:
     for command in page.commands:
         text = command.text.removeprefix("source <(")
         if re.match(r"(?:\S*/)?turndesk\s", text):
-            arguments = _arguments(text)
+            arguments = arguments_of(text)
             if arguments is not None:
                 yield command, arguments
 
@@ -215,7 +215,7 @@ def test_every_command_is_one_of_the_command_line(
     monkeypatch.chdir(ROOT)
     wrong = [
         f"{page.name}:{command.number}: {command.text}: {capsys.readouterr().err.strip()}"
-        for command, arguments in _commands(page)
+        for command, arguments in commands_of(page)
         if command.text not in ACCEPTED_COMMANDS and not _is_right(command, arguments)
     ]
     assert wrong == []
@@ -239,7 +239,7 @@ def test_every_python_module_of_a_command_exists(page: Page) -> None:
 
 def test_the_commands_of_the_index_are_found() -> None:
     """A page reader that finds nothing would let every test pass."""
-    found = {arguments[0] for _, arguments in _commands(Page(DOCS / "index.md"))}
+    found = {arguments[0] for _, arguments in commands_of(Page(DOCS / "index.md"))}
     assert {"prove", "run", "offsets", "store", "machine", "setup", "scope"} <= found
     assert len([link for page in ALL for link in page.links]) > 300
 
@@ -270,7 +270,7 @@ def test_contents_link_to_the_headings() -> None:
     ["turndesk prve FILE", "turndesk prove FILE --nosuch", "turndesk run", "turndesk store backp FILE"],
 )
 def test_a_wrong_command_is_found(text: str, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = _arguments(text)
+    arguments = arguments_of(text)
     assert arguments is not None
     assert not _is_right(Command(1, text, True), arguments)
     capsys.readouterr()

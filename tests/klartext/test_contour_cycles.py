@@ -220,7 +220,7 @@ def test_parameters_of_a_contour_count_as_they_stand_at_the_call() -> None:
             "Input value incorrect",
             "does not fit anywhere",
         ),
-        (22, (POCKET.replace("RR", ""),), {}, "Cycle incomplete", "The side on which"),
+        (22, (POCKET.replace("RR", ""),), {}, "Cycle incomplete", "No machining side"),
         (22, (POCKET.replace("\nL Y+20", "\nL Y+19"),), {}, "Input value incorrect", "from its start"),
         (22, (POCKET.replace("RR", "RL"),), {}, "Input value incorrect", "pocket"),
         (22, (POCKET,), {"q12": 99999}, "Input value incorrect", "rapid"),

@@ -93,7 +93,7 @@ BOARDS = '"sim", "parport", "mesa-7i76e", "mesa-7i97", "ethercat"'
             "missing; expected the axis speed at 10 V",
         ),
         (SERVO, "full_speed = 400 ", "full_speed = 299 ", "board.axis.X.full_speed", "at least axis.X.vmax"),
-        (SERVO, "p = 20 ", "# ", "board.axis.X.p", "missing; expected the P gain for the axis's pid"),
+        (SERVO, "p = 20 ", "# ", "board.axis.X.p", "missing; expected the P gain"),
         (SERVO, "channel = 4 ", "channel = 2 ", "board.spindle.channel", "4 or 5"),
         (SERVO, "channel = 1\n", "channel = 4\n", "board.axis.Z.channel", wording("machine.servo-channel")),
         (BUS, 'vendor = "0x0000026c"  ', "# ", "board.axis.X.vendor", "missing"),

@@ -81,7 +81,7 @@ def test_whole_steps_of_the_control_and_never_more_than_asked_for() -> None:
     assert propose(SPIGOT, inches(0.5005), TENTH).change == pytest.approx(-0.0002 * IN)
     coarse = propose(SPIGOT, inches(0.5005), 0.01 * IN)
     assert coarse.change == 0.0
-    assert "smallest step" in coarse.why
+    assert "smallest offset step" in coarse.why
 
 
 @pytest.mark.parametrize(

@@ -528,7 +528,7 @@ CHAPTERS: tuple[tuple[str, tuple[Code, ...]], ...] = (
                 "coarse-order", "G35 is already active.", "Delete the line.", 1)},
             further=names("coarse-preset")),
         _coarse("G36", "G36",
-        "Ends G35; the axes must be at the point where G35 started. Write G36 alone on a " "line, "
+        "Ends G35; the axes must be at the point where G35 started. Write G36 alone on a line, "
         "and G92 on the next line.",
             _COARSE, f=FWord.NONE,
             not_when={When.WITH_OTHERS: _COARSE_ALONE, When.NOT_COARSE: Refusal(

@@ -66,7 +66,10 @@ class _Reader:
         if line.flow or idle_corner or not _TURNS.isdisjoint(line.words):
             what: str = Message("{line} is not allowed in a contour", line=line.text)
             raise _refused(
-                line, 1, what, ("Write the contour line by line, with only moves, arcs and corners.")
+                line,
+                1,
+                what,
+                ("Write the contour block by block, with only straight moves, arcs, chamfers and roundings."),
             )
         if line.one_shot is not None and not line.entry.in_contour:
             column = line.code.column if line.code else 1

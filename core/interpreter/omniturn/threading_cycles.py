@@ -162,7 +162,7 @@ def _count(statement: Statement, depth: float, first: float, lead: float) -> int
         text = Message(
             "{text}: the first pass would be deeper than the lead.", text=statement.words["I"].text
         )
-        raise statement.refuse("I", "thread-depth", text, "Correct I, the depth of the first pass, or K.")
+        raise statement.refuse("I", "thread-depth", text, "Correct I (the depth of the first pass) or K.")
     count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
     if count > MOST_PASSES:
         text = Message(

@@ -22,8 +22,16 @@ _SIGNS = {
 }
 _AFTER_NUMBER = {
     ".": ("two-points", "The number has two decimal points.", "Remove one of the two."),
-    "+": ("sign-inside", "A sign is in the middle of a number.", "Split the number into two words."),
-    "-": ("sign-inside", "A sign is in the middle of a number.", "Split the number into two words."),
+    "+": (
+        "sign-inside",
+        "A sign is in the middle of a number.",
+        ("Write two words, each with its own letter."),
+    ),
+    "-": (
+        "sign-inside",
+        "A sign is in the middle of a number.",
+        ("Write two words, each with its own letter."),
+    ),
 }
 
 _SLIPS = {

@@ -57,7 +57,7 @@ STANDARD_CYCLES = (
         (
                 "Taps with a compensating chuck: the tap feeds in at the pitch PIT, at the pitch of "
                 "" "the thread size MPIT, or at F with ENC 1; the spindle reverses, and the tap "
-                "feeds " "out."),
+                "feeds out."),
         _HOLE + "CYCLE840(5, 0, 2, -12, , , 0, 3, 0, , 1)", "G17\nCYCLE840(5, 0, 2, -12, , , 0, 3, 0, , 1)",
         "61102",
     ),
@@ -70,7 +70,7 @@ STANDARD_CYCLES = (
     ),
     _entry(
         "CYCLE87",
-        "Bores; at the bottom of the hole, the spindle stops and the program waits for Cycle " "Start.",
+        "Bores; at the bottom of the hole, the spindle stops and the program waits for Cycle Start.",
         _HOLE + "CYCLE87(5, 0, 2, -12, , 3)", _HOLE + "CYCLE87(5, 0, 2, -12, , 5)", "61102",
     ),
     _entry(
@@ -132,18 +132,18 @@ STANDARD_CYCLES = (
     _entry(
         "CYCLE96",
         (
-                "Cuts a thread undercut (DIN 76) at the shoulder SPL, after a coarse thread of size "
-                "" "DIATH: forms A and B (short) are outside, forms C and D (short) are inside; "
+                "Cuts a thread undercut (DIN 76) at the shoulder SPL, for a coarse thread of size "
+                "DIATH: forms A and B (short) are external, forms C and D (short) are internal; "
                 "VARI " "has the same meaning as in CYCLE94."),
         _CUT + 'T1 D1\nG0 X50 Z5\nCYCLE96(30, -20, "A")', _CUT + 'T1 D1\nCYCLE96(7, -20, "A")', "DIATH",
     ),
     _entry(
         "CYCLE95",
-        "Turns a contour from the stock. The contour is described in a subprogram or between " "two "
+        "Turns a contour from the stock. The contour is described in a subprogram or between two "
         "labels (\"START:END\"). Parameters: passes of MID, allowances FALZ, FALX (radius) " "or "
-        "FAL, and feeds FF1, FF2 for plunging into reliefs and FF3 for finishing. VARI 1 " "to 4 "
+        "FAL, and feeds FF1, FF2 for plunging into reliefs and FF3 for finishing. VARI 1 to 4 "
         "rough, 5 to 8 finish, and 9 to 12 do both, each in this order: along Z " "outside, along X "
-        "outside, along Z inside, along X inside. The nose radius is taken " "into account.",
+        "outside, along Z inside, along X inside. The nose radius is taken into account.",
         _CUT + 'CYCLE95("KONTUR", 2, 0.1, 0.2, , 0.3, 0.1, 0.12, 9)',
         _CUT + 'CYCLE95("KONTUR", , 0.1, 0.2, , 0.3, 0.1, 0.12, 9)', "MID", _KONTUR,
     ),
@@ -178,7 +178,7 @@ STANDARD_CYCLES = (
     ),
     _entry(
         "HOLES1",
-        "Row of NUM holes with TRANSMIT: the row starts at the point X SPCA, Y SPCO and runs " "at "
+        "Row of NUM holes with TRANSMIT: the row starts at the point X SPCA, Y SPCO and runs at "
         "the angle STA1. The first hole is FDIS from this point, and the spacing is DBH.",
         _FACE + "MCALL CYCLE81(5, 0, 2, -3)\nHOLES1(20, 0, 90, -10, 10, 3)\nMCALL\nTRAFOOF",
         "MCALL CYCLE81(5, 0, 2, -3)\nHOLES1(20, 0, 90, -10, 10, 3)", "TRANSMIT",

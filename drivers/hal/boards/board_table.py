@@ -349,7 +349,7 @@ def _spindle_as_c(file: FileReading, kind: str, path: str) -> Iterator[Finding]:
         yield from _step_rate(file, kind, C)
         return
     if values.has("hal.spindle.speed") and not values.text("hal.spindle.speed"):
-        why = "missing; C turns in both directions, so its drive needs a signed speed"
+        why = "this entry is missing; C turns in both directions, so its drive needs a signed speed command"
         yield Finding("hal.spindle.speed", "", why)
     for key in ("channel", "full_speed", "full_rpm", "vendor", "product"):
         place = f"{path}.{key}"

@@ -231,7 +231,9 @@ def test_without_a_pass_it_is_the_one_that_was_interrupted() -> None:
         ),
         (
             "G91G94F300\nX.1\nLS3\nX.1\nLF\nM30\n", 4, 2,
-            "The axis positions at line 4 depend on the axis positions at Cycle Start.",
+            "The program cannot resume at line 4, because the axis positions there depend on the "
+            "axis positions "
+            "at Cycle Start.",
         ),
         (
             "G90G94F300\nX1Z1\nLS30000\nX1\nX2\nLF\nX1\nM30\n", 5, 2,
