@@ -228,7 +228,7 @@ class Values:
 
 
 # Keys whose values hold passwords or tokens: also addresses, which have them in front of @, in the path or
-# behind the question mark.
+# behind the question mark. A removed key is still in older files, which are compared with newer ones.
 _SECRETS = frozenset(
     {
         "announce.hook",
@@ -241,6 +241,12 @@ _SECRETS = frozenset(
     }
 )
 HIDDEN = "***"
+# Keys of earlier versions, with what to use in their place.
+_REMOVED = {
+    "sharing.git": (
+        "sharing by git was removed; use a folder (key folder) or a PostgreSQL database (key postgresql)"
+    )
+}
 
 
 def written(value: object) -> str:
@@ -261,19 +267,20 @@ def joined(path: str, key: str) -> str:
 
 
 def unknown_keys(table: Mapping[str, object], known: list[str], path: str) -> list[Finding]:
-    """A finding for every key nobody reads, with the nearest one that is read."""
+    """A finding for every key nobody reads, with the nearest one that is read, or what replaces it."""
     found = []
     for key in table:
-        if key not in known:
+        place = joined(path, key)
+        if place in _REMOVED:
+            found.append(Finding(place, "", _REMOVED[place], "removed-key"))
+        elif key not in known:
             near = nearest(key, known)
             hint = (
                 Message("did you mean {nearest}?", nearest=near)
                 if near
                 else Message("use one of these keys: {known}", known=", ".join(known))
             )
-            found.append(
-                Finding(joined(path, key), "", Message("unknown key; {hint}", hint=hint), "unknown-key")
-            )
+            found.append(Finding(place, "", Message("unknown key; {hint}", hint=hint), "unknown-key"))
     return found
 
 

@@ -10,7 +10,7 @@ MORE=""
 [ "${1:-}" = "--quick" ] || MORE="$WINDOW_LIBRARIES $STORY_PACKAGES"
 # shellcheck disable=SC2046,SC2086
 system_packages ca-certificates $QT_LIBRARIES $MORE $(python_packages)
-[ "${1:-}" = "--quick" ] || optional_packages linuxcnc-uspace mosquitto postgresql git codespell
+[ "${1:-}" = "--quick" ] || optional_packages linuxcnc-uspace mosquitto postgresql codespell
 find_python
 python_environment tests
 

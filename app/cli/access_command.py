@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
 from app.cli.who_changes import RESET, add_as_option, asked_pin, demand_own_keyboard, who_changes
-from app.desk.command_errors import EXIT_OK, CommandError
+from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
 from core.access.access_table import RULES, Act, Level
-from core.coded_error import error_code
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
+    from core.store.people import PersonRow
     from core.store.store import Store
 
 _DAMAGED = (
@@ -106,13 +106,18 @@ def _add(store: Store, args: argparse.Namespace) -> str:
     return _kept(store, args, name, level, "entered")
 
 
-def _pin(store: Store, args: argparse.Namespace) -> str:
-    row = store.people().named(args.name)
+def _person(store: Store, name: str) -> PersonRow:
+    row = store.people().named(name)
     if row is None:
         raise CommandError(
-            Message("user {name} does not exist; 'turndesk access list' shows all users", name=args.name),
+            Message("user {name} does not exist; 'turndesk access list' shows all users", name=name),
             "unknown-person",
         )
+    return row
+
+
+def _pin(store: Store, args: argparse.Namespace) -> str:
+    row = _person(store, args.name)
     return _kept(store, args, row.name, Level(row.level), "has a new PIN")
 
 
@@ -123,10 +128,8 @@ def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done:
 
     who = who_changes(store, args, Act.PEOPLE)
     pin = asked_pin(Message("new PIN for {name}: ", name=name))
-    try:
+    with as_command_error(PinError):
         check_pin(pin)
-    except PinError as error:
-        raise CommandError(str(error), error_code(error)) from error
     if asked_pin("repeat the new PIN: ") != pin:
         raise CommandError("the two PINs do not match; nothing was saved", "pins-differ")
     row = people.PersonRow(name, level, *hashed(pin))
@@ -138,12 +141,7 @@ def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done:
 def _remove(store: Store, args: argparse.Namespace) -> str:
     from core.store import people
 
-    row = store.people().named(args.name)
-    if row is None:
-        raise CommandError(
-            Message("user {name} does not exist; 'turndesk access list' shows all users", name=args.name),
-            "unknown-person",
-        )
+    row = _person(store, args.name)
     who = who_changes(store, args, Act.PEOPLE)
     store.write(lambda c: people.remove_person(c, row.name)).result()
     store.log_event("access", Message("{row} removed", row=row.name), who=who).result()

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.cli.figures import MM_PER_INCH, Json, length_of, seconds
+from app.cli.figures import MM_PER_INCH, Json, length_of, seconds, volume_of
 from app.cli.proof_json import diagnostic_json
 from core.language.source import Dialect
 
@@ -28,14 +28,14 @@ def compared(job: ProofJob, source: Source, report: Report, part: PartReport | N
     assert job.other is not None
     this = ThisPart(job.setup, job.setting, report, part)
     found = other_part(source, this, job.other.setup, job.machine, ideal=job.ideal)
-    there, length = found.report, length_of(report.dialect)
+    there, length, volume = found.report, length_of(report.dialect), volume_of(report.dialect)
     furthest = max((abs(p.difference) for p in found.pairs if p.difference is not None), default=0.0)
     return {
         "offsets": job.other.name,
         "features": [_pair_json(pair, report.dialect) for pair in found.pairs],
         "differing": found.differing,
         "largest": length(furthest),
-        "removed_volume": [_volume(each, report.dialect) for each in (part, found.part)],
+        "removed_volume": [each and volume(each.removed) for each in (part, found.part)],
         "cycle_time_s": [seconds(report.times.cycle), seconds(there.times.cycle)],
         "cutting_time_s": [seconds(report.times.cutting), seconds(there.times.cutting)],
         "rapid_time_s": [seconds(report.times.rapid), seconds(there.times.rapid)],
@@ -61,12 +61,6 @@ def _pair_json(pair: Pair, dialect: Dialect) -> Json:
 def _rounded(value: float) -> float:
     """To a millionth; no -0.0, and none that would be shown as such."""
     return 0.0 if abs(value) < _NOUGHT else round(value, 6)
-
-
-def _volume(part: PartReport | None, dialect: Dialect) -> float | None:
-    if part is None:
-        return None
-    return round(part.removed / (MM_PER_INCH**3 if dialect is Dialect.OMNITURN else 1.0), 6)
 
 
 # --- as a person reads it

@@ -9,7 +9,7 @@ import sys
 from importlib.resources import files
 from pathlib import Path
 
-from app.desk.command_errors import CommandError
+from app.desk.command_errors import CommandError, cannot_write
 from core.message import Message
 
 NAME = "turndesk"
@@ -79,10 +79,7 @@ def install(*, autostart: bool) -> list[Path]:
         if autostart:
             start.write_text(_ENTRY.format(command=f"{_command()} --kiosk"), encoding="utf-8")
     except OSError as error:
-        raise CommandError(
-            Message("{file} cannot be written: {cause}", file=error.filename, cause=error.strerror),
-            "cannot-write",
-        ) from error
+        raise cannot_write(error.filename, error) from error
     return [entry, icon, *([start] if autostart else [])]
 
 

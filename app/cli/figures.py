@@ -15,6 +15,8 @@ MM_PER_INCH = 25.4
 # A surface speed in ft/min is 12 in over 60 s.
 MM_S_PER_FT_MIN = 12 * MM_PER_INCH / 60
 
+_PER_MINUTE = 60.0
+
 Json = dict[str, object]
 
 
@@ -42,6 +44,19 @@ def millimetres(mm: float) -> float:
 def length_of(dialect: Dialect) -> Callable[[float], float]:
     """How lengths are shown to whoever programs in this language: OmniTurn counts in inches, others in mm."""
     return inches if dialect is Dialect.OMNITURN else millimetres
+
+
+def volume_of(dialect: Dialect) -> Callable[[float], float]:
+    """How volumes are shown, in the unit of ``length_of``; given in mm³."""
+    scale = MM_PER_INCH**3 if dialect is Dialect.OMNITURN else 1.0
+    return lambda mm3: round(mm3 / scale, 6)
+
+
+def path_feed(block: Block, unit: str) -> tuple[float, str]:
+    """The feed along a path in mm or degrees, and what it counts."""
+    if block.per_rev:
+        return round(block.feed, 6), f"{unit}/rev"
+    return round(block.feed * _PER_MINUTE, 6), f"{unit}/min"
 
 
 def per_minute(mm_s: float) -> float:

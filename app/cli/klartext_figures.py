@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.cli.figures import Json, block_head, degrees, millimetres, seconds
+from app.cli.figures import Json, block_head, degrees, millimetres, path_feed, seconds
 
 if TYPE_CHECKING:
     from core.interpreter.elementary_blocks import Block
@@ -102,9 +102,7 @@ def _feed(block: Block) -> tuple[float | None, str | None]:
     if not block.moves or block.travel is None or block.travel.length == 0.0:
         return None, None
     unit = "deg" if block.swivels else "mm"
-    if block.per_rev:
-        return round(block.feed, 6), f"{unit}/rev"
-    return round(block.feed * _PER_MINUTE, 6), f"{unit}/min"
+    return path_feed(block, unit)
 
 
 def _angle(angle: float | None) -> str:

@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING
 
 from app.cli.machine_hal import add_hal_parser, write_hal
 from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError, as_command_error
 from core.access.access_table import Act
-from core.coded_error import error_code
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -232,10 +231,8 @@ def write_model(file: str) -> int:
     from core.ports import DriverError
 
     machine = read_machine(file)
-    try:
+    with as_command_error(DriverError):
         sys.stdout.write(device_model(machine, datetime.now(UTC)))
-    except DriverError as error:
-        raise CommandError(str(error), error_code(error)) from error
     if not told_to_agents(machine):
         sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false, so no agent can find the adapter\n")
     return EXIT_OK
@@ -269,10 +266,8 @@ def play(file: str) -> int:
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, end)
-    try:
+    with as_command_error(DriverError):
         play_it(machine, lambda: not ended, _say, _typed())
-    except DriverError as error:
-        raise CommandError(str(error), error_code(error)) from error
     return EXIT_OK
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.program_options import out_file
-from app.desk.command_errors import EXIT_OK, EXIT_USAGE, CommandError
+from app.desk.command_errors import EXIT_OK, EXIT_USAGE, CommandError, cannot_write
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -100,7 +100,4 @@ def _keep(out: Path, text: str, beside: Mapping[str, str]) -> None:
             with path.open("x", encoding="utf-8") as opened:
                 opened.write(content)
         except OSError as error:
-            raise CommandError(
-                Message("{file} cannot be written: {cause}", file=path, cause=error.strerror),
-                "cannot-write",
-            ) from error
+            raise cannot_write(path, error) from error

@@ -32,13 +32,9 @@ def answered(place: SharedPlace, work: Callable[[], T], told_after: float = _TOL
         _wait_for_folder(place, told_after)
     answer: Future[T] = Future()
     threading.Thread(target=_work, args=(work, answer), name="shared-place", daemon=True).start()
-    try:
-        if not wait([answer], told_after).done:
-            _tell(place, told_after)
-        return answer.result()
-    except KeyboardInterrupt:
-        place.close()
-        raise
+    if not wait([answer], told_after).done:
+        _tell(place, told_after)
+    return answer.result()
 
 
 def _wait_for_folder(place: SharedFolder, told_after: float) -> None:

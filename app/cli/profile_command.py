@@ -8,12 +8,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.made_program import may_write, write_made
 from app.cli.program_options import out_file
-from app.cli.store_command import opened_store
-from app.cli.who_changes import add_as_option, note_change, who_may
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
-from core.access.access_table import Act
-from core.coded_error import error_code
+from app.cli.who_changes import add_as_option
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
 from core.drawings.unit_check import UNITS
 from core.language.source import Dialect, dialect_of
 from core.message import Message
@@ -142,11 +140,8 @@ def run(args: argparse.Namespace) -> int:
     from core.drawings.drawing import DrawingError
     from core.drawings.work_limit import limited_work
 
-    try:
-        with limited_work(lambda _seconds: None):
-            return _run(args)
-    except DrawingError as error:
-        raise CommandError(str(error), error_code(error)) from error
+    with as_command_error(DrawingError), limited_work(lambda _seconds: None):
+        return _run(args)
 
 
 def _run(args: argparse.Namespace) -> int:
@@ -155,19 +150,8 @@ def _run(args: argparse.Namespace) -> int:
     from core.drawings.drawing_process import read_in_process
 
     machine = read_machine(args.machine)
-    if args.out is not None and not args.list:
-        if Path(args.out).exists():
-            raise CommandError(
-                Message(
-                    "{file} already exists and will not be overwritten; use a different name", file=args.out
-                ),
-                "file-exists",
-            )
-        if not Path(args.out).parent.is_dir():
-            raise CommandError(
-                Message("{file} cannot be written: its folder does not exist", file=args.out), "no-folder"
-            )
-        args.who = who_may(opened_store, args, Act.PROGRAMS)
+    if not args.list:
+        args.who = may_write(args)
     if args.side == "bore" and args.hole is None and not args.list:
         raise CommandError(
             ("boring requires a starting hole; specify the diameter of the hole with --hole"), "no-hole"
@@ -354,7 +338,10 @@ def _make(drawing: Drawing, view: View, net: Net, args: argparse.Namespace, mach
     bar = float(typed["BAR"]) * mm
     stock = TrialStock(bar, float(typed.get("STOCK", 0.0)) * mm, (args.hole or 0.0) * mm)
     trial = tried(text, chosen, stock, made.nose, machine, shapes, dialect=args.dialect)
-    _write(text, args)
+    if args.out is not None:
+        write_made(args, text, args.who)
+    elif not args.json:
+        sys.stdout.write(text)
     _tell(made, trial, chosen, text, args)
     return EXIT_ERRORS if trial.errors else EXIT_OK
 
@@ -397,24 +384,6 @@ def _program(
 
     setting = Setting(metric=args.metric, shop=shop_of(machine, shapes), dialect=args.dialect)
     return profile_program(chosen, typed, [], setting)
-
-
-def _write(text: str, args: argparse.Namespace) -> None:
-    if args.out is None:
-        if not args.json:
-            sys.stdout.write(text)
-        return
-    from app.programs.whole_file import FileError, write_new
-
-    try:
-        write_new(Path(args.out), text.encode("ascii"))
-    except FileError as error:
-        raise CommandError(str(error), error_code(error)) from error
-    note_change(
-        opened_store,
-        args.who,
-        Message("program {out} made from {file}", out=Path(args.out).name, file=Path(args.file).name),
-    )
 
 
 def _tell(made: ProfileProgram, trial: Trial, chosen: Profile, text: str, args: argparse.Namespace) -> None:

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.desk.command_errors import EXIT_OK, CommandError
-from core.coded_error import error_code
+from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -51,15 +50,13 @@ def run(args: argparse.Namespace) -> int:
             "json-needs-file",
         )
     path = Path(args.file)
-    try:
+    with as_command_error(RecordError):
         record = open_record(path)
         if args.csv == _STDOUT:
             write_csv(record, sys.stdout.write)
             return EXIT_OK
         if args.csv is not None:
             save_csv(record, Path(args.csv))
-    except RecordError as error:
-        raise CommandError(str(error), error_code(error)) from error
     told = json.dumps(_object(path, record, args.csv)) if args.json else _text(path, record, args.csv)
     sys.stdout.write(told + "\n")
     return EXIT_OK

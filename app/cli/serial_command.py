@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
 from core.access.access_table import Act
-from core.coded_error import error_code
 from core.input_file import open_input
 from core.message import Message
 
@@ -136,10 +135,8 @@ def _ports() -> int:
     from app.compose.serial_ports import serial_ports
     from core.ports import DriverError
 
-    try:
+    with as_command_error(DriverError):
         found = serial_ports()
-    except DriverError as error:
-        raise CommandError(str(error), error_code(error)) from error
     sys.stdout.write("".join(f"{device}  {what}".rstrip() + "\n" for device, what in found))
     if not found:
         sys.stderr.write("turndesk: this computer has no serial port; plug the adapter in\n")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -103,11 +104,28 @@ def _desktop(args: argparse.Namespace) -> int:
 
 
 def _completion(args: argparse.Namespace) -> int:
-    from app.cli.main import build_parser
-    from app.cli.shell_completion import script
+    import shtab
 
-    sys.stdout.write(script(args.shell, build_parser()))
+    from app.cli.main import build_parser
+
+    parser = build_parser()
+    _complete_files(parser, shtab.FILE)
+    script = shtab.complete(parser, args.shell)
+    if args.shell == "zsh":
+        # shtab's script takes effect only within eval, and completes only the first of several files.
+        script = "eval " + shlex.quote(script.replace('"(*):', '"*:'))
+    sys.stdout.write(script + "\n")
     return EXIT_OK
+
+
+def _complete_files(parser: argparse.ArgumentParser, files: object) -> None:
+    """Let every argument without choices offer ``files``, as most of these arguments are names of files."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for each in action.choices.values():
+                _complete_files(each, files)
+        elif not action.choices and action.nargs != 0:
+            action.complete = files  # type: ignore[attr-defined]  # where shtab looks for it
 
 
 ACTIONS: dict[str, Callable[[argparse.Namespace], int]] = {

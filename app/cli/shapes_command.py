@@ -8,12 +8,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.cli.made_program import may_write, write_made
 from app.cli.program_options import out_file
-from app.cli.store_command import opened_store
-from app.cli.who_changes import add_as_option, note_change, who_may
+from app.cli.who_changes import add_as_option
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
-from core.access.access_table import Act
-from core.coded_error import error_code
 from core.language.source import Dialect, Source, dialect_of
 from core.message import Message
 
@@ -83,12 +81,12 @@ def run(args: argparse.Namespace) -> int:
         raise CommandError(
             "specify the file with the steps; --list shows what the file can contain", "no-file"
         )
-    who = _may_write(args)
+    who = may_write(args)
     made = _written(args, machine, dialect)
     text = "\n".join(made.lines) + "\n"
     errors, cycle = _proved(args, machine, Source(_name(args, dialect), text, dialect))
     if args.out is not None:
-        _write(args, text, who)
+        write_made(args, text, who)
     _tell(args, made, text, errors, cycle)
     return EXIT_ERRORS if errors else EXIT_OK
 
@@ -106,21 +104,6 @@ def _language(out: str | None, machine: Machine) -> Dialect:
             "wrong-language",
         )
     return said
-
-
-def _may_write(args: argparse.Namespace) -> str:
-    if args.out is None:
-        return ""
-    if Path(args.out).exists():
-        raise CommandError(
-            Message("{file} already exists and will not be overwritten; use a different name", file=args.out),
-            "file-exists",
-        )
-    if not Path(args.out).parent.is_dir():
-        raise CommandError(
-            Message("{file} cannot be written: its folder does not exist", file=args.out), "no-folder"
-        )
-    return who_may(opened_store, args, Act.PROGRAMS)
 
 
 def _name(args: argparse.Namespace, dialect: Dialect) -> str:
@@ -168,20 +151,6 @@ def _proved(args: argparse.Namespace, machine: Machine, source: Source) -> tuple
     from app.compose.workshop import workshop
 
     return proving(workshop(machine, chosen_offsets(args.tools), pictures=False))(source)
-
-
-def _write(args: argparse.Namespace, text: str, who: str) -> None:
-    from app.programs.whole_file import FileError, write_new
-
-    try:
-        write_new(Path(args.out), text.encode("ascii"))
-    except FileError as error:
-        raise CommandError(str(error), error_code(error)) from error
-    note_change(
-        opened_store,
-        who,
-        Message("program {out} made from {file}", out=Path(args.out).name, file=Path(args.file).name),
-    )
 
 
 def _tell(args: argparse.Namespace, made: Written, text: str, errors: tuple[str, ...], cycle: float) -> None:

@@ -5,15 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
 from app.cli.who_changes import add_as_option, note_change, who_may
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
 from core.access.access_table import Act
-from core.coded_error import error_code
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -67,14 +64,19 @@ def run(args: argparse.Namespace) -> int:
     from app.cli.place_answer import answered
     from app.compose.machine_setup import read_machine
     from app.compose.sharing_desk import sharing_of
+    from app.sharing.sharing import TakeError
+    from core.sharing.sharing_errors import SharingError
 
     machine, acts = read_machine(args.machine), _acts(args)
     who = who_may(opened_store, args, *acts) if acts else ""
-    with _refusals(), opened_store(read_only=args.action in _READING) as store:
+    with (
+        as_command_error(SharingError, TakeError),
+        opened_store(read_only=args.action in _READING) as store,
+    ):
         sharing = sharing_of(machine, lambda: store)
         if sharing is None:
             raise CommandError(
-                "the machine file has no [sharing] table; add it with a folder, a git remote or a database",
+                "the machine file has no [sharing] table; add it with a folder or a database",
                 "no-sharing",
             )
         status = answered(sharing.place, lambda: _ACTIONS[args.action](sharing, args))
@@ -90,17 +92,6 @@ def _acts(args: argparse.Namespace) -> tuple[Act, ...]:
         return ()
     alone = args.action == "begin" or getattr(args, "claim", False)
     return (Act.SHARED_PLACE,) if alone else (Act.PROGRAMS,)
-
-
-@contextmanager
-def _refusals() -> Iterator[None]:
-    from app.sharing.sharing import TakeError
-    from core.sharing.sharing_errors import SharingError
-
-    try:
-        yield
-    except (SharingError, TakeError) as error:
-        raise CommandError(str(error), error_code(error)) from error
 
 
 # --- the actions -----------------------------------------------------------------------------------------

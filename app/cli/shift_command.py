@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.store_command import opened_store
-from app.desk.command_errors import EXIT_OK, CommandError
-from core.coded_error import error_code
+from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -74,10 +73,8 @@ def _shift(store: Store, args: argparse.Namespace) -> Shift:
                 "--back counts shifts, but --from and --to specify times; use one or the other",
                 "back-and-times",
             )
-        try:
+        with as_command_error(ValueError):
             return between(args.since, args.until)
-        except ValueError as error:
-            raise CommandError(str(error), error_code(error)) from error
     if not 0 <= args.back <= 10_000:
         raise CommandError(
             Message("--back {back} is out of range; use 0 to 10000 shifts", back=args.back), "back"
@@ -90,10 +87,8 @@ def _write(found: ShiftFigures, path: Path, *, metric: bool) -> None:
     from app.quality.shift_page import shift_html
 
     made = datetime.now().strftime("%Y-%m-%d %H:%M")
-    try:
+    with as_command_error(FileError, OSError):
         write_out(path, shift_html(found, "", made, metric=metric).encode("utf-8", "backslashreplace"))
-    except (FileError, OSError) as error:
-        raise CommandError(str(error), error_code(error)) from error
     sys.stdout.write(f"report saved to {path}: {found.parts} parts\n")
 
 

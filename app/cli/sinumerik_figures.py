@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.cli.figures import Json, block_head, degrees, millimetres, seconds
+from app.cli.figures import Json, block_head, degrees, millimetres, path_feed, seconds
 
 if TYPE_CHECKING:
     from core.interpreter.elementary_blocks import Block
@@ -15,7 +15,6 @@ HEAD = (
 )
 
 _TURN = 360.0
-_PER_MINUTE = 60.0
 _M_PER_MIN = 60.0 / 1000.0  # of mm/s
 
 
@@ -63,9 +62,7 @@ def _feed(block: Block) -> tuple[float | None, str | None]:
         return None, None
     alone = (block.x, block.z) == (block.x0, block.z0) and block.c != block.c0
     unit = "deg" if alone and not block.modal.linear_c else "mm"
-    if block.per_rev:
-        return round(block.feed, 6), f"{unit}/rev"
-    return round(block.feed * _PER_MINUTE, 6), f"{unit}/min"
+    return path_feed(block, unit)
 
 
 def _angle(value: float, block: Block) -> float:

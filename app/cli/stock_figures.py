@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from app.cli.figures import MM_PER_INCH, Json, length_of
+from app.cli.figures import Json, length_of, volume_of
 from core.language.source import Dialect
 from core.message import Message
 
@@ -20,7 +19,7 @@ def stock_json(part: PartReport, dialect: Dialect) -> Json | None:
     stock, last = part.stock, part.last
     if stock is None:
         return None
-    length, volume = length_of(dialect), _volume_of(dialect)
+    length, volume = length_of(dialect), volume_of(dialect)
     bore = last.bore if last is not None else None
     return {
         "given": stock.given or None,
@@ -43,7 +42,7 @@ def stock_lines(part: PartReport, dialect: Dialect) -> str:
     if part.stock is None:
         return "".join(f"  {words}\n" for words in part.assumed)
     inch = dialect is Dialect.OMNITURN
-    volume, unit = _volume_of(dialect), "in³" if inch else "mm³"
+    volume, unit = volume_of(dialect), "in³" if inch else "mm³"
     pieces = (
         Message((", pieces parted off: {pieces_count}"), pieces_count=len(part.pieces)) if part.pieces else ""
     )
@@ -73,8 +72,3 @@ def _named(stock: Stock, dialect: Dialect) -> str:
 def _points(profile: Profile, dialect: Dialect) -> list[list[float]]:
     length = length_of(dialect)
     return [[round(length(z), 6), round(length(r), 6)] for z, r in profile]
-
-
-def _volume_of(dialect: Dialect) -> Callable[[float], float]:
-    scale = MM_PER_INCH**3 if dialect is Dialect.OMNITURN else 1.0
-    return lambda mm3: round(mm3 / scale, 6)

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 
 from app.cli.meant_changes import Changes, add_consent_options, demand_meant
 from app.cli.who_changes import COMMAND_LINE, add_as_option, note_change, who_changes, who_may
-from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, as_command_error
 from app.desk.data_folder import data_folder
 from core.access.access_table import Act
-from core.coded_error import error_code
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -67,10 +66,8 @@ def store_refusals() -> Iterator[None]:
     """What the store refuses ends the command with its sentence."""
     from core.store.store_errors import StoreError
 
-    try:
+    with as_command_error(StoreError):
         yield
-    except StoreError as error:
-        raise CommandError(str(error), error_code(error)) from error
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from app.cli.expand_command import report_diagnostics
 from app.cli.program_options import add_program_options, circumstances, out_file, read_source
 from app.cli.progress_bar import Progress
-from app.desk.command_errors import CommandError
+from app.desk.command_errors import CommandError, cannot_write
 from core.file_placing import put_in_place
 from core.language.source import Dialect, Source
 from core.message import Message
@@ -122,9 +122,7 @@ def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, sou
         if not timeline.errors:
             put_in_place(partial, out)
     except OSError as error:
-        raise CommandError(
-            Message("{file} cannot be written: {cause}", file=out, cause=error.strerror), "cannot-write"
-        ) from error
+        raise cannot_write(out, error) from error
     finally:  # also by Ctrl+C
         with contextlib.suppress(OSError):
             partial.unlink(missing_ok=True)

@@ -12,11 +12,10 @@ from app.compose.headless_lives import HeadlessLives
 from app.compose.journal import Journal
 from app.compose.machine_status import AGENTS
 from app.compose.run_log import EventLog
-from app.desk.command_errors import CommandError
+from app.desk.command_errors import CommandError, as_command_error
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.run_without_screen import HeadlessRun
 from app.quality.parts_book import tools_of
-from core.coded_error import error_code
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.interruption_watch import Note
@@ -98,10 +97,8 @@ def _paced(machine: Machine, realtime: bool) -> bool:
 def _connected(machine: Machine, paced: bool) -> Iterator[tuple[RealClock | StepClock, Connected]]:
     """The machine and the clock that it goes by."""
     clock = RealClock() if paced else StepClock()
-    try:
+    with as_command_error(DriverError):
         connected = connect(machine, clock)
-    except DriverError as error:
-        raise CommandError(str(error), error_code(error)) from error
     try:
         yield clock, connected
     finally:

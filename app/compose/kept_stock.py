@@ -6,10 +6,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from app.desk.command_errors import CommandError
+from app.desk.command_errors import as_command_error
 from app.desk.data_folder import data_folder
 from app.desk.kept_part import NOTHING_KEPT, KeptPart, kept_part
-from core.coded_error import error_code
 from core.store.store_file import has_store
 
 if TYPE_CHECKING:
@@ -31,11 +30,8 @@ def kept_with_all(programs: Iterable[str]) -> dict[str, KeptPart]:
         return {}
     from core.store.store import Store, StoreError
 
-    try:
-        with Store.open(folder, read_only=True) as store:
-            found = {program: kept_part(store.setting, program) for program in programs}
-    except StoreError as error:
-        raise CommandError(str(error), error_code(error)) from error
+    with as_command_error(StoreError), Store.open(folder, read_only=True) as store:
+        found = {program: kept_part(store.setting, program) for program in programs}
     return {program: kept for program, kept in found.items() if kept != NOTHING_KEPT}
 
 
@@ -43,12 +39,9 @@ def keep_stock(program: str, text: str, stick_out: float | None) -> None:
     """Remember it; ``stick_out`` mm, None: that of before. Raises CommandError when it cannot be kept."""
     from core.store.store import Store, StoreError
 
-    try:
-        with Store.open(data_folder()) as store:
-            kept = replace(kept_part(store.setting, program), stock=text)
-            write(store, program, kept if stick_out is None else replace(kept, stick_out=stick_out))
-    except StoreError as error:
-        raise CommandError(str(error), error_code(error)) from error
+    with as_command_error(StoreError), Store.open(data_folder()) as store:
+        kept = replace(kept_part(store.setting, program), stock=text)
+        write(store, program, kept if stick_out is None else replace(kept, stick_out=stick_out))
 
 
 def write(store: Store, program: str, kept: KeptPart) -> None:

@@ -12,7 +12,6 @@ from app.compose.backends import connect, real_time
 from app.compose.page_server import listening_at
 from app.compose.sharing_desk import place_of
 from app.compose.shop_floor import try_shop_floor
-from app.desk.data_folder import data_folder
 from core.machine.machine_model import Axis, Machine
 from core.machine.sharing_table import SharingTable
 from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, broker_of
@@ -136,7 +135,7 @@ def _ask_sharing(machine: Machine, answers: Answers) -> None:
     table = machine.hardware.table(SharingTable)
     if table is None:
         return
-    place = place_of(table, data_folder())
+    place = place_of(table)
     try:
         found = place.look({})
     except SharingError as error:

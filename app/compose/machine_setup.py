@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.desk.command_errors import CommandError
-from core.coded_error import error_code
+from app.desk.command_errors import as_command_error
 from core.interpreter.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
 
 if TYPE_CHECKING:
@@ -23,10 +22,8 @@ def read_machine(path: str | None) -> Machine:
     from app.compose.machine_files import named_machine
     from core.table_schema import MachineFileError
 
-    try:
+    with as_command_error(MachineFileError):
         return named_machine(path)
-    except MachineFileError as error:
-        raise CommandError(str(error), error_code(error)) from error
 
 
 def control_limits(machine: Machine) -> ControlLimits:

@@ -36,7 +36,7 @@ from app.compose.workshop import (
     workshop,
 )
 from app.desk.alarm_log import KEPT, KINDS
-from app.desk.command_errors import CommandError
+from app.desk.command_errors import as_command_error
 from app.desk.daily_backup import DailyBackup
 from app.desk.data_folder import BACKUPS, RECORDS, data_folder
 from app.desk.desk import Desk
@@ -51,7 +51,6 @@ from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect
 from core.access.access_table import Act
 from core.closing import ClosingStep
-from core.coded_error import error_code
 from core.executor.commands import LeftInterrupted
 from core.executor.executor import Executor
 from core.executor.interrupted_job import InterruptedJob
@@ -360,10 +359,8 @@ def _kept_nowhere(_what: InterruptedJob | None) -> None:
 
 
 def _connected(machine: Machine, clock: Clock) -> Connected:
-    try:
+    with as_command_error(DriverError):
         return connect(machine, clock)
-    except DriverError as error:
-        raise CommandError(str(error), error_code(error)) from error
 
 
 def _drives(machine: Machine) -> str:

@@ -28,7 +28,7 @@ from app.compose.setup_archive import (
     problem,
     unpack,
 )
-from app.desk.command_errors import CommandError
+from app.desk.command_errors import CommandError, as_command_error, cannot_write
 from app.desk.data_folder import data_folder
 from core.coded_error import error_code
 from core.file_placing import make_folder, put_in_place, write_in_place
@@ -75,10 +75,7 @@ def save_setup(target: Path, machine_file: str | None) -> SetupTold:
         except OSError as error:
             with suppress(OSError):
                 part.unlink(missing_ok=True)
-            raise CommandError(
-                Message("{file} cannot be written: {cause}", file=target, cause=error.strerror),
-                "cannot-write",
-            ) from error
+            raise cannot_write(target, error) from error
     return replace(_told([each for each in members if each not in left_out]), left_out=left_out)
 
 
@@ -86,14 +83,12 @@ def _copy_of_store(folder: Path, beside: Path) -> Path:
     """Whole, and without the interrupted job and the people: those are a matter of one machine."""
     home = beside / "home"
     home.mkdir()
-    try:
+    with as_command_error(StoreError):
         backup.backup(folder, home / FILE_NAME)
         with Store.open(home) as store:
             store.set_setting(UNDER_WAY, None).result()
             store.write(people.remove_all).result()
         backup.backup(home, beside / STORE)
-    except StoreError as error:
-        raise CommandError(str(error), error_code(error)) from error
     return beside / STORE
 
 
@@ -191,10 +186,7 @@ def load_setup(source: Path) -> tuple[SetupTold, Path | None]:
             raise CommandError(str(error), error_code(error)) from error
         except OSError as error:
             where = error.filename or folder  # a full disk does not say which file it was
-            raise CommandError(
-                Message("{file} cannot be written: {cause}", file=where, cause=error.strerror),
-                "cannot-write",
-            ) from error
+            raise cannot_write(where, error) from error
     return _told(names, beside.machine), kept
 
 

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from core.sharing.shared_place import SharedPlace
 
 HOME_FILE = "sharing-id"  # beside the store and not in it: a setup or a backup of another desk has another
-COPY = "sharing.git"  # of the repository
 
 
 def sharing_of(machine: Machine, store: Callable[[], Store]) -> Sharing | None:
@@ -38,9 +37,7 @@ def sharing_of(machine: Machine, store: Callable[[], Store]) -> Sharing | None:
     from app.sharing.sharing import Sharing
 
     folder = data_folder()
-    return Sharing(
-        place_of(table, folder), table.desk or machine.name, home_of(folder), folder / "programs", store
-    )
+    return Sharing(place_of(table), table.desk or machine.name, home_of(folder), folder / "programs", store)
 
 
 def give_sharing(desk: Desk, machine: Machine, journal: Journal | None) -> None:
@@ -104,12 +101,8 @@ class Heard:
             self.desk.hear(Event(self.desk.snapshot().t, "shared", text))  # said with the next frame
 
 
-def place_of(table: SharingTable, folder: Path) -> SharedPlace:
+def place_of(table: SharingTable) -> SharedPlace:
     """The place; nothing is opened yet."""
-    if table.git:
-        from core.sharing.shared_git import SharedGit
-
-        return SharedGit(table.git, folder / COPY)
     if table.postgresql:
         from core.sharing.shared_database import SharedDatabase
 

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from app.compose.machine_setup import setup_for
-from app.desk.command_errors import CommandError
+from app.desk.command_errors import CommandError, as_command_error
 from app.desk.data_folder import data_folder
 from app.offsets.mill_offsets import MillOffsets, rows_of, with_mill
 from app.offsets.offsets_in_force import (
@@ -20,7 +20,6 @@ from app.offsets.offsets_in_force import (
     secondary_offsets,
     tool_offsets,
 )
-from core.coded_error import error_code
 from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
 from core.message import Message
 from core.store.store_file import has_store
@@ -86,14 +85,11 @@ def stored_offsets() -> Offsets:
     from core.store.damaged_rows import OF_PROGRAMS
     from core.store.store import Store, StoreError
 
-    try:
-        with Store.open(folder, read_only=True) as store:
-            damaged = store.damaged(OF_PROGRAMS, {PRESET, R_PARAMETERS})
-            if damaged:
-                raise CommandError(damaged[0], "damaged-row")
-            return offsets_of(store)
-    except StoreError as error:
-        raise CommandError(str(error), error_code(error)) from error
+    with as_command_error(StoreError), Store.open(folder, read_only=True) as store:
+        damaged = store.damaged(OF_PROGRAMS, {PRESET, R_PARAMETERS})
+        if damaged:
+            raise CommandError(damaged[0], "damaged-row")
+        return offsets_of(store)
 
 
 def stored_shapes() -> dict[int, ToolShape]:
@@ -107,11 +103,8 @@ def stored_shapes() -> dict[int, ToolShape]:
     from app.desk.stored_shapes import tool_shapes, wrong_shapes
     from core.store.store import Store, StoreError
 
-    try:
-        with Store.open(folder, read_only=True) as store:
-            shapes, tools = store.shapes(), store.tools()
-    except StoreError as error:
-        raise CommandError(str(error), error_code(error)) from error
+    with as_command_error(StoreError), Store.open(folder, read_only=True) as store:
+        shapes, tools = store.shapes(), store.tools()
     if wrong := wrong_shapes(shapes, tools):
         way = "correct the shape on its page (F8) or with 'turndesk offsets set'"
         raise CommandError(

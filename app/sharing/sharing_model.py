@@ -22,7 +22,7 @@ from core.store.shared_versions import Family, SharedVersion, key_of
 from core.store.store_rows import VersionRow
 
 NO_PLACE = (
-    "NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER, GIT REMOTE OR "
+    "NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER OR A "
     "DATABASE UNDER [sharing] IN THE MACHINE FILE"
 )
 NOTHING_YET = "NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER"
@@ -36,7 +36,7 @@ _STATES = {
 }
 _ORDER = tuple(_STATES)
 _WIDE = 110  # letters of a note
-_PATIENCE = 30.0  # s: a place that takes longer is told; git has an end of its own behind 60
+_PATIENCE = 30.0  # s: a place that takes longer is told
 
 
 @dataclass(slots=True)
@@ -369,6 +369,4 @@ class SharingModel:
 
     def close(self) -> None:
         """The worker ends; what was taken is taken."""
-        if self.sharing is not None:
-            self.sharing.place.close()
         self.worker.close()

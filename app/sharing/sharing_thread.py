@@ -40,10 +40,9 @@ class SharingThread:
         return self._now() - since if since >= 0.0 else 0.0
 
     def close(self) -> None:
-        """What is under way is given up: it is taken up again when the desk starts anew."""
+        """What is under way is left behind: it is taken up again when the desk starts anew."""
         self._closing.set()
         self._wake.set()
-        self._sharing.place.close()
         if self._thread.is_alive():
             self._thread.join(_PATIENCE)
 

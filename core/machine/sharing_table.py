@@ -6,18 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from core.message import Message
-from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, written
+from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, raw_at, written
 
-KINDS = ("folder", "git", "postgresql")
 _LONGEST = 40  # letters of a desk's name
 _FIELDS = (
     Field("folder", Kind.TEXT, default="", meaning="Shared folder, mounted on every computer."),
-    Field(
-        "git",
-        Kind.TEXT,
-        default="",
-        meaning="Address of a git repository, in which TurnDesk uses the branch `turndesk`.",
-    ),
     Field(
         "postgresql",
         Kind.TEXT,
@@ -45,14 +38,13 @@ _FIELDS = (
 
 @dataclass(frozen=True, slots=True)
 class SharingTable:
-    """One of ``folder``, ``git`` (a remote) and ``postgresql`` (what libpq takes); the others are empty.
+    """Either ``folder`` or ``postgresql`` (what libpq takes); the other is empty.
 
     ``desk`` is what this desk is called among the others; empty: as the machine. ``look``: seconds between
     two looks at what is new there.
     """
 
     folder: str
-    git: str = field(repr=False)
     postgresql: str = field(repr=False)
     desk: str
     look: float
@@ -60,26 +52,14 @@ class SharingTable:
 
 def _rules(file: FileReading) -> Iterator[Finding]:
     values = file.values
-    if not values.has("sharing.folder", "sharing.git", "sharing.postgresql", "sharing.desk"):
+    if not values.has("sharing.folder", "sharing.postgresql", "sharing.desk"):
         return
-    named = [kind for kind in KINDS if values.text(f"sharing.{kind}")]
-    if len(named) != 1:
-        said = " and ".join(named) if named else "none"
-        yield Finding(
-            "sharing",
-            said,
-            Message(
-                "specify exactly one of the keys {kinds} or {kinds2}",
-                kinds=", ".join(KINDS[:-1]),
-                kinds2=KINDS[-1],
-            ),
-            "many-places",
-        )
-    git, desk = values.text("sharing.git"), values.text("sharing.desk")
-    if git.startswith("-"):
-        yield Finding(
-            "sharing.git", written(git), ("this value must be the address of a Git repository"), "git-address"
-        )
+    named = [kind for kind in ("folder", "postgresql") if values.text(f"sharing.{kind}")]
+    removed = raw_at(file.data, "sharing.git") is not None  # it has a finding of its own
+    if len(named) != 1 and not removed:
+        said = " and ".join(named) or "none"
+        yield Finding("sharing", said, "specify exactly one of the keys folder and postgresql", "many-places")
+    desk = values.text("sharing.desk")
     if desk.strip() != desk or len(desk) > _LONGEST or not desk.isprintable():
         yield Finding(
             "sharing.desk",
@@ -97,7 +77,7 @@ DRIVER = Driver(
             lambda file: file.values.model(SharingTable, "sharing"),
             rules=_rules,
             purpose="The location through which machines share their programs. Specify exactly one of "
-            "`folder`, `git` and `postgresql`.",
+            "`folder` and `postgresql`.",
         ),
     )
 )

@@ -1,1 +1,1 @@
-"""Programs shared between desks: in a folder, in a git repository, in PostgreSQL."""
+"""Programs shared between desks: in a folder or in PostgreSQL."""

@@ -123,9 +123,6 @@ class SharedDatabase:
         except RecordError as error:
             raise Cause.DAMAGED.error(self.name, error) from error
 
-    def close(self) -> None:
-        """Nothing is kept open; a question that is under way ends by its own time."""
-
     @staticmethod
     def _desks(connection: psycopg.Connection, strays: list[str]) -> tuple[DeskState, ...]:
         found = []

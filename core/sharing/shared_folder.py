@@ -103,9 +103,6 @@ class SharedFolder:
             except RecordError as error:
                 raise Cause.DAMAGED.error(self.name, error) from error
 
-    def close(self) -> None:
-        """Nothing is kept open."""
-
     def _is_whole(self, path: Path, version: SharedVersion) -> bool:
         """By its size: a file that somebody has cut off is published again by a desk that has the text."""
         size = self._sizes.setdefault(version.id, len(written(version)) + 1 + version.size)
@@ -156,7 +153,13 @@ class SharedFolder:
             raise Cause.OTHER.error(
                 self.name, Message("{mark}: {cause}", mark=MARK, cause=error.strerror)
             ) from error
-        check_mark(self.name, data)
+        number: object = None
+        with suppress(ValueError, RecursionError, AttributeError):
+            number = json.loads(data).get("format")
+        if not isinstance(number, int):
+            raise Cause.OTHER.error(self.name, Message("{mark} is damaged", mark=MARK))
+        if number != FORMAT:
+            raise Cause.NEWER.error(self.name, number)
 
     @contextmanager
     def _system(self) -> Iterator[None]:
@@ -164,17 +167,6 @@ class SharedFolder:
             yield
         except OSError as error:
             raise of_system(self.name, error) from error
-
-
-def check_mark(place: str, data: bytes) -> None:
-    """Raises SharingError where the mark of a place is of a newer format, or is none."""
-    number: object = None
-    with suppress(ValueError, RecursionError, AttributeError):
-        number = json.loads(data).get("format")
-    if not isinstance(number, int):
-        raise Cause.OTHER.error(place, Message("{mark} is damaged", mark=MARK))
-    if number != FORMAT:
-        raise Cause.NEWER.error(place, number)
 
 
 def _files(folder: Path) -> list[Path]:

@@ -56,19 +56,10 @@ class SharedPlace(Protocol):
         """The text of a version, checked."""
         ...
 
-    def close(self) -> None:
-        """Give up what is under way; it raises SharingError there."""
-        ...
-
 
 def folder_at(folder: object) -> str:
     """What sentences call a folder."""
     return Message("the folder {folder}", folder=folder)
-
-
-def repository_at(address: str) -> str:
-    """What they call a git repository; ``address`` without a password."""
-    return Message("the git repository {address}", address=address)
 
 
 def database_at(address: str) -> str:

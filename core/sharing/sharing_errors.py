@@ -33,25 +33,7 @@ class Cause(Enum):
     NEWER = "{place} was set up by a newer TurnDesk (format {why}); update TurnDesk on this control"
     OTHER = "{place} is not set up for shared programs ({why}); specify another location"
     FULL = "the disk of {place} is full; free up space on that disk"
-    REFUSED = "{place} rejected the request: {why}"
     DAMAGED = "{place}: {why}"
-    UNKNOWN_HOST = (
-        "the SSH host key of {place} is not known to this control ({why}); log in to "
-        "that host once with ssh, from the user account that runs this control, and "
-        "verify the host key"
-    )
-    OTHER_HOST = (
-        "the SSH host key of {place} has changed ({why}); confirm the new key with the "
-        "administrator of that host, and only then remove the old key with ssh-keygen "
-        "-R"
-    )
-    NO_GIT = "git is not installed on this computer; install git"
-    NO_SSH = "{place} needs ssh, which is not installed on this computer; install openssh-client"
-    NO_GIT_THERE = (
-        "the host of {place} responds, but not with a git response ({why}); check that "
-        "git is installed on that host and that this user account can run git there "
-        "over ssh"
-    )
     UNREADABLE = (
         "[sharing] postgresql is not a valid connection string; put a value that contains "
         "spaces in quotation marks, and write / and @ in the password of an address as %2F "
@@ -64,10 +46,6 @@ class Cause(Enum):
     NOT_TRUSTED = (
         "the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in "
         "[sharing] postgresql to the certificate of its issuer"
-    )
-    GIT_NOT_TRUSTED = (
-        "the certificate of {place} cannot be verified ({why}); set the certificate of its "
-        "issuer: git config --global http.sslCAInfo FILE"
     )
     NO_TLS = (
         "{place} does not support TLS ({why}); turn on TLS at that server, or, on a network "
@@ -97,7 +75,6 @@ class SharingError(CodedError):
     """Sharing cannot do what it was asked; nothing that was there has changed."""
 
     cause: Cause
-    told = ""  # all that a command said, where one was asked
 
 
 def of_system(place: str, error: OSError) -> SharingError:

@@ -89,7 +89,7 @@ APART = frozenset(
             "run_without_screen.py",
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
-        *("sharing/git_command.py", "shared_git.py", "shared_database.py", "sharing/version_record.py"),
+        *("shared_database.py", "sharing/version_record.py"),
         *("screen/pdf_pages.py", "shapes/sinumerik_lines.py", "shapes/bar_lines.py"),
         *("shapes/live_lines.py", "shapes/sinumerik_live_lines.py"),
         *(

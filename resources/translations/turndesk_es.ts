@@ -13285,8 +13285,8 @@
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
-      <source>NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER, GIT REMOTE OR DATABASE UNDER [sharing] IN THE MACHINE FILE</source>
-      <translation>NO HAY UBICACIÓN PARA PROGRAMAS COMPARTIDOS. INDIQUE UNA CARPETA, UN REMOTO GIT O UNA BASE DE DATOS EN [sharing] DEL ARCHIVO DE MÁQUINA</translation>
+      <source>NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER OR A DATABASE UNDER [sharing] IN THE MACHINE FILE</source>
+      <translation>NO HAY UBICACIÓN PARA PROGRAMAS COMPARTIDOS. INDIQUE UNA CARPETA O UNA BASE DE DATOS EN [sharing] DEL ARCHIVO DE MÁQUINA</translation>
     </message>
     <message>
       <location filename="app/sharing/sharing_model.py" />
@@ -31884,11 +31884,6 @@
       <translation>la carpeta {folder}</translation>
     </message>
     <message>
-      <location filename="core/sharing/shared_place.py" />
-      <source>the git repository {address}</source>
-      <translation>el repositorio git {address}</translation>
-    </message>
-    <message>
       <location filename="core/sharing/sharing_errors.py" />
       <source>[sharing] postgresql is not a valid connection string; put a value that contains spaces in quotation marks, and write / and @ in the password of an address as %2F and %40</source>
       <translation>[sharing] postgresql no es una cadena de conexión válida; ponga entre comillas un valor que contenga espacios, y escriba / y @ en la contraseña de una dirección como %2F y %40</translation>
@@ -31900,38 +31895,13 @@
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
-      <source>git is not installed on this computer; install git</source>
-      <translation>git no está instalado en esta computadora; instale git</translation>
-    </message>
-    <message>
-      <location filename="core/sharing/sharing_errors.py" />
-      <source>the SSH host key of {place} has changed ({why}); confirm the new key with the administrator of that host, and only then remove the old key with ssh-keygen -R</source>
-      <translation>la clave SSH del equipo de {place} ha cambiado ({why}); confirme la clave nueva con el administrador de ese equipo, y solo entonces quite la clave anterior con ssh-keygen -R</translation>
-    </message>
-    <message>
-      <location filename="core/sharing/sharing_errors.py" />
-      <source>the SSH host key of {place} is not known to this control ({why}); log in to that host once with ssh, from the user account that runs this control, and verify the host key</source>
-      <translation>este control no conoce la clave SSH del equipo de {place} ({why}); entre en ese equipo una vez con ssh, desde la cuenta de usuario que ejecuta este control, y verifique la clave</translation>
-    </message>
-    <message>
-      <location filename="core/sharing/sharing_errors.py" />
       <source>the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in [sharing] postgresql to the certificate of its issuer</source>
       <translation>el certificado de {place} no se puede verificar ({why}); indique en [sharing] postgresql sslrootcert=FILE con el certificado de su emisor</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
-      <source>the certificate of {place} cannot be verified ({why}); set the certificate of its issuer: git config --global http.sslCAInfo FILE</source>
-      <translation>el certificado de {place} no se puede verificar ({why}); indique el certificado de su emisor: git config --global http.sslCAInfo FILE</translation>
-    </message>
-    <message>
-      <location filename="core/sharing/sharing_errors.py" />
       <source>the disk of {place} is full; free up space on that disk</source>
       <translation>el disco de {place} está lleno; libere espacio en ese disco</translation>
-    </message>
-    <message>
-      <location filename="core/sharing/sharing_errors.py" />
-      <source>the host of {place} responds, but not with a git response ({why}); check that git is installed on that host and that this user account can run git there over ssh</source>
-      <translation>el equipo de {place} responde, pero no con una respuesta de git ({why}); revise que git esté instalado en ese equipo y que esta cuenta de usuario pueda ejecutar allí git por ssh</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />
@@ -31962,16 +31932,6 @@
       <location filename="core/sharing/sharing_errors.py" />
       <source>{place} is not set up for shared programs ({why}); specify another location</source>
       <translation>{place} no está preparado para programas compartidos ({why}); indique otra ubicación</translation>
-    </message>
-    <message>
-      <location filename="core/sharing/sharing_errors.py" />
-      <source>{place} needs ssh, which is not installed on this computer; install openssh-client</source>
-      <translation>{place} necesita ssh, que no está instalado en esta computadora; instale openssh-client</translation>
-    </message>
-    <message>
-      <location filename="core/sharing/sharing_errors.py" />
-      <source>{place} rejected the request: {why}</source>
-      <translation>{place} rechazó la petición: {why}</translation>
     </message>
     <message>
       <location filename="core/sharing/sharing_errors.py" />

@@ -238,6 +238,13 @@ def test_every_shell_gets_its_completion(turndesk: Turndesk) -> None:
         told = turndesk("setup", "completion", shell).out
         assert "keep-stock" in told
         assert "completion" in told
+        assert told.startswith("eval '") is (shell == "zsh")
+
+
+@pytest.mark.parametrize("shell", ["tcsh", "powershell", "BASH"])
+def test_another_shell_is_refused_by_name(shell: str, turndesk: Turndesk) -> None:
+    told = turndesk("setup", "completion", shell)
+    assert (told.status, told.out, shell in told.err) == (2, "", True)
 
 
 def test_bash_completes_commands_actions_and_options(turndesk: Turndesk, tmp_path: Path) -> None:
@@ -247,18 +254,18 @@ def test_bash_completes_commands_actions_and_options(turndesk: Turndesk, tmp_pat
     def completed(*words: str) -> set[str]:
         line = " ".join(f"'{word}'" for word in words)
         typed = f"COMP_WORDS=({line}); COMP_CWORD={len(words) - 1}"
-        ask = f"source {script}; {typed}; _turndesk; echo ${{COMPREPLY[@]}}"
+        ask = f"source {script}; {typed}; _shtab_turndesk; echo ${{COMPREPLY[@]}}"
         told = subprocess.run(["bash", "-c", ask], capture_output=True, text=True, check=True, cwd=tmp_path)
         return set(told.stdout.split())
 
-    assert {"prove"} == completed("turndesk", "prov") - {"c.bash"}
+    assert completed("turndesk", "prov") == {"prove"}
     assert completed("turndesk", "offsets", "cl") == {"clear"}
     assert "--json" in completed("turndesk", "prove", "--")
     assert completed("turndesk", "offsets", "set", "--w") == {"--why"}
-    assert {"bash", "zsh", "fish"} < completed("turndesk", "setup", "completion", "")
+    assert completed("turndesk", "setup", "completion", "") == {"bash", "zsh", "fish"}
     assert completed("turndesk", "prove", "--dialect", "") == {"omniturn", "klartext", "sinumerik"}
     assert completed("turndesk", "prove", "--offsets", "") == {"c.bash"}
-    assert completed("turndesk", "--machine", "prove", "run", "--headl") == {"--headless"}
+    assert completed("turndesk", "--machine", "a.toml", "run", "--headl") == {"--headless"}
 
 
 @pytest.mark.parametrize("shell", ["bash", "fish"])
@@ -268,7 +275,9 @@ def test_a_name_with_a_blank_is_one_word(shell: str, turndesk: Turndesk, tmp_pat
     script = tmp_path / "script"
     script.write_text(turndesk("setup", "completion", shell).out)
     (tmp_path / "my part.nc").touch()
-    typed = "COMP_WORDS=(turndesk prove my); COMP_CWORD=2; _turndesk; echo ${#COMPREPLY[@]} ${COMPREPLY[@]}"
+    typed = (
+        "COMP_WORDS=(turndesk prove my); COMP_CWORD=2; _shtab_turndesk; echo ${#COMPREPLY[@]} ${COMPREPLY[@]}"
+    )
     ask = f"source {script}; " + ("complete -C 'turndesk prove my'" if shell == "fish" else typed)
     told = subprocess.run([shell, "-c", ask], capture_output=True, text=True, check=True, cwd=tmp_path)
     assert told.stdout.split() == (["1"] if shell == "bash" else []) + ["my", "part.nc"]

@@ -127,9 +127,10 @@ def test_a_machine_file_without_a_place(turndesk: Turndesk) -> None:
 @pytest.mark.parametrize(
     ("table", "code", "value"),
     [
-        ("", "many-places", "folder, git or postgresql"),
-        ('folder = "/a"\ngit = "b"', "many-places", "folder and git"),
-        ('git = "--upload-pack=x"', "git-address", "--upload-pack=x"),
+        ("", "many-places", "folder and postgresql"),
+        ('folder = "/a"\npostgresql = "b"', "many-places", "= folder and postgresql"),
+        ('git = "ssh://shop-pc/x.git"', "removed-key", "sharing.git"),
+        ('git = 7\nfolder = "/a"', "removed-key", "sharing.git"),
         (f'folder = "/a"\ndesk = "{"x" * 41}"', "name-too-long", "40"),
         ('folder = "/a"\nlook = 1', "wrong-value", "sharing.look"),
         ('folder = "/a"\npassword = "x"', "unknown-key", "sharing.password"),

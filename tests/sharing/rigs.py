@@ -5,8 +5,6 @@ from __future__ import annotations
 import importlib.util
 import json
 import os
-import shutil
-import subprocess
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,12 +14,11 @@ import pytest
 
 from core.sharing.shared_database import SharedDatabase
 from core.sharing.shared_folder import MARK, SharedFolder
-from core.sharing.shared_git import BRANCH, SharedGit
 from core.sharing.shared_place import SharedPlace
 from core.sharing.sharing_errors import Cause
 from tests.sharing.postgres_server import PostgresServer, programs
 
-KINDS = ("folder", "git", "postgresql")
+KINDS = ("folder", "postgresql")
 
 
 class PowerCut(BaseException):
@@ -106,58 +103,6 @@ class FolderRig(Rig):
         patch.setattr(Path, "replace", cut)
 
 
-class GitRig(Rig):
-    away_cause = Cause.NOT_THERE
-
-    def __init__(self, folder: Path) -> None:
-        super().__init__(folder)
-        self.remote = folder / "shop.git"
-        self.git("init", "--quiet", "--bare", str(self.remote), at=None)
-
-    def git(self, *words: str, at: Path | None, data: bytes = b"") -> bytes:
-        named = [f"--git-dir={at}"] if at is not None else []
-        return subprocess.run(["git", *named, *words], input=data, check=True, capture_output=True).stdout
-
-    def place(self, desk: int = 1) -> SharedPlace:
-        return SharedGit(str(self.remote), self.folder / f"copy-{desk}.git")
-
-    def leave(self) -> None:
-        self.remote.rename(self.folder / "away.git")
-
-    def come_back(self) -> None:
-        (self.folder / "away.git").rename(self.remote)
-
-    def commit(self, files: dict[str, bytes]) -> None:
-        parts = [b"commit refs/heads/%s\ncommitter a <a@b> 1 +0000\ndata 1\nx\n" % BRANCH.encode()]
-        parts.append(b"from refs/heads/%s^0\n" % BRANCH.encode())
-        parts += [b"M 100644 inline %s\ndata %d\n%s\n" % (k.encode(), len(v), v) for k, v in files.items()]
-        self.git("fast-import", "--quiet", "--force", at=self.remote, data=b"".join(parts))
-
-    def make_newer(self) -> None:
-        self.commit({MARK: b'{"format": 2}'})
-
-    def litter(self) -> None:
-        bad = {
-            "versions/Thumbs.db": b"\0",
-            f"versions/{'a' * 64}": b'{"format":1}\nG00',
-            "desks/readme.txt": b"x",
-        }
-        self.commit(bad)
-
-    def hook(self, script: str) -> None:
-        path = self.remote / "hooks" / "pre-receive"
-        path.parent.mkdir(exist_ok=True)
-        path.write_text(f"#!/bin/sh\n{script}\n")
-        path.chmod(0o755)
-
-    def cut_in_put(self, patch: pytest.MonkeyPatch) -> None:
-        del patch  # it is the remote that ends
-        self.hook("kill -9 $PPID")
-
-    def mend(self) -> None:
-        (self.remote / "hooks" / "pre-receive").unlink()
-
-
 class PostgresRig(Rig):
     databases = 0
 
@@ -214,8 +159,6 @@ class PostgresRig(Rig):
 @contextmanager
 def rig_of(kind: str, folder: Path, request: pytest.FixtureRequest) -> Iterator[Rig]:
     """The rig of a kind; a test is skipped where this computer cannot have it."""
-    if kind == "git" and shutil.which("git") is None:
-        pytest.skip("git is not installed")
     if kind == "postgresql":
         if importlib.util.find_spec("psycopg") is None:
             pytest.skip("psycopg is not installed")
@@ -223,6 +166,6 @@ def rig_of(kind: str, folder: Path, request: pytest.FixtureRequest) -> Iterator[
             pytest.skip("no PostgreSQL server is installed")
         rig: Rig = PostgresRig(folder, request.getfixturevalue("postgres"))
     else:
-        rig = FolderRig(folder) if kind == "folder" else GitRig(folder)
+        rig = FolderRig(folder)
     yield rig
     rig.close()

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import signal
-import subprocess
 import traceback
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,15 +11,12 @@ from pathlib import Path
 import psycopg
 import pytest
 
-from core.sharing import shared_git
 from core.sharing.connection_string import parsed, with_tls
-from core.sharing.git_command import GitCommand
 from core.sharing.shared_database import SharedDatabase
-from core.sharing.shared_git import SharedGit
 from core.sharing.shared_place import Published, SharedPlace
 from core.sharing.sharing_errors import Cause, SharingError
 from core.sharing.version_record import DeskState, new_version
-from tests.sharing.rigs import GitRig, PostgresRig, PowerCut, Rig, rig_of
+from tests.sharing.rigs import PostgresRig, PowerCut, Rig, rig_of
 
 AT = "2026-01-02T03:04:05.678Z"
 HOME = "0" * 31 + "1"
@@ -171,169 +166,6 @@ def _emptied(rig: Rig) -> SharedPlace:
 # --- of one kind only -----------------------------------------------------------------------------------
 
 
-def test_two_desks_that_push_at_once_both_arrive(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    rig = GitRig(tmp_path)
-    one, two = published(1), published(2)
-    first, second = rig.place(1), rig.place(2)
-    first.begin()
-    push = SharedGit._push
-    come = iter([lambda: second.put([two], DeskState("2" * 32, "LATHE 2", AT, {}))])
-
-    def late(place: SharedGit) -> bool:
-        if place is first and (other := next(come, None)) is not None:
-            other()
-        return push(place)
-
-    monkeypatch.setattr(SharedGit, "_push", late)
-    first.put([one], state(one))
-    found = second.look({})
-    assert (set(found.fresh), len(found.desks)) == ({one.version, two.version}, 2)
-
-
-def test_a_branch_that_somebody_has_emptied_is_begun_anew_on_top(tmp_path: Path) -> None:
-    """The sentence says so: turndesk share begin. What he has put there himself stays."""
-    rig = GitRig(tmp_path)
-    place, one = rig.place(), published(1)
-    place.begin()
-    place.put([one], state(one))
-    blob = rig.git("hash-object", "-w", "--stdin", at=rig.remote, data=b"our notes").strip()
-    tree = rig.git("mktree", at=rig.remote, data=b"100644 blob %s\tnotes.txt\n" % blob).strip().decode()
-    emptied = rig.git("commit-tree", "-m", "emptied", tree, at=rig.remote).strip().decode()
-    rig.git("update-ref", "refs/heads/turndesk", emptied, at=rig.remote)
-    assert cause_of(place.look, {})[0] is Cause.NOT_BEGUN
-    place.begin()
-    assert place.look({}).there == frozenset()
-    place.put([one], state(one))
-    assert rig.place(2).look({}).fresh == (one.version,)
-    assert rig.git("show", "turndesk:notes.txt", at=rig.remote) == b"our notes"
-
-
-def test_a_remote_that_refuses_is_told_in_its_own_words(tmp_path: Path) -> None:
-    rig = GitRig(tmp_path)
-    place = rig.place()
-    place.begin()
-    rig.hook("echo only the office may push >&2; exit 1")
-    cause, words = cause_of(place.put, [published(1)], state())
-    assert (cause, "hook declined" in words) == (Cause.REFUSED, True)
-
-
-@pytest.mark.parametrize(
-    ("told", "cause"),
-    [
-        ("Host key verification failed.", Cause.UNKNOWN_HOST),
-        (
-            "@@@@\nHost key for [127.0.0.1]:22823 has changed and you have requested strict checking.",
-            Cause.OTHER_HOST,
-        ),
-        ("root@shop: Permission denied (publickey,password).", Cause.NO_RIGHT),
-        ("fatal: detected dubious ownership in repository at '/srv/shop.git'", Cause.NO_RIGHT),
-        ("error: remote unpack failed: unable to create temporary object directory", Cause.NO_RIGHT),
-        (
-            "fatal: unable to access 'https://shop/x/': server certificate verification failed. CAfile: none",
-            Cause.GIT_NOT_TRUSTED,
-        ),
-        ("fatal: Authentication failed for 'https://shop/x/'", Cause.NO_RIGHT),
-        ("ssh -oBatchMode=yes: 1: ssh: not found", Cause.NO_SSH),
-        ("error: cannot run ssh: No such file or directory", Cause.NO_SSH),
-        ("sh: 1: git-upload-pack: not found", Cause.NO_GIT_THERE),
-        ("fatal: protocol error: bad line length character: This", Cause.NO_GIT_THERE),
-        ("ssh: connect to host shop port 4013: Connection refused", Cause.AWAY),
-        ("fatal: unable to access 'https://shop/x/': The requested URL returned error: 403", Cause.NO_RIGHT),
-        ("Connection timed out during banner exchange", Cause.AWAY),
-    ],
-)
-def test_what_ssh_and_its_server_say_is_told_by_its_cause(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: str, cause: Cause
-) -> None:
-    """As OpenSSH 9.2 and git 2.39 said it against a server on this computer."""
-    (tmp_path / "git").write_text(
-        f'#!/bin/sh\ncat >&2 <<"END"\n{told}\nfatal: Could not read from remote repository.\nEND\nexit 128\n'
-    )
-    (tmp_path / "git").chmod(0o755)
-    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
-    command = GitCommand(tmp_path / "copy.git", "the repository")
-    found, words = cause_of(command.run, ["fetch"])
-    assert (found, "@@" in words) == (cause, False)
-
-
-def test_a_token_that_git_repeats_is_not_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    said = "fatal: unable to access 'https://me:secret@shop/x/': Could not resolve host: shop"
-    (tmp_path / "git").write_text(f'#!/bin/sh\ncat >&2 <<"END"\n{said}\nEND\nexit 128\n')
-    (tmp_path / "git").chmod(0o755)
-    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
-    cause, words = cause_of(GitCommand(tmp_path / "copy.git", "the repository").run, ["fetch"])
-    assert (cause, "https://shop/x/" in words) == (Cause.AWAY, True)
-
-
-def test_a_file_longer_than_any_of_ours_is_a_stray_in_git(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
-) -> None:
-    with rig_of("git", tmp_path, request) as rig:
-        place, one = rig.place(1), published(1)
-        place.begin()
-        place.put([one], state(one))
-        monkeypatch.setattr(shared_git, "LONGEST", 100)
-        assert rig.place(2).look({}).fresh == ()
-
-
-def test_no_address_of_a_repository_can_be_an_option_of_git(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "git").write_text(f'#!/bin/sh\nprintf "%s\\n" "$@" >>{tmp_path}/said\n')
-    (tmp_path / "git").chmod(0o755)
-    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
-    place = SharedGit("--upload-pack=x", tmp_path / "copy.git")
-    cause_of(place.look, {})
-    place._push()
-    words = (tmp_path / "said").read_text().splitlines()
-    for own in ("--upload-pack=x", str(tmp_path / "copy.git")):
-        assert {words[at - 1] for at, word in enumerate(words) if word == own} == {"--"}
-
-
-def test_ctrl_c_ends_git_with_all_that_it_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "git").write_text("#!/bin/sh\nread nothing < /dev/zero\n")
-    (tmp_path / "git").chmod(0o755)
-    monkeypatch.setenv("PATH", str(tmp_path))
-    started = list[subprocess.Popen[bytes]]()
-    talk = subprocess.Popen.communicate
-
-    def press(process: subprocess.Popen[bytes], *args: object, **words: object) -> object:
-        if not started:
-            started.append(process)
-            raise KeyboardInterrupt
-        return talk(process)
-
-    monkeypatch.setattr(subprocess.Popen, "communicate", press)
-    with pytest.raises(KeyboardInterrupt):
-        GitCommand(tmp_path / "copy.git", "the repository").run(["fetch"])
-    assert started[0].returncode == -signal.SIGKILL
-
-
-def test_git_that_is_not_there_or_does_not_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    place = GitRig(tmp_path).place()
-    stuck = tmp_path / "bin"
-    stuck.mkdir()
-    monkeypatch.setenv("PATH", str(stuck))
-    assert cause_of(place.begin)[0] is Cause.NO_GIT
-    (stuck / "git").write_text("#!/bin/sh\nread nothing < /dev/zero\n")
-    (stuck / "git").chmod(0o755)
-    command = GitCommand(tmp_path / "copy.git", "the repository", patience=0.01)
-    cause, words = cause_of(command.run, ["fetch"])
-    assert (cause, "no response for 0.01 s" in words) == (Cause.AWAY, True)
-
-
-def test_a_damaged_copy_of_the_repository_is_made_again(tmp_path: Path) -> None:
-    rig = GitRig(tmp_path)
-    one, place = published(1), rig.place()
-    place.begin()
-    place.put([one], state(one))
-    (tmp_path / "copy-1.git" / "config").write_text("[core")
-    for each in (tmp_path / "copy-1.git" / "objects").rglob("*.pack"):
-        each.chmod(0o644)
-        each.write_bytes(b"PACK")
-    assert place.look({}).fresh == (one.version,)
-
-
 @pytest.mark.parametrize(
     ("number", "cause"),
     [
@@ -481,7 +313,7 @@ def test_a_server_elsewhere_has_to_prove_who_it_is(
     values = with_tls(parsed(conninfo))
     assert values.get("sslmode") == mode
     assert ("sslrootcert" in values) is (mode == "verify-full")
-    assert ("TLS not verified" in SharedDatabase(conninfo).name) is (mode == "prefer")
+    assert ("TLS certificate not verified" in SharedDatabase(conninfo).name) is (mode == "prefer")
 
 
 _AT = 'connection failed: connection to server at "10.0.0.7", port 5432 failed: '
@@ -530,11 +362,3 @@ def test_what_a_server_says_at_the_door_has_its_cause(
     monkeypatch.setattr(psycopg, "connect", refuses)
     found, words = cause_of(SharedDatabase("host=10.0.0.7 dbname=d").look, {})
     assert (found, why in words) == (cause, True)
-
-
-def test_nor_does_that_of_a_repository(tmp_path: Path) -> None:
-    name = SharedGit("https://lathe:secret@shop-pc/programs.git", tmp_path).name
-    assert name == "the git repository https://shop-pc/programs.git"
-    assert (
-        SharedGit("git@shop-pc:programs.git", tmp_path).name == "the git repository git@shop-pc:programs.git"
-    )

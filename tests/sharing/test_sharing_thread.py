@@ -14,16 +14,12 @@ class Dead:
 
     def __init__(self) -> None:
         self.asked, self.answers = threading.Event(), threading.Event()
-        self.place = self
 
     def look(self, *, settled: bool) -> Shared:
         assert settled
         self.asked.set()
         assert self.answers.wait(60.0)
         return Shared()
-
-    def close(self) -> None:
-        self.answers.set()
 
 
 def test_a_look_that_hangs_is_counted_until_it_ends() -> None:

@@ -47,7 +47,7 @@ class Visits:
         if 1 <= number <= len(self.blocks):
             return ""
         return Message(
-            "Line {line} is executed only {blocks_count} times, so repetition {number} does not " "exist.",
+            "Line {line} is executed only {blocks_count} times, so repetition {number} does not exist.",
             line=line,
             blocks_count=len(self.blocks),
             number=number,
