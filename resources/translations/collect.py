@@ -95,6 +95,7 @@ APART = frozenset(
         *(
             "klartext_book.py",
             "klartext_cycle_book.py",
+            "klartext_refused_book.py",
             "sinumerik_book.py",
             "calls_book.py",
             "cycles_book.py",

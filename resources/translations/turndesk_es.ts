@@ -320,6 +320,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Back boring, slots and older cycles</source>
+      <translation>Mandrinado inverso, ranuras y ciclos antiguos</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Block buffer</source>
       <translation>Búfer de bloques</translation>
     </message>
@@ -477,11 +482,6 @@
       <location filename="" />
       <source>Close the collet with M12 first.</source>
       <translation>Cierre antes la pinza con M12.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Combines contours into the area to mill: | is the area in either contour, &amp; the area in both, \ the area in the first but not in the second, and ^ the area in only one of the two.</source>
-      <translation>Combina contornos en la zona que se fresa: | es la zona en cualquiera de los dos contornos, &amp; la zona en ambos, \ la zona en el primero pero no en el segundo, y ^ la zona en sólo uno de los dos.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2005,6 +2005,51 @@
     </message>
     <message>
       <location filename="" />
+      <source>Rejected codes</source>
+      <translation>Códigos rechazados</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rejected. Assign the values to Q parameters in the program.</source>
+      <translation>Rechazado. Asigne los valores a parámetros Q en el programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rejected. List the pockets and islands with CONTOUR DEF or cycle 14.</source>
+      <translation>Rechazado. Enumere las cajeras y las islas con CONTOUR DEF o el ciclo 14.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rejected. Mill the face with L moves, and repeat them with CALL LBL and REP.</source>
+      <translation>Rechazado. Frese la cara con movimientos L y repítalos con CALL LBL y REP.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rejected. Mill the thread along a helix (CP with IPA and IZ), or cut it with a tapping cycle.</source>
+      <translation>Rechazado. Frese la rosca en una hélice (CP con IPA e IZ) o tállela con un ciclo de roscado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rejected. Use cycle 21 with the data of cycle 20.</source>
+      <translation>Rechazado. Use el ciclo 21 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rejected. Use cycle 22 with the data of cycle 20.</source>
+      <translation>Rechazado. Use el ciclo 22 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rejected. Use cycle 24 with the data of cycle 20.</source>
+      <translation>Rechazado. Use el ciclo 24 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Rejected. Write names in quotes, and use Q parameters for numbers.</source>
+      <translation>Rechazado. Escriba los nombres entre comillas y use parámetros Q para los números.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Rejected: newer controls generate this cycle from an input form, and the coding of its parameters differs between software versions; specify the contour in CYCLE95.</source>
       <translation>Rechazado: los controles más nuevos generan este ciclo con un formulario, y la codificación de sus parámetros difiere entre versiones de software; indique el contorno en CYCLE95.</translation>
     </message>
@@ -2455,6 +2500,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Sends a string to the control's log. TurnDesk ignores this block and reports it.</source>
+      <translation>Envía un texto al registro del control. TurnDesk no usa este bloque y lo avisa.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Set a cutting feed with G95Fn or G94Fn.</source>
       <translation>Ponga un avance de corte con G95Fn o G94Fn.</translation>
     </message>
@@ -2630,6 +2680,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Stops the look-ahead until all earlier blocks have run. TurnDesk does not need this wait and reports the block.</source>
+      <translation>Detiene la lectura anticipada hasta que se hayan ejecutado todos los bloques anteriores. TurnDesk no necesita esta espera y avisa del bloque.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Stops the program and the spindle, and turns the coolant off.</source>
       <translation>Para el programa y el husillo, y apaga el refrigerante.</translation>
     </message>
@@ -2692,11 +2747,6 @@
       <location filename="" />
       <source>Straight line.</source>
       <translation>Recta.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Strings and freely definable tables</source>
-      <translation>Textos y tablas de libre definición</translation>
     </message>
     <message>
       <location filename="" />
@@ -2902,11 +2952,6 @@
       <location filename="" />
       <source>The tool stays right of the contour.</source>
       <translation>La herramienta queda a la derecha del contorno.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Thread, face and slot milling</source>
-      <translation>Fresado de roscas, planeados y ranuras</translation>
     </message>
     <message>
       <location filename="" />
@@ -18405,18 +18450,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/blocks_without_motion.py" />
-      <source>Correct the label name in the QS parameter, or add the label.</source>
-      <translation>Corrija el nombre de la etiqueta en el parámetro QS, o agregue la etiqueta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
       <source>In the loop, change a Q parameter that the jump condition uses.</source>
       <translation>Cambie en el bucle un parámetro Q que use la condición del salto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
-      <source>LBL "{value}" is not in the program or has no LBL 0.</source>
-      <translation>LBL "{value}" no está en el programa o no tiene LBL 0.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/blocks_without_motion.py" />
@@ -18800,11 +18835,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
-      <source>CYCL DEF {number}</source>
-      <translation>CYCL DEF {number}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
       <source>CYCL DEF {number}{kind}</source>
       <translation>CYCL DEF {number}{kind}</translation>
     </message>
@@ -18895,11 +18925,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
-      <source>QC{declared} is not declared with DECLARE CONTOUR.</source>
-      <translation>QC{declared} no está declarado con DECLARE CONTOUR.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
       <source>Q{parameter}={count} is not a valid number of positions.</source>
       <translation>Q{parameter}={count} no es un número de posiciones válido.</translation>
     </message>
@@ -18950,11 +18975,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
-      <source>Write DECLARE CONTOUR before this block.</source>
-      <translation>Escriba DECLARE CONTOUR antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
       <source>Write PATTERN DEF before this block.</source>
       <translation>Escriba PATTERN DEF antes de este bloque.</translation>
     </message>
@@ -18982,76 +19002,6 @@
       <location filename="core/interpreter/klartext/cycles.py" />
       <source>{node} is not an axis.</source>
       <translation>{node} no es un eje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>Correct Q227 or Q386.</source>
-      <translation>Corrija Q227 o Q386.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>Cycle 233 with a limit (Q347, Q348, Q349) is not supported.</source>
-      <translation>No se admite el ciclo 233 con un límite (Q347, Q348, Q349).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>End point Q386 is above start point Q227.</source>
-      <translation>El punto final Q386 está por encima del punto inicial Q227.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>Enter a number from 0 to 4.</source>
-      <translation>Indique un número de 0 a 4.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>Enter a number from 2 to {most_rows}.</source>
-      <translation>Indique un número de 2 a {most_rows}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>Facing would need {count} passes, which is too many.</source>
-      <translation>El planeado necesitaría {count} pasadas, que son demasiadas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>Q240={count} is not a valid number of cuts.</source>
-      <translation>Q240={count} no es un número de cortes válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>Q367 must be a whole number from -1 to 4.</source>
-      <translation>Q367 debe ser un número entero de -1 a 4.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>Q389={kind} is not a valid strategy.</source>
-      <translation>Q389={kind} no es una estrategia válida.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>Set Q347, Q348 and Q349 to 0, or mill a pocket.</source>
-      <translation>Ponga Q347, Q348 y Q349 a 0, o frese una cajera.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>Set Q370 between 0.1 and 1.9999, and enter the tool radius and the side lengths.</source>
-      <translation>Ponga Q370 entre 0.1 y 1.9999, e indique el radio de la herramienta y la longitud de los lados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>Use a larger tool.</source>
-      <translation>Use una herramienta mayor.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot clear the area.</source>
-      <translation>Con el solapamiento Q370={overlap} y un radio de herramienta de {radius} mm, el ciclo no puede vaciar la superficie.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/face_milling_cycles.py" />
-      <source>the face is milled in back-and-forth passes, not in a spiral.</source>
-      <translation>la cara se fresa en pasadas de vaivén, no en espiral.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/feed_rates.py" />
@@ -19190,11 +19140,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
-      <source>Add a contour formula such as QC10 = QC1 | QC2.</source>
-      <translation>Agregue una fórmula de contorno como QC10 = QC1 | QC2.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
       <source>CYCL CALL</source>
       <translation>CYCL CALL</translation>
     </message>
@@ -19242,11 +19187,6 @@
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
       <source>Write SEL PGM before this block.</source>
       <translation>Escriba SEL PGM antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_interpreter.py" />
-      <source>{name} has no contour formula.</source>
-      <translation>{name} no tiene fórmula de contorno.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_interpreter.py" />
@@ -19502,16 +19442,6 @@
       <location filename="core/interpreter/klartext/mid_program_startup.py" />
       <source>MIRROR {mirrored}</source>
       <translation>MIRROR {mirrored}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/older_contour_cycles.py" />
-      <source>the cycle drills holes where the active tool would plunge; cycle 6 plunges along a ramp and does not need these holes.</source>
-      <translation>el ciclo taladra agujeros donde la herramienta activa penetraría; el ciclo 6 penetra en rampa y no necesita estos agujeros.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/older_contour_cycles.py" />
-      <source>the pocket is cleared in concentric passes, not along parallel paths.</source>
-      <translation>la cajera se vacía en pasadas concéntricas, no por trayectorias paralelas.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/older_cycles.py" />
@@ -19944,6 +19874,11 @@
       <translation>La herramienta es más ancha que la cajera o la ranura.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot clear the area.</source>
+      <translation>Con el solapamiento Q370={overlap} y un radio de herramienta de {radius} mm, el ciclo no puede vaciar la superficie.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/klartext/point_patterns.py" />
       <source>Enter a whole number of 1 or more.</source>
       <translation>Indique un número entero de 1 o más.</translation>
@@ -20047,126 +19982,6 @@
       <location filename="core/interpreter/klartext/system_data.py" />
       <source>Writing {name} of tool {tool} to the tool table with FN 17 (enter the value in the tool table instead)</source>
       <translation>Escribir {name} de la herramienta {tool} en la tabla de herramientas con FN 17 (introduzca el valor en la tabla)</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>A function that uses text supplied by the control in QS{number}</source>
-      <translation>Una función que usa en QS{number} un texto proporcionado por el control</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>A jump that depends on text supplied by the control</source>
-      <translation>Un salto que depende de un texto proporcionado por el control</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>BEG and LEN of SUBSTR cannot be negative.</source>
-      <translation>BEG y LEN de SUBSTR no pueden ser negativos.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>Check the content of the QS parameter.</source>
-      <translation>Compruebe el contenido del parámetro QS.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>Correct the column, or fill in the cell.</source>
-      <translation>Corrija la columna o rellene la celda.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>Correct the row number.</source>
-      <translation>Corrija el número de fila.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>DECIMALS{decimals} is not between 0 and {most_decimals}.</source>
-      <translation>DECIMALS{decimals} no está entre 0 y {most_decimals}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>Function {unknown} in string parameter QS{number}</source>
-      <translation>La función {unknown} en el parámetro de texto QS{number}</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>No table is open.</source>
-      <translation>No hay ninguna tabla abierta.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>Open the file with FN 26: TABOPEN before this block.</source>
-      <translation>Abra el archivo con FN 26: TABOPEN antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>QS{number} would have {text_count} characters, which is too many.</source>
-      <translation>QS{number} tendría {text_count} caracteres, que son demasiados.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>QS{source}, "{text}", is not a number.</source>
-      <translation>QS{source}, "{text}", no es un número.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>Text in a freely definable table</source>
-      <translation>Texto en una tabla de libre definición</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>The table has no row {number}.</source>
-      <translation>La tabla no tiene la fila {number}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>The table row does not contain a number in column {column}.</source>
-      <translation>La fila de la tabla no contiene ningún número en la columna {column}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/text_values.py" />
-      <source>Writing to the file with FN 27: TABWRITE</source>
-      <translation>Escribir en el archivo con FN 27: TABWRITE</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
-      <source>A tool with R {radius} mm cannot mill a thread of diameter {nominal} mm.</source>
-      <translation>Una herramienta con R {radius} mm no puede fresar una rosca de diámetro {nominal} mm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
-      <source>Correct the pitch and the depth.</source>
-      <translation>Corrija el paso y la profundidad.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
-      <source>Enter 0, 1 or a larger number.</source>
-      <translation>Indique 0, 1 o un número mayor.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
-      <source>Hole depth Q356 must be negative (downward).</source>
-      <translation>La profundidad del agujero Q356 debe ser negativa (hacia abajo).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
-      <source>Q355={per_step} is not a valid number of threads.</source>
-      <translation>Q355={per_step} no es un número de hilos válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
-      <source>The depth at the front, Q358, is positive (upward).</source>
-      <translation>La profundidad en el frente, Q358, es positiva (hacia arriba).</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
-      <source>The thread would need {revolutions} helical turns, which is too many.</source>
-      <translation>La rosca necesitaría {revolutions} vueltas helicoidales, que son demasiadas.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/thread_milling_cycles.py" />
-      <source>Use another tool, or correct Q335.</source>
-      <translation>Use otra herramienta o corrija Q335.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/tool_call.py" />
@@ -24490,21 +24305,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/contour_blocks.py" />
-      <source>A contour formula mixes {signs} without parentheses.</source>
-      <translation>Una fórmula de contorno mezcla {signs} sin paréntesis.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>A contour with a separate depth</source>
-      <translation>Un contorno con una profundidad aparte</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Add parentheses.</source>
-      <translation>Agregue paréntesis.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
       <source>CONTOUR DEF accepts only pockets (P) and islands (I)</source>
       <translation>CONTOUR DEF acepta sólo cajeras (P) e islas (I)</translation>
     </message>
@@ -24520,48 +24320,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Contour numbers go up to QC{highest}.</source>
-      <translation>Los números de contorno llegan hasta QC{highest}.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Expected '=' after QC{number}</source>
-      <translation>Se esperaba '=' después de QC{number}</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Expected QC and a contour number</source>
-      <translation>Se esperaba QC y un número de contorno</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Expected a contour: LBL n, a program name in quotes, or QC n</source>
-      <translation>Se esperaba un contorno: LBL n, un nombre de programa entre comillas, o QC n</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>SEL CONTOUR needs a program name</source>
-      <translation>SEL CONTOUR necesita un nombre de programa</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Unexpected word in DECLARE CONTOUR</source>
-      <translation>Palabra inesperada en DECLARE CONTOUR</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Unexpected word in SEL CONTOUR</source>
-      <translation>Palabra inesperada en SEL CONTOUR</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Use a smaller contour number.</source>
-      <translation>Use un número de contorno menor.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/contour_blocks.py" />
-      <source>Write QC and a number.</source>
-      <translation>Escriba QC y un número.</translation>
+      <source>Expected a contour: LBL n, or a program name in quotes</source>
+      <translation>Se esperaba un contorno: LBL n o un nombre de programa entre comillas</translation>
     </message>
     <message>
       <location filename="core/language/klartext/contour_blocks.py" />
@@ -24587,6 +24347,11 @@
       <location filename="core/language/klartext/cycle_blocks.py" />
       <source>CYCL DEF needs a cycle number</source>
       <translation>CYCL DEF necesita un número de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/cycle_blocks.py" />
+      <source>CYCL DEF {number}</source>
+      <translation>CYCL DEF {number}</translation>
     </message>
     <message>
       <location filename="core/language/klartext/cycle_blocks.py" />
@@ -24910,11 +24675,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Assigns a closed contour to QCn. The contour is a separate program (name in quotes) or LBL n.</source>
-      <translation>Asigna un contorno cerrado a QCn. El contorno es un programa aparte (nombre entre comillas) o LBL n.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
       <source>CONTOUR DATA</source>
       <translation>CONTOUR DATA</translation>
     </message>
@@ -24922,11 +24682,6 @@
       <location filename="core/language/klartext/klartext_contour_book.py" />
       <source>CONTOUR DEF</source>
       <translation>CONTOUR DEF</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>CONTOUR MILLING</source>
-      <translation>CONTOUR MILLING</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
@@ -24955,28 +24710,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>CYCL DEF {number}.{part} {line}</source>
-      <translation>CYCL DEF {number}.{part} {line}</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Clears the pocket of cycle 14 in rings, starting at the current tool position and plunging along a ramp.</source>
-      <translation>Vacía la cajera del ciclo 14 en anillos, desde la posición actual de la herramienta y bajando en rampa.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
       <source>Clears the pocket of cycle 14 level by level, around its islands; plunges vertically if Q19 is 0.</source>
       <translation>Vacía la cajera del ciclo 14 nivel a nivel, alrededor de sus islas; baja en vertical si Q19 es 0.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>DECLARE CONTOUR</source>
-      <translation>DECLARE CONTOUR</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>DECLARE CONTOUR QC1 = "ROUND"</source>
-      <translation>DECLARE CONTOUR QC1 = "ROUND"</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
@@ -24985,18 +24720,13 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Drills where a tool with the radius of the active tool would plunge; in TurnDesk, cycle 6 does not need this hole.</source>
-      <translation>Taladra donde bajaría una herramienta con el radio de la herramienta activa; en TurnDesk, el ciclo 6 no necesita este agujero.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
       <source>FLOOR FINISHING</source>
       <translation>FLOOR FINISHING</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Lists the pockets (P) and islands (I), as cycle 14 does. Each of them is LBL n, a program name in quotes, or QC n.</source>
-      <translation>Indica las cajeras (P) y las islas (I), como el ciclo 14. Cada una es LBL n, un nombre de programa entre comillas, o QC n.</translation>
+      <source>Lists the pockets (P) and islands (I), as cycle 14 does. Each of them is LBL n or a program name in quotes.</source>
+      <translation>Enumera las cajeras (P) y las islas (I), como el ciclo 14. Cada una es LBL n o un nombre de programa entre comillas.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
@@ -25015,11 +24745,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Mills along the walls of the pocket and its islands.</source>
-      <translation>Fresa a lo largo de las paredes de la cajera y de sus islas.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
       <source>Mills the pocket floor at the pocket depth.</source>
       <translation>Fresa el fondo de la cajera a la profundidad de la cajera.</translation>
     </message>
@@ -25035,36 +24760,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>QCn = "name"</source>
-      <translation>QCn = "nombre"</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>SEL CONTOUR</source>
-      <translation>SEL CONTOUR</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>SEL CONTOUR "ROUND"</source>
-      <translation>SEL CONTOUR "ROUND"</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2</source>
-      <translation>SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2|ANGLE+0 F400</source>
-      <translation>SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2|ANGLE+0 F400</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>SET UP2 DEPTH-5|PECKG5 F150|DR+ F400</source>
-      <translation>SET UP2 DEPTH-5|PECKG5 F150|DR+ F400</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
       <source>SIDE FINISHING</source>
       <translation>SIDE FINISHING</translation>
     </message>
@@ -25072,31 +24767,6 @@
       <location filename="core/language/klartext/klartext_contour_book.py" />
       <source>Sets depth, overlap, allowances, heights and milling direction for cycles 21 to 24.</source>
       <translation>Fija profundidad, solapamiento, sobremedidas, alturas y sentido de fresado para los ciclos 21 a 24.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Uses the contour formula of another program.</source>
-      <translation>Usa la fórmula de contorno de otro programa.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>a separate depth</source>
-      <translation>una profundidad aparte</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>no contour formula</source>
-      <translation>ninguna fórmula de contorno</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>without parentheses</source>
-      <translation>sin paréntesis</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>{declared} DEPTH5</source>
-      <translation>{declared} DEPTH5</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_faults.py" />
@@ -25315,6 +24985,11 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
+      <source>DECLARE CONTOUR</source>
+      <translation>DECLARE CONTOUR</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>DECLARE STRING</source>
       <translation>DECLARE STRING</translation>
     </message>
@@ -25357,6 +25032,11 @@
       <location filename="core/language/klartext/klartext_line.py" />
       <source>PRESET SELECT</source>
       <translation>PRESET SELECT</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_line.py" />
+      <source>SEL CONTOUR</source>
+      <translation>SEL CONTOUR</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
@@ -25420,21 +25100,6 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Countersinks and mills an internal thread.</source>
-      <translation>Avellana y fresa una rosca interior.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Drills and mills an internal thread.</source>
-      <translation>Taladra y fresa una rosca interior.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>FACE MILLING</source>
-      <translation>FACE MILLING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
       <source>Finishes the wall of a circular pocket.</source>
       <translation>Acaba la pared de una cajera circular.</translation>
     </message>
@@ -25455,33 +25120,8 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>HEL.THREAD DRLG/MLG</source>
-      <translation>HEL.THREAD DRLG/MLG</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>MULTIPASS MILLING</source>
-      <translation>MULTIPASS MILLING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
       <source>Mills a circular slot.</source>
       <translation>Fresa una ranura circular.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills a face as cycle 232 does; Q367 sets the face position relative to the current tool position, and Q350 selects the axis of the milling direction.</source>
-      <translation>Planea una cara como lo hace el ciclo 232; Q367 fija la posición de la cara respecto a la posición actual de la herramienta, y Q350, el eje de la dirección de fresado.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills a face from Q227 down to Q386; Q389 selects the milling strategy for the passes.</source>
-      <translation>Planea una cara desde Q227 hasta Q386; Q389 elige la estrategia de fresado de las pasadas.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills a face in Q240 passes.</source>
-      <translation>Planea una cara en Q240 pasadas.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
@@ -25490,43 +25130,13 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills an external thread on a stud.</source>
-      <translation>Fresa una rosca exterior en un espárrago.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills an internal thread into solid material, downward along a helix.</source>
-      <translation>Fresa una rosca interior en material macizo, hacia abajo en hélice.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills an internal thread; Q355: 0 = one turn, 1 = turns over the whole depth, n = one turn every n pitches.</source>
-      <translation>Fresa una rosca interior; Q355: 0 = una vuelta, 1 = vueltas en toda la profundidad, n = una vuelta cada n pasos.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
       <source>Mills circular slots on a pitch circle.</source>
       <translation>Fresa ranuras circulares en un círculo de referencia.</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills the surface between two lines in Q240 passes, with the tool tip.</source>
-      <translation>Fresa la superficie entre dos rectas en Q240 pasadas, con la punta de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>OUTSIDE THREAD MLLNG</source>
-      <translation>OUTSIDE THREAD MLLNG</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
       <source>POCKET FINISHING</source>
       <translation>POCKET FINISHING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>RULED SURFACE</source>
-      <translation>RULED SURFACE</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
@@ -25537,26 +25147,6 @@
       <location filename="core/language/klartext/klartext_milling_book.py" />
       <source>STUD FINISHING</source>
       <translation>STUD FINISHING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>THREAD DRILLNG/MLLNG</source>
-      <translation>THREAD DRILLNG/MLLNG</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>THREAD MILLING</source>
-      <translation>THREAD MILLING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>THREAD MLLNG/CNTSNKG</source>
-      <translation>THREAD MLLNG/CNTSNKG</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>number of cuts</source>
-      <translation>número de cortes</translation>
     </message>
     <message>
       <location filename="core/language/klartext/klartext_milling_book.py" />
@@ -25659,171 +25249,6 @@
       <translation>con un nombre</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>( DAT+Q1 DECIMALS2 )</source>
-      <translation>( DAT+Q1 DECIMALS2 )</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>( ID10321 NR0 )</source>
-      <translation>( ID10321 NR0 )</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>( SRC_QS1 BEG1 LEN2 )</source>
-      <translation>( SRC_QS1 BEG1 LEN2 )</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>( SRC_QS1 SEA_QS2 )</source>
-      <translation>( SRC_QS1 SEA_QS2 )</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>: TABOPEN name.TAB</source>
-      <translation>: TABOPEN nombre.TAB</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>: TABREAD Q5 = n/"X,DEPTH"</source>
-      <translation>: TABREAD Q5 = n/"X,DEPTH"</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>: TABWRITE n/"X,DEPTH" = Q5</source>
-      <translation>: TABWRITE n/"X,DEPTH" = Q5</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>: WAIT FOR SYNC</source>
-      <translation>: WAIT FOR SYNC</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Assigns a string to a string parameter; || joins strings. TOOL CALL, CALL PGM, SEL PGM, CALL LBL and GOTO LBL accept QSn as a name.</source>
-      <translation>Asigna un texto a un parámetro de texto; || une textos. TOOL CALL, CALL PGM, SEL PGM, CALL LBL y GOTO LBL aceptan QSn como nombre.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Compares two strings. The result is 0 if they are equal, or -1 or 1 by alphabetical order.</source>
-      <translation>Compara dos textos. El resultado es 0 si son iguales, o -1 o 1 según el orden alfabético.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Converts a number to a string.</source>
-      <translation>Convierte un número en texto.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Converts a string to a number.</source>
-      <translation>Convierte un texto en número.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>DECLARE STRING QS1 = HOLE</source>
-      <translation>DECLARE STRING QS1 = HOLE</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Declares one or more string parameters.</source>
-      <translation>Declara uno o varios parámetros de texto.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Expected a string</source>
-      <translation>Se esperaba un texto</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>FN 20: WAIT FOR I95==0</source>
-      <translation>FN 20: WAIT FOR I95==0</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>FN 20: WAIT FOR SYNC</source>
-      <translation>FN 20: WAIT FOR SYNC</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>FN 26: TABOPEN DEPTHS.TAB</source>
-      <translation>FN 26: TABOPEN DEPTHS.TAB</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>FN 26: TABOPEN NONE.TAB</source>
-      <translation>FN 26: TABOPEN NONE.TAB</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>FN 38: SEND /"DEPTH %f" / +5</source>
-      <translation>FN 38: SEND /"DEPTH %f" / +5</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>No table is open</source>
-      <translation>No hay ninguna tabla abierta</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Opens a freely definable table in the program's folder.</source>
-      <translation>Abre una tabla de libre definición de la carpeta del programa.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>QSn = "text"</source>
-      <translation>QSn = "texto"</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Reads a string from the control, such as the time. TurnDesk does not know the value of this string, so the program can print it but cannot depend on it.</source>
-      <translation>Lee un texto del control, como la hora. TurnDesk no conoce el valor de ese texto, así que el programa puede imprimirlo, pero no puede depender de él.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Reads cells of a table row into Q5, Q6, ...</source>
-      <translation>Lee celdas de una fila de la tabla en Q5, Q6, ...</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Returns part of a string; the first character is at position 0.</source>
-      <translation>Da una parte de un texto; el primer carácter está en la posición 0.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Returns the length of a string, or -1 if the string is not set.</source>
-      <translation>Da la longitud de un texto, o -1 si el texto no está definido.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Returns the position of one string within another.</source>
-      <translation>Da la posición de un texto dentro de otro.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Sends a string to the control's log. TurnDesk ignores this block and reports it.</source>
-      <translation>Envía un texto al registro del control. TurnDesk no usa este bloque y lo avisa.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Stops the look-ahead until all earlier blocks have run. TurnDesk does not need this wait and reports the block.</source>
-      <translation>Detiene la lectura anticipada hasta que se hayan ejecutado todos los bloques anteriores. TurnDesk no necesita esta espera y avisa del bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>Writes Q5, Q6, ... into the cells of a table row for this run only. TurnDesk reports that the table file does not change.</source>
-      <translation>Escribe Q5, Q6, ... en las celdas de una fila de la tabla solo para esta ejecución. TurnDesk avisa de que el archivo de la tabla no cambia.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>not a number</source>
-      <translation>no es un número</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_text_book.py" />
-      <source>not in the same folder</source>
-      <translation>no está en la misma carpeta</translation>
-    </message>
-    <message>
       <location filename="core/language/klartext/line_cursor.py" />
       <source>; found '{next_word}'</source>
       <translation>; se encontró '{next_word}'</translation>
@@ -25902,11 +25327,6 @@
       <location filename="core/language/klartext/line_cursor.py" />
       <source>{what} needs a whole number</source>
       <translation>{what} necesita un número entero</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/line_cursor.py" />
-      <source>{what} with a name from string parameter {word}</source>
-      <translation>{what} con un nombre del parámetro de texto {word}</translation>
     </message>
     <message>
       <location filename="core/language/klartext/path_block.py" />
@@ -26314,6 +25734,61 @@
       <translation>Los parámetros {kind} llegan hasta {kind2}{highest}.</translation>
     </message>
     <message>
+      <location filename="core/language/klartext/refused_codes.py" />
+      <source>A contour formula (QC, DECLARE CONTOUR, SEL CONTOUR)</source>
+      <translation>Una fórmula de contorno (QC, DECLARE CONTOUR, SEL CONTOUR)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/refused_codes.py" />
+      <source>A freely definable table (FN 26, FN 27, FN 28)</source>
+      <translation>Una tabla de libre definición (FN 26, FN 27, FN 28)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/refused_codes.py" />
+      <source>A string (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</source>
+      <translation>Una cadena (QS, DECLARE STRING, TOCHAR, SUBSTR, SYSSTR, TONUMB, INSTR, STRLEN, STRCOMP)</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/refused_codes.py" />
+      <source>Assign the values to Q parameters in the program.</source>
+      <translation>Asigne los valores a parámetros Q en el programa.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/refused_codes.py" />
+      <source>List the pockets and islands with CONTOUR DEF or cycle 14.</source>
+      <translation>Enumere las cajeras y las islas con CONTOUR DEF o el ciclo 14.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/refused_codes.py" />
+      <source>Mill the face with L moves, and repeat them with CALL LBL and REP.</source>
+      <translation>Frese la cara con movimientos L y repítalos con CALL LBL y REP.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/refused_codes.py" />
+      <source>Mill the thread along a helix (CP with IPA and IZ), or cut it with a tapping cycle.</source>
+      <translation>Frese la rosca en una hélice (CP con IPA e IZ) o tállela con un ciclo de roscado.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/refused_codes.py" />
+      <source>Use cycle 21 with the data of cycle 20.</source>
+      <translation>Use el ciclo 21 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/refused_codes.py" />
+      <source>Use cycle 22 with the data of cycle 20.</source>
+      <translation>Use el ciclo 22 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/refused_codes.py" />
+      <source>Use cycle 24 with the data of cycle 20.</source>
+      <translation>Use el ciclo 24 con los datos del ciclo 20.</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/refused_codes.py" />
+      <source>Write names in quotes, and use Q parameters for numbers.</source>
+      <translation>Escriba los nombres entre comillas y use parámetros Q para los números.</translation>
+    </message>
+    <message>
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>AXIS POS</source>
       <translation>AXIS POS</translation>
@@ -26592,131 +26067,6 @@
       <location filename="core/language/klartext/structure_blocks.py" />
       <source>{what} needs a touch probe, but this machine does not have one.</source>
       <translation>{what} necesita un palpador, pero esta máquina no lo tiene.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>Continue the calculation in a separate block.</source>
-      <translation>Siga el cálculo en un bloque aparte.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>Expected '=' after QS{number}</source>
-      <translation>Se esperaba '=' después de QS{number}</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>Expected a parameter</source>
-      <translation>Se esperaba un parámetro</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>Expected a string parameter</source>
-      <translation>Se esperaba un parámetro de texto</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>FN 26 needs TABOPEN and a file name</source>
-      <translation>FN 26 necesita TABOPEN y un nombre de archivo</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>FN 27 needs TABWRITE</source>
-      <translation>FN 27 necesita TABWRITE</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>FN 28 needs TABREAD</source>
-      <translation>FN 28 necesita TABREAD</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>Join strings with ||.</source>
-      <translation>Una los textos con ||.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>TABOPEN needs a table name</source>
-      <translation>TABOPEN necesita un nombre de tabla</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>TABREAD needs = and a row number</source>
-      <translation>TABREAD necesita = y un número de fila</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>TABWRITE needs = and a parameter</source>
-      <translation>TABWRITE necesita = y un parámetro</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>TOCHAR needs DAT</source>
-      <translation>TOCHAR necesita DAT</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>The closing parenthesis of {name} is missing</source>
-      <translation>Falta el paréntesis de cierre de {name}</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>The column names are missing</source>
-      <translation>Faltan los nombres de las columnas</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>The highest QS parameter is QS{highest}.</source>
-      <translation>El parámetro QS más alto es QS{highest}.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>The row number</source>
-      <translation>El número de fila</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>Unexpected word after a string</source>
-      <translation>Palabra inesperada después de un texto</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>Write ) at the end.</source>
-      <translation>Escriba ) al final.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>Write QS and a number.</source>
-      <translation>Escriba QS y un número.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>Write the column names after the row number, as in 6/"X,Y".</source>
-      <translation>Escriba los nombres de las columnas después del número de fila, como en 6/"X,Y".</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>Write the string in quotes, or QS and a number.</source>
-      <translation>Escriba el texto entre comillas, o QS y un número.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>Write, for example, TOCHAR(DAT+Q5 DECIMALS3).</source>
-      <translation>Escriba, por ejemplo, TOCHAR(DAT+Q5 DECIMALS3).</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>{name} cannot be part of a longer formula</source>
-      <translation>{name} no puede ser parte de una fórmula más larga</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>{name} needs its arguments in parentheses</source>
-      <translation>{name} necesita sus argumentos entre paréntesis</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/text_blocks.py" />
-      <source>{name} needs {written}QS and a number</source>
-      <translation>{name} necesita {written}QS y un número</translation>
     </message>
     <message>
       <location filename="core/language/omniturn/foreign_program.py" />

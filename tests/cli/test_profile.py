@@ -66,8 +66,8 @@ def test_list_says_what_there_is(turndesk: Turndesk, part: Path) -> None:
     told_ = turndesk("profile", part, "--list").out
     assert "unit 1 mm" in told_
     assert "layers: 0, RING" in told_
-    assert "contour 1, axis Y 0: 9 lines, 20 mm long, diameter 12 mm" in told_
-    assert "contour 2, axis Y 0: 4 lines, 6 mm long, diameter 30 mm" in told_
+    assert "contour 1, axis Y 0: length 20 mm, diameter 12 mm, made up of 9 lines" in told_
+    assert "contour 2, axis Y 0: length 6 mm, diameter 30 mm, made up of 4 lines" in told_
     listed = told(turndesk, part, "--list")
     assert [each["diameter_mm"] for each in listed["contours"]] == [12.0, 30.0]
     assert listed["axes"] == ["Y 0", "MIDDLE", "X 0"]

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from core.interpreter.elementary_blocks import Kind
-from tests.klartext.running import Ran, run
+from core.language.klartext.called_programs import called_programs
+from core.language.source import Source
+from tests.klartext.running import Ran, run, run_source, whole
 from tests.klartext.test_pocket_cycles import Points, cuts, left_standing, rounded, way
 
 R = 4.0
@@ -200,6 +202,18 @@ def test_contour_def_says_what_is_pocket_and_island() -> None:
     named = text.replace("CYCL DEF 14.0 CONTOUR\nCYCL DEF 14.1 CONTOUR LABEL1 /2",
                          "CONTOUR DEF P1 = LBL 1 I2 = LBL 2")  # fmt: skip
     assert np.allclose(cuts(run(named, tool=TOOL)), cuts(milled(22)))
+
+
+def test_contour_def_takes_contours_of_programs_beside() -> None:
+    files = tuple(
+        Source(f"{name}.H", f"BEGIN PGM {name} MM\n{contour}\nEND PGM {name} MM\n")
+        for name, contour in (("POCKET", POCKET), ("ISLE", ISLAND))
+    )
+    cycles = f"{told(20, DATA)}\n{told(22, OF[22])}\nCYCL CALL\nM30"
+    text = whole(f'{TOOL}CONTOUR DEF P1 = "POCKET" I2 = "ISLE.H"\n{cycles}')
+    assert set(called_programs(Source("T.H", text))) == {"POCKET.H", "ISLE.H"}
+    assert np.allclose(cuts(run_source(Source("T.H", text, subprograms=files))), cuts(milled(22)))
+    assert run_source(Source("T.H", text)).codes == ["Program not found"]
 
 
 def test_parameters_of_a_contour_count_as_they_stand_at_the_call() -> None:

@@ -9,6 +9,7 @@ import pytest
 from core.interpreter.elementary_blocks import Kind
 from core.language.called_files import with_called_files
 from core.language.klartext import read_line
+from core.language.klartext.called_programs import called_programs
 from core.language.klartext.table_file import table_rows
 from core.language.source import Source, load_source
 from tests.klartext.running import TOOL, Ran, run_source, whole
@@ -93,7 +94,6 @@ def test_tables_are_found_beside_the_program(tmp_path: Path) -> None:
         ("CALL SELECTED PGM", "Program not found", "selected"),
         ('SEL PGM "OTHER.H"\nCALL SELECTED PGM', "Program not found", "OTHER.H"),
         ("SEL TABLE", "Syntax error", "name"),
-        ("SEL PGM QS5", "Q parameter not defined", "QS5"),
         ("CALL SELECTED PGM 5", "Syntax error", "PGM"),
         ("CYCL DEF 7.0 D\nCYCL DEF 7.1 #2 X+5", "Syntax error", "cycle 7"),
     ],
@@ -102,6 +102,11 @@ def test_refused(text: str, code: str, names: str) -> None:
     ran = beside(text)
     assert code in ran.codes
     assert any(names in each.message for each in ran.errors)
+
+
+def test_files_are_named_without_their_folder() -> None:
+    text = 'CALL PGM TNC:\\PARTS\\SLOT.H\nTRANS DATUM TABLE "VICE.D" TABLINE1\nCYCL DEF 12.1 %50'
+    assert list(called_programs(Source("T.H", whole(text)))) == ["SLOT.H", "VICE.D", "50.H"]
 
 
 def test_words_of_older_and_of_german_controls() -> None:

@@ -58,6 +58,7 @@ _BEGINS = (  # how a block begins that could not be read, and what follows from 
         re.compile(r"L\b|LP|LN|C[CPRT]?\b|CTP|APPR|DEP|RND|CHF|F[LCS]|FPOL|I?[XYZ]|SPL"),
         _OF_PATHS | {WRONG_RPM},
     ),
+    (re.compile(r"SEL\s+PGM"), frozenset({FILE_MISSING})),
     (re.compile(r"CYCL|CONTOUR|PATTERN|GLOBAL|SEL|DECLARE|QC"), _OF_CYCLES | _OF_VALUES),
     (re.compile(r"PLANE|FUNCTION|TRANS"), _OF_PLANES | {Q_UNDEFINED}),
     (re.compile(r"M\s*[0-9]"), frozenset({WRONG_RPM}) | _OF_PLANES),
@@ -106,20 +107,11 @@ class Consequences:
                     self._silent.add(WRONG_RPM)
             case nodes.Pole() | nodes.Corner() | nodes.Datum() | nodes.Transform():
                 self._silent |= _OF_PATHS
-            case (
-                nodes.Cycle()
-                | nodes.CycleLine()
-                | nodes.PatternDef()
-                | nodes.ContourDef()
-                | nodes.ContourDeclare()
-                | nodes.ContourFormula()
-            ):
+            case nodes.Cycle() | nodes.CycleLine() | nodes.PatternDef() | nodes.ContourDef():
                 self._silent |= _OF_CYCLES
                 self._cycles = True
             case nodes.Plane() | nodes.TipControl():
                 self._silent |= _OF_PLANES
-            case nodes.TableOpen():
-                self._silent |= {FILE_MISSING}
             case nodes.ProgramCall() | nodes.Selection():
                 self._silent |= _ALL
             case _:
@@ -129,12 +121,8 @@ class Consequences:
 def _parameters_of(node: nodes.Node | None) -> set[tuple[str, int]]:
     """Parameters that a block was to give a value."""
     match node:
-        case nodes.Assign() | nodes.SystemRead() | nodes.TextRead():
+        case nodes.Assign() | nodes.SystemRead():
             return {(node.kind, node.q)}
-        case nodes.TextAssign():
-            return {("QS", number) for number, _ in node.texts}
-        case nodes.TableRead():
-            return {(node.kind, node.q + at) for at in range(len(node.columns))}
         case nodes.Plane() | nodes.TipControl():
             return {("Q", 120), ("Q", 121), ("Q", 122)}
         case _:

@@ -20,7 +20,6 @@ from core.interpreter.klartext.cycle_moves import CycleTool
 from core.interpreter.klartext.hole_cycles import SMALLEST, infeeds
 from core.interpreter.klartext.klartext_state import State
 from core.language.diagnostics import ProgramError
-from core.language.formulas import Formula
 from core.language.klartext.q_parameters import MAX_FEED
 from core.message import Message
 
@@ -333,14 +332,12 @@ def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
     return [piece.element for piece in found]
 
 
-def run_contour(
-    state: State, tool: CycleTool, number: int, figures: Figures, column: int, formula: Formula | None = None
-) -> Iterator[Block]:
-    """One of ``CONTOURS`` at its contours, joined by a formula or not. Raises ProgramError."""
+def run_contour(state: State, tool: CycleTool, number: int, figures: Figures, column: int) -> Iterator[Block]:
+    """One of ``CONTOURS`` at its contours. Raises ProgramError."""
     if number == TRAIN:
         yield from contour_train(tool, figures)
     else:
-        yield from _AREAS[number](tool, area_of(state, figures, column, formula))
+        yield from _AREAS[number](tool, area_of(state, figures, column))
 
 
 TRAIN = 25

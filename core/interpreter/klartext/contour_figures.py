@@ -8,10 +8,9 @@ other, only what lies in both (manual: area of inclusion, of intersection); isla
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
-from functools import partial
 
 from core.geometry.intersections import intersections
 from core.geometry.lines_and_arcs import Element, Point
@@ -19,7 +18,6 @@ from core.geometry.pocket_area import AreaError, Loop, Winding, boundary, follow
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.path_elements import PathElement
 from core.interpreter.klartext.path_functions import PathRunner
-from core.language.formulas import Formula, Operation, Parameter
 from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, unsupported
 from core.language.klartext.klartext_nodes import Move
 from core.message import Message
@@ -38,7 +36,6 @@ class ContourFigure:
     elements: tuple[Element, ...]
     side: str = ""
     pocket: bool | None = None
-    declared: int | None = None  # QC of a contour formula
 
 
 class FigureRunner(PathRunner):
@@ -95,14 +92,8 @@ def copy_of(state: State) -> State:
 # --- the area
 
 
-def area_of(
-    state: State, figures: Sequence[ContourFigure], column: int, formula: Formula | None = None
-) -> list[Loop]:
+def area_of(state: State, figures: Sequence[ContourFigure], column: int) -> list[Loop]:
     """The boundary of what is to be cleared. Raises ProgramError where the contours enclose nothing."""
-    if formula is not None:
-        loops = {figure.declared: _closed(state, figure, column) for figure in figures}
-        windings = {number: Winding(loop) for number, loop in loops.items()}
-        return _bounded(state, list(loops.values()), partial(_holds, formula, windings), column)
     pockets: list[Loop] = []
     islands: list[Loop] = []
     for figure in figures:
@@ -112,41 +103,6 @@ def area_of(
         text = "Cycle 14 lists only islands and no pocket, so there is nothing to clear."
         raise state.refuse(column, INPUT_VALUE, text, "Program the outer contour clockwise with RR.")
     return _bounded(state, [*pockets, *islands], _inside(pockets, islands), column)
-
-
-def contours_of(formula: Formula) -> tuple[int, ...]:
-    """Numbers of the contours of a formula, each once."""
-    if isinstance(formula, Parameter):
-        return (formula.number,) if isinstance(formula.number, int) else ()
-    operands = formula.operands if isinstance(formula, Operation) else ()
-    return tuple(dict.fromkeys(number for each in operands for number in contours_of(each)))
-
-
-def replaced(formula: Formula, known: Mapping[int, Formula]) -> Formula:
-    """A formula in which those that were told before stand in the place of their QC."""
-    if isinstance(formula, Parameter) and isinstance(formula.number, int):
-        return known.get(formula.number, formula)
-    if isinstance(formula, Operation):
-        return formula._replace(operands=tuple(replaced(each, known) for each in formula.operands))
-    return formula
-
-
-def _holds(formula: Formula, windings: Mapping[int | None, Winding], point: Point) -> bool:
-    """Whether a point lies in the area of a contour formula."""
-    if isinstance(formula, Operation):
-        first, second = (_holds(each, windings, point) for each in formula.operands)
-        return _JOINED[formula.name](first, second)
-    assert isinstance(formula, Parameter)
-    assert isinstance(formula.number, int)
-    return windings[formula.number].round(point) != 0
-
-
-_JOINED: dict[str, Callable[[bool, bool], bool]] = {
-    "union": lambda a, b: a or b,
-    "intersection": lambda a, b: a and b,
-    "without": lambda a, b: a and not b,
-    "either": lambda a, b: a != b,
-}
 
 
 def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool], column: int) -> list[Loop]:

@@ -16,22 +16,16 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.circular_slot_cycle import circular_slot
 from core.interpreter.klartext.contour_cycles import CONTOURS, Figures, contour_data, run_contour
-from core.interpreter.klartext.contour_figures import area_of, contours_of, replaced
 from core.interpreter.klartext.cycle_moves import CycleTool
-from core.interpreter.klartext.face_milling_cycles import FACES
 from core.interpreter.klartext.finishing_cycles import OLDER_MILLED
 from core.interpreter.klartext.hole_cycles import HOLES
 from core.interpreter.klartext.klartext_state import State
-from core.interpreter.klartext.older_contour_cycles import LAST_LINE as LAST_OF_CONTOURS
-from core.interpreter.klartext.older_contour_cycles import OLDER_CONTOURS
 from core.interpreter.klartext.older_cycles import LAST_LINE, OLDER
 from core.interpreter.klartext.plane_functions import plane
 from core.interpreter.klartext.pocket_cycles import MILLED
 from core.interpreter.klartext.point_patterns import points
 from core.interpreter.klartext.q_functions import value
-from core.interpreter.klartext.thread_milling_cycles import THREADS
-from core.language.diagnostics import Severity
-from core.language.formulas import Formula
+from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext.cycle_blocks import contour_labels
 from core.language.klartext.klartext_faults import (
     CONTRADICTION,
@@ -43,9 +37,7 @@ from core.language.klartext.klartext_faults import (
 )
 from core.language.klartext.klartext_nodes import (
     AxisWord,
-    ContourDeclare,
     ContourDef,
-    ContourFormula,
     ContourPart,
     Cycle,
     CycleCall,
@@ -55,12 +47,13 @@ from core.language.klartext.klartext_nodes import (
     Positioning,
     Value,
 )
+from core.language.klartext.refused_codes import INSTEAD_OF_CYCLE
 from core.language.klartext.table_file import Row
 from core.message import Message
 
 _PRESET, _CIRCLE, _ROWS = 247, 220, 221
 _CONTOUR, _CONTOUR_DATA = 14, 20
-_MACHINING = HOLES | MILLED | THREADS | FACES | OLDER_MILLED | {254: circular_slot}
+_MACHINING = HOLES | MILLED | OLDER_MILLED | {254: circular_slot}
 _SURFACE = 203  # Q203
 _PRESET_NUMBER = 339  # Q339
 _DWELL, _CALL_PROGRAM, _ORIENT, _TILT, _TOLERANCE = 9, 12, 13, 19, 32
@@ -74,7 +67,7 @@ _SET_UP = frozenset({"ABST", "DIST", "SETUP", "SET-UP", "SET UP"})  # the distan
 _ON_CYLINDER = {27: "surface", 28: "slot", 29: "ridge", 39: "contour"}
 
 
-_Told = Cycle | CycleLine | PatternDef | ContourDef | ContourDeclare | ContourFormula
+_Told = Cycle | CycleLine | PatternDef | ContourDef
 
 
 class Cycles:
@@ -88,9 +81,6 @@ class Cycles:
         self.modal = False
         self._refused = 0  # the older cycle whose first line has been refused
         self._points: list[Vector] = []  # of PATTERN DEF
-        self._declared: dict[int, ContourPart] = {}
-        self._formulas: dict[int, Formula] = {}
-        self.formula: Formula | None = None  # of contours, where they are joined by one
         self._contours: tuple[ContourPart, ...] = ()  # that cycle 14 or CONTOUR DEF has named
 
     def told(self, node: _Told) -> Iterator[Block]:
@@ -98,11 +88,7 @@ class Cycles:
         if isinstance(node, PatternDef):
             self._points = points(self._state, node)
         elif isinstance(node, ContourDef):
-            self._contours, self.formula = node.parts, None
-        elif isinstance(node, ContourDeclare):
-            self.declare(node)
-        elif isinstance(node, ContourFormula):
-            self.select(node)
+            self._contours = node.parts
         elif isinstance(node, Cycle):
             yield from self.define(node)
         else:
@@ -124,13 +110,7 @@ class Cycles:
             )
             raise state.refuse(node.column, CYCLE_UNKNOWN, text, "Remove this text from the program.")
         if not known:
-            kind = _ON_CYLINDER.get(node.number)
-            name = Message(
-                "CYCL DEF {number}{kind}",
-                number=node.number,
-                kind=Message(" (cylinder surface, {kind})", kind=kind) if kind else "",
-            )
-            raise unsupported(state.line, node.column, name)
+            raise self._not_supported(node)
         for each in node.values:
             state.q[each.q] = value(state, each.formula)
         if node.number == _PRESET:
@@ -141,6 +121,16 @@ class Cycles:
             contour_data(self._tool(node.number, node.column))
         else:
             self._begin(node.number)
+
+    def _not_supported(self, node: Cycle | CycleLine) -> ProgramError:
+        """The error of a cycle that is refused by its number, to be raised."""
+        kind = _ON_CYLINDER.get(node.number)
+        name = Message(
+            "CYCL DEF {number}{kind}",
+            number=node.number,
+            kind=Message(" (cylinder surface, {kind})", kind=kind) if kind else "",
+        )
+        return unsupported(self._state.line, node.column, name, INSTEAD_OF_CYCLE.get(node.number, ""))
 
     def _begin(self, number: int) -> None:
         """Another machining cycle is told: the one before is forgotten, a program of cycle 12 too."""
@@ -186,11 +176,11 @@ class Cycles:
         """A line of an older cycle. Those that are no machining are done at once. Raises ProgramError."""
         if node.number in _TRANSFORMS and node.part == 0:
             return  # the line behind it says what
-        if node.number not in OLDER.keys() | OLDER_CONTOURS.keys() | _NO_CYCLE:
+        if node.number not in OLDER.keys() | _NO_CYCLE:
             if node.part and node.number == self._refused:
                 return  # told at its first line
             self._refused = node.number
-            raise unsupported(self._state.line, node.column, Message("CYCL DEF {number}", number=node.number))
+            raise self._not_supported(node)
         if node.number in _NO_CYCLE:
             yield from self._at_once(node)
             return
@@ -201,36 +191,7 @@ class Cycles:
     @property
     def contours(self) -> tuple[ContourPart, ...]:
         """The contours that the cycle which is in force mills; none for other cycles."""
-        if self._number not in CONTOURS | OLDER_CONTOURS.keys():
-            return ()
-        return tuple(self._resolved(part) for part in self._contours)
-
-    def _resolved(self, part: ContourPart) -> ContourPart:
-        """A contour that is named by DECLARE CONTOUR, as that says. Raises ProgramError where none does."""
-        if part.declared is None:
-            return part
-        found = self._declared.get(part.declared)
-        if found is None:
-            text = Message("QC{declared} is not declared with DECLARE CONTOUR.", declared=part.declared)
-            raise self._state.refuse(1, CYCLE_MISSING, text, ("Write DECLARE CONTOUR before this block."))
-        return found._replace(pocket=part.pocket, declared=part.declared)
-
-    def declare(self, node: ContourDeclare) -> None:
-        """DECLARE CONTOUR."""
-        self._declared[node.number] = node.part
-
-    def select(self, node: ContourFormula) -> None:
-        """A contour formula, which is what is milled from here on. Raises ProgramError."""
-        formula = node.formula
-        if node.selected and node.number in self._formulas:
-            formula = self._formulas[node.number]
-        formula = replaced(formula, self._formulas)
-        if not node.selected:
-            self._formulas[node.number] = formula
-        self.formula = formula
-        self._contours = tuple(
-            self._resolved(ContourPart(0, True, declared=number)) for number in contours_of(formula)
-        )
+        return self._contours if self._number in CONTOURS else ()
 
     def call(self, column: int, figures: Figures = ()) -> Iterator[Block]:
         """The cycle where the tool stands. Raises ProgramError where none has been told.
@@ -246,17 +207,10 @@ class Cycles:
             tool = CycleTool(self._state, self._number, lambda _: None, column)
             yield from OLDER[self._number](self._state, tool, self._lines, column)
             return
-        if self._number in OLDER_CONTOURS:
-            self._demand_lines(column)
-            self._demand_figures(figures, column)
-            area = area_of(self._state, figures, column, self.formula)
-            tool = CycleTool(self._state, self._number, lambda _: None, column)
-            yield from OLDER_CONTOURS[self._number](self._state, tool, self._lines, area, column)
-            return
         tool = self._tool(self._number, column)
         if self._number in CONTOURS:
             self._demand_figures(figures, column)
-            yield from run_contour(self._state, tool, self._number, figures, column, self.formula)
+            yield from run_contour(self._state, tool, self._number, figures, column)
             return
         yield from _MACHINING[self._number](tool)
 
@@ -271,14 +225,7 @@ class Cycles:
     def _demand_lines(self, column: int) -> None:
         """Raises ProgramError where a line of an older cycle has not been told."""
         number = self._number
-        missing = next(
-            (
-                part
-                for part in range(1, (LAST_LINE | LAST_OF_CONTOURS)[number] + 1)
-                if part not in self._lines
-            ),
-            None,
-        )
+        missing = next((part for part in range(1, LAST_LINE[number] + 1) if part not in self._lines), None)
         if missing is not None:
             text = Message("Line {number}.{missing} of the cycle is missing.", number=number, missing=missing)
             raise self._state.refuse(column, CYCLE_MISSING, text, "Complete the CYCL DEF.")
@@ -325,7 +272,7 @@ class Cycles:
     def _name_contours(self, node: CycleLine) -> None:
         """14: the labels of its contours; lines behind the first go on. Raises ProgramError."""
         if node.part == 0:
-            self._contours, self.formula = (), None
+            self._contours = ()
             return
         labels = contour_labels(node.text)
         if not labels:

@@ -27,13 +27,12 @@ from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.mid_program_startup import Parts
 from core.interpreter.klartext.path_functions import PathRunner
 from core.interpreter.klartext.plane_functions import plane
-from core.interpreter.klartext.text_values import text_of
 from core.interpreter.klartext.tool_call import define_tool, tool_call
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import ProgramError
 from core.language.klartext import klartext_nodes as nodes
 from core.language.klartext.canonical_text import name_text
-from core.language.klartext.klartext_faults import CYCLE_MISSING, FILE_MISSING, LABEL, unsupported
+from core.language.klartext.klartext_faults import FILE_MISSING, LABEL, unsupported
 from core.language.klartext.table_file import Row
 from core.message import Message
 
@@ -207,27 +206,12 @@ class Interpreter(Interpretation):
                 transform(state, node)
             case nodes.TipControl():
                 tip_control.switch(state, on=node.on)
-            case (
-                nodes.Cycle()
-                | nodes.CycleLine()
-                | nodes.PatternDef()
-                | nodes.ContourDef()
-                | nodes.ContourDeclare()
-                | nodes.ContourFormula()
-            ):
+            case nodes.Cycle() | nodes.CycleLine() | nodes.PatternDef() | nodes.ContourDef():
                 yield from self._cycles.told(node)
-            case nodes.Selection() | nodes.ProgramCall() | nodes.TableOpen():
-                self._file(node)
-
-    def _file(self, node: nodes.Selection | nodes.ProgramCall | nodes.TableOpen) -> None:
-        """What names a file beside the program. Raises ProgramError where there is none."""
-        match node:
             case nodes.Selection():
                 self._select(node)
             case nodes.ProgramCall():
-                self._call_program(self._named(node.name) or self._selected(node.column), node.column)
-            case nodes.TableOpen():
-                self._open(node)
+                self._call_program(node.name or self._selected(node.column), node.column)
 
     def _shift(self, node: nodes.Datum) -> None:
         """A datum shift; where its block names a table, that one is selected before. Raises ProgramError."""
@@ -237,51 +221,20 @@ class Interpreter(Interpretation):
 
     def _select(self, node: nodes.Selection) -> None:
         """SEL TABLE, SEL PATTERN and SEL PGM. Raises ProgramError for a table that is not there."""
-        name = self._named(node.name)
         if node.kind == "PGM":
-            self._state.selected_program = name
+            self._state.selected_program = node.name
             return
-        if node.kind == "CONTOUR":
-            self._select_contour(name, node.column)
-            return
-        rows = self._table(name, node.column)
+        rows = self._table(node.name, node.column)
         if node.kind == "TABLE":
             self._state.datum_table = rows
         else:
             self._cycles.select_points(rows)
-
-    def _select_contour(self, name: str, column: int) -> None:
-        """SEL CONTOUR: the contours and the formula of another program. Raises ProgramError."""
-        program = self._flow.beside(name)
-        if program is None:
-            raise self._missing_program(name, column)
-        for line in program.lines[: program.end]:
-            if line.error is not None:
-                raise self._state.refuse(
-                    column,
-                    line.error.code,
-                    Message("{name}: {error}", name=name, error=line.error.message),
-                    "",
-                )
-            if isinstance(line.node, nodes.ContourDeclare | nodes.ContourFormula):
-                for _ in self._cycles.told(line.node):
-                    pass
-        if self._cycles.formula is None:
-            text = Message("{name} has no contour formula.", name=name)
-            raise self._state.refuse(
-                column, CYCLE_MISSING, text, ("Add a contour formula such as QC10 = QC1 | QC2.")
-            )
 
     def _missing_program(self, name: str, column: int) -> ProgramError:
         text = Message("Program {name} is not in the same folder as this program.", name=name)
         return self._state.refuse(
             column, FILE_MISSING, text, ("Put the file in the same folder as this program.")
         )
-
-    def _open(self, node: nodes.TableOpen) -> None:
-        """FN 26: the table of FN 27 and FN 28, as its file has it. Raises ProgramError."""
-        rows = self._table(node.name, node.column)
-        self._state.free_table = {number: dict(row) for number, row in rows.items()}
 
     def _table(self, name: str, column: int) -> dict[int, Row]:
         rows = self._flow.table(name)
@@ -291,10 +244,6 @@ class Interpreter(Interpretation):
                 column, FILE_MISSING, text, ("Put the file in the same folder as this program.")
             )
         return rows
-
-    def _named(self, name: str | nodes.TextName) -> str:
-        """A name as written, or the text of QS that holds it. Raises ProgramError."""
-        return name if isinstance(name, str) else text_of(self._state, name)
 
     def _selected(self, column: int) -> str:
         """The program of SEL PGM. Raises ProgramError where none is selected."""
@@ -402,7 +351,7 @@ class Interpreter(Interpretation):
                 state.line, state.text = self._flow.shown_line(line.number), flow.program.text(line)
                 _draw(state, runner, flow, line)
         runner.close()
-        return ContourFigure(name, runner.elements, runner.side, part.pocket, part.declared)
+        return ContourFigure(name, runner.elements, runner.side, part.pocket)
 
     def _corner_is_next(self) -> bool:
         """Whether the next block is RND or CHF, for which an element has to wait."""

@@ -29,7 +29,6 @@ from core.language.klartext.klartext_nodes import (
     Node,
     RoundBlank,
     SystemRead,
-    TextName,
 )
 from core.language.klartext.table_file import Row, is_table, table_rows
 from core.language.source import Source
@@ -227,7 +226,7 @@ def _calls(program: Program) -> Iterator[Diagnostic]:
     """Calls of labels that are not there, and of subprograms without an end."""
     for line in program.lines[: program.end]:
         node = line.node
-        if not isinstance(node, (Call, Jump)) or isinstance(node.name, TextName):
+        if not isinstance(node, (Call, Jump)):
             continue
         name, at = name_text(node.name), program.labels.get(node.name)
         if at is None:
@@ -343,7 +342,7 @@ class Flow:
     def call(self, line: int, node: Call, times: int) -> None:
         """CALL LBL, or ``times`` repeats of its section. Raises ProgramError for calls nested too deep."""
         running = self._running[-1]
-        target = None if isinstance(node.name, TextName) else running.program.labels.get(node.name)
+        target = running.program.labels.get(node.name)
         if target is None:
             return  # told when the program was read
         if node.repeat is not None:
@@ -369,7 +368,7 @@ class Flow:
     def jump(self, node: Jump) -> None:
         """On behind a label."""
         running = self._running[-1]
-        target = None if isinstance(node.name, TextName) else running.program.labels.get(node.name)
+        target = running.program.labels.get(node.name)
         if target is not None:  # else it was told when the program was read
             running.at = target + 1
 

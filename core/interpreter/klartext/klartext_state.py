@@ -81,8 +81,6 @@ class State:
         self.spindle_angle = 0.0  # of cycle 13, for M19
         self.q: dict[int, float] = {}
         self.q_beside: dict[tuple[str, int], float] = {}  # QL and QR
-        self.texts: dict[int, str | None] = {}  # QS; None: one of the control, which is not known here
-        self.free_table: dict[int, Row] | None = None  # of FN 26, with what FN 27 has written
         self.q_global: dict[int, float] = {}  # of GLOBAL DEF, for PREDEF
         self.figure = Figure()
         self.pole: tuple[float, float] | None = None  # of CC, by the axes of its plane

@@ -15,7 +15,7 @@ from core.interpreter.klartext.cycle_moves import CycleTool
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.q_functions import value
 from core.language.klartext.klartext_faults import CYCLE_MISSING
-from core.language.klartext.klartext_nodes import AxisWord, CycleLine
+from core.language.klartext.klartext_nodes import CycleLine
 from core.message import Message
 
 Lines = Mapping[int, CycleLine]
@@ -32,14 +32,13 @@ class Told:
         self._lines = lines
         self._column = column
 
-    def number(self, part: int, axis: str = "", at: int = 0) -> float:
-        """The number of a line (``at``: how many stand before it), or of its word for an axis.
+    def number(self, part: int, axis: str = "") -> float:
+        """The first number of a line, or that of its word for an axis.
 
         Raises ProgramError where it is missing.
         """
         words = self._lines[part].words if part in self._lines else ()
-        found = [each for each in words if each.axis == axis]
-        word: AxisWord | None = found[at] if at < len(found) else None
+        word = next((each for each in words if each.axis == axis), None)
         if word is None:
             number = next(iter(self._lines.values())).number if self._lines else 0
             text = Message(

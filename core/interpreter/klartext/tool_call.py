@@ -11,9 +11,8 @@ from core.interpreter.interpretation import ToolUse
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.feed_rates import MOST_FEED, REVOLUTION
 from core.interpreter.klartext.klartext_state import State
-from core.interpreter.klartext.text_values import text_of
 from core.language.klartext.klartext_faults import NOT_WITH_M128, TOOL_UNKNOWN, WRONG_RPM, unsupported
-from core.language.klartext.klartext_nodes import TextName, ToolCall, ToolDef, Value
+from core.language.klartext.klartext_nodes import ToolCall, ToolDef, Value
 from core.language.klartext.structure_blocks import MOST_TOOL
 from core.message import Message
 from core.tool_edges import NAMED_TOOLS, NamedTool
@@ -61,10 +60,8 @@ def define_tool(state: State, node: ToolDef) -> None:
     state.tool_defs[node.tool] = length, _oversize(state, node.radius, "R", word_values.MOST_COORDINATE)
 
 
-def _number(state: State, tool: int | str | Value | TextName | None, column: int) -> int | None:
+def _number(state: State, tool: int | str | Value | None, column: int) -> int | None:
     """The number of a tool that is called; one by name stands in the program or in the tool table."""
-    if isinstance(tool, TextName):
-        tool = text_of(state, tool)
     if isinstance(tool, Value):
         return round(word_values.number(state, tool, "TOOL CALL", MOST_TOOL, 0.0))
     if not isinstance(tool, str):

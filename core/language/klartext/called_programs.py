@@ -9,13 +9,13 @@ from core.language.source import Source
 
 ENDING = ".H"
 _CALL = re.compile(
-    r"(?:CALL\s+PGM|SEL\s+(?:PGM|TABLE|PATTERN|CONTOUR))\s+(.+)|CYCL\s+DEF\s+12\.1\s+(?:PGM\s*|%\s*)?(.+)|TABOPEN\s+(.+)",
+    r"(?:CALL\s+PGM|SEL\s+(?:PGM|TABLE|PATTERN))\s+(.+)|CYCL\s+DEF\s+12\.1\s+(?:PGM\s*|%\s*)?(.+)",
     re.IGNORECASE,
 )
-_IN_TEXT = re.compile(r'"([^"]*\.(?:H|D|PNT|TAB))"', re.IGNORECASE)  # of a text that may name a file
-_OF_CONTOURS = re.compile(r"(?:DECLARE\s+CONTOUR|CONTOUR\s+DEF)\s", re.IGNORECASE)
+_IN_TEXT = re.compile(r'"([^"]*\.(?:H|D|PNT))"', re.IGNORECASE)  # of a text that may name a file
+_OF_CONTOURS = re.compile(r"CONTOUR\s+DEF\s", re.IGNORECASE)
 _QUOTED = re.compile(r'"([^"]+)"')
-_HINTS = ("PGM", "TABLE", "PATTERN", "TABOPEN", "12.1", "CONTOUR", "QS", "QC")
+_HINTS = ("PGM", "TABLE", "PATTERN", "12.1", "CONTOUR")
 
 
 def called_programs(source: Source) -> Iterator[str]:

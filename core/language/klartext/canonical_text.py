@@ -59,7 +59,7 @@ def _path(node: nodes.Move) -> str:
 def _tool_call(node: nodes.ToolCall) -> str:
     words = (("S", node.speed), (f"F{node.feed_per}", node.feed), ("DL", node.length), ("DR", node.radius))
     tool = _value(node.tool, plus=False) if isinstance(node.tool, nodes.Value) else ""
-    if isinstance(node.tool, (int, str, nodes.TextName)):
+    if isinstance(node.tool, (int, str)):
         tool = name_text(node.tool)
     shown = [f"{word}{_value(value, plus=word[0] == 'D')}" for word, value in words if value is not None]
     return _joined("TOOL CALL", tool, node.tool_axis, *shown)
@@ -102,10 +102,8 @@ def _value(value: nodes.Value, *, plus: bool = True) -> str:
     return f"{value.number:{'+' if plus else ''}.9f}".rstrip("0").rstrip(".")
 
 
-def name_text(name: int | str | nodes.TextName) -> str:
-    """The number of a label or a tool, its name in quotes, or the text parameter that holds it."""
-    if isinstance(name, nodes.TextName):
-        return f"QS{name.number}"
+def name_text(name: int | str) -> str:
+    """The number of a label or a tool, or its name in quotes."""
     return f'"{name}"' if isinstance(name, str) else str(name)
 
 

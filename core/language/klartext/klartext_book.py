@@ -8,7 +8,7 @@ from core.language.klartext.klartext_contour_book import contours
 from core.language.klartext.klartext_cycle_book import cycles, m_functions, transformations
 from core.language.klartext.klartext_milling_book import milling
 from core.language.klartext.klartext_other_controls_book import other_controls
-from core.language.klartext.klartext_text_book import texts
+from core.language.klartext.klartext_refused_book import refused
 
 HEAD = "BEGIN PGM EXAMPLE MM\nTOOL DEF 1 L+0 R+4\nTOOL CALL 1 Z S3000 F500\nL X+0 Y+0 Z+50 R0 FMAX M3\n"
 """Before every example: tool 1 of radius 4 mm, the spindle on, 50 mm above the workpiece's zero."""
@@ -431,6 +431,23 @@ def _parameters() -> tuple[Entry, ...]:
             "FN 18: SYSREAD Q5 = ID9999 NR1",
             "FN 18",
         ),
+        Entry(
+            "FN 20",
+            ": WAIT FOR SYNC",
+            (
+                "Stops the look-ahead until all earlier blocks have run. TurnDesk does not "
+                "need this wait and reports the block."
+            ),
+            "FN 20: WAIT FOR SYNC",
+            "FN 20: WAIT FOR I95==0",
+            "PLC",
+        ),
+        Entry(
+            "FN 38",
+            ": SEND",
+            "Sends a string to the control's log. TurnDesk ignores this block and reports it.",
+            'FN 38: SEND /"DEPTH %f" / +5',
+        ),
     )
 
 
@@ -554,14 +571,14 @@ BOOK = CodeBook(
         ("Approach and departure", _approach()),
         ("Labels and programs", _flow()),
         ("Q parameters", _parameters()),
-        ("Strings and freely definable tables", texts()),
         ("Tilted planes", _planes()),
         ("Coordinate transformations", transformations()),
         ("Cycles", cycles()),
-        ("Thread, face and slot milling", milling()),
+        ("Back boring, slots and older cycles", milling()),
         ("Contours for SL cycles", contours()),
         ("M functions", m_functions()),
         ("Words of older and newer controls", other_controls()),
+        ("Rejected codes", refused()),
     ),
     head=HEAD,
     tail=TAIL,

@@ -12,42 +12,6 @@ _NAMED = "CYCL DEF 14.0 CONTOUR\nCYCL DEF 14.1 CONTOUR LABEL1 /2"
 _TRAIN_NAMED = "CYCL DEF 14.0 CONTOUR\nCYCL DEF 14.1 CONTOUR LABEL1"
 
 
-_OLDER = {
-    6: (
-        "ROUGH-OUT",
-        (
-            "Clears the pocket of cycle 14 in rings, starting at the current tool position and "
-            "plunging along a ramp."
-        ),
-        "SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2|ANGLE+0 F400",
-        ("F400", "FMAX", "rapid"),
-    ),
-    15: (
-        "PILOT DRILLING",
-        (
-            "Drills where a tool with the radius of the active tool would plunge; in TurnDesk, "
-            "cycle 6 does not need this hole."
-        ),
-        "SET UP2 DEPTH-5|PECKG5 F150 ALLOW+0.2",
-        ("F150", "FMAX", "rapid"),
-    ),
-    16: (
-        "CONTOUR MILLING",
-        "Mills along the walls of the pocket and its islands.",
-        "SET UP2 DEPTH-5|PECKG5 F150|DR+ F400",
-        ("F400", "FMAX", "rapid"),
-    ),
-}
-_CIRCLE = (
-    ("ROUND.H", "BEGIN PGM ROUND MM\nCC X+30 Y+20\nLP PR+15 PA+0\nCP IPA+360 DR+\nEND PGM ROUND MM\n"),
-)
-_MODEL = (
-    *_CIRCLE,
-    ("MODEL.H", 'BEGIN PGM MODEL MM\nDECLARE CONTOUR QC1 = "ROUND"\nQC10 = QC1 | QC1\nEND PGM MODEL MM\n'),
-)
-_DECLARED = 'DECLARE CONTOUR QC1 = "ROUND"'
-
-
 def _told(number: int, name: str, parameters: str) -> str:
     return Message(
         "CYCL DEF {number} {name}{item}",
@@ -87,62 +51,6 @@ _OF_A_CYCLE = {
 }
 
 
-def _older(number: int, name: str, what: str, lines: str, spoilt: tuple[str, str, str]) -> Entry:
-    before, after, why = spoilt
-    told = (name, *lines.split("|"))
-    body = "\n".join(
-        Message("CYCL DEF {number}.{part} {line}", number=number, part=part, line=line)
-        for part, line in enumerate(told)
-    )
-    return Entry(
-        Message("CYCL DEF {number}", number=number),
-        f".0 {name}",
-        what,
-        f"{_NAMED}\n{body}\nCYCL CALL",
-        f"{_NAMED}\n{body.replace(before, after)}\nCYCL CALL",
-        why,
-        behind=_POCKET + _ISLAND,
-        insert=body,
-    )
-
-
-def _formulas() -> tuple[Entry, ...]:
-    """Contours of other programs, and how they are joined."""
-    return (
-        Entry(
-            "DECLARE CONTOUR",
-            'QCn = "name"',
-            "Assigns a closed contour to QCn. The contour is a separate program (name in quotes) or LBL n.",
-            f"{_DECLARED}\nCONTOUR DEF P1 = QC1\n{_DATA}\n{_ROUGH}\nCYCL CALL",
-            Message("{declared} DEPTH5", declared=_DECLARED),
-            "a separate depth",
-            files=_CIRCLE,
-        ),
-        Entry(
-            "QC",
-            "n = formula",
-            (
-                "Combines contours into the area to mill: | is the area in either contour, & the "
-                "area in both, \\ the area in the first but not in the second, and ^ the area in only "
-                "one of the two."
-            ),
-            f"{_DECLARED}\nQC10 = QC1 | QC1\n{_DATA}\n{_ROUGH}\nCYCL CALL",
-            f"{_DECLARED}\nQC10 = QC1 | QC1 & QC1",
-            "without parentheses",
-            files=_CIRCLE,
-        ),
-        Entry(
-            "SEL CONTOUR",
-            '"name"',
-            "Uses the contour formula of another program.",
-            f'SEL CONTOUR "MODEL"\n{_DATA}\n{_ROUGH}\nCYCL CALL',
-            'SEL CONTOUR "ROUND"',
-            "no contour formula",
-            files=_MODEL,
-        ),
-    )
-
-
 def contours() -> tuple[Entry, ...]:
     """Cycles 14 and 20 to 25, and CONTOUR DEF."""
 
@@ -178,8 +86,8 @@ def contours() -> tuple[Entry, ...]:
             "CONTOUR DEF",
             "P1 = LBL n I2 = LBL n",
             (
-                "Lists the pockets (P) and islands (I), as cycle 14 does. Each of them is LBL n, a "
-                "program name in quotes, or QC n."
+                "Lists the pockets (P) and islands (I), as cycle 14 does. Each of them is LBL n or a "
+                "program name in quotes."
             ),
             f"CONTOUR DEF P1 = LBL 1 I2 = LBL 2\n{_DATA}\n{_ROUGH}\nCYCL CALL",
             f'CONTOUR DEF P1 = "POCKET.H"\n{_DATA}\n{_ROUGH}\nCYCL CALL',
@@ -197,8 +105,6 @@ def contours() -> tuple[Entry, ...]:
             insert=_DATA,
         ),
         *(milled(number, *told) for number, told in _OF_A_CYCLE.items()),
-        *(_older(number, *told) for number, told in _OLDER.items()),
-        *_formulas(),
         Entry(
             "CYCL DEF 25",
             "CONTOUR TRAIN",

@@ -46,7 +46,7 @@ def fault(line: int, column: int, code: str, message: str, hint: str = "") -> Pr
 
 
 class MissingValueError(ProgramError):
-    """A parameter that nothing has given a value: its kind (Q, QL, QR, QS) and number."""
+    """A parameter that nothing has given a value: its kind (Q, QL, QR) and number."""
 
     def __init__(self, line: int, column: int, parameter: tuple[str, int]) -> None:
         name = f"{parameter[0]}{parameter[1]}"
@@ -66,9 +66,8 @@ def syntax(line: int, column: int, message: str, hint: str = "") -> ProgramError
     return fault(line, column, SYNTAX, message, hint)
 
 
-def unsupported(line: int, column: int, what: str) -> ProgramError:
+def unsupported(line: int, column: int, what: str, instead: str = "") -> ProgramError:
     """What the control may know and this one does not, by name."""
     hint = "Use L moves and PLANE instead, or run the program on a control that supports this function."
-    return fault(
-        line, column, NOT_SUPPORTED, Message("{what} is not supported on this control.", what=what), hint
-    )
+    text = Message("{what} is not supported on this control.", what=what)
+    return fault(line, column, NOT_SUPPORTED, text, instead or hint)

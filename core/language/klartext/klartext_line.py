@@ -14,9 +14,8 @@ from core.language.klartext import (
     plane_block,
     q_parameters,
     structure_blocks,
-    text_blocks,
 )
-from core.language.klartext.klartext_faults import syntax, unsupported
+from core.language.klartext.klartext_faults import syntax
 from core.language.klartext.klartext_nodes import (
     AxisWord,
     Feed,
@@ -28,6 +27,7 @@ from core.language.klartext.klartext_nodes import (
     Value,
 )
 from core.language.klartext.line_cursor import Cursor
+from core.language.klartext.refused_codes import CONTOUR_FORMULA, STRING, Refused
 from core.message import Message
 
 # --- L moves of plain numbers: nearly all lines of a long program, read by two patterns
@@ -72,8 +72,6 @@ _HEAD = re.compile(r"\s*(/?)\s*([0-9]+)?\s*(/?)\s*")
 _M = re.compile(r"M(?=\s*[0-9])")
 _Q = re.compile(r"Q[LR]?(?=\s*[0-9])")
 _ONE_AXIS = re.compile(r"I?[XYZABCUVW](?=\s*[+\-.,]?\s*[0-9Q])")
-_QC = re.compile(r"QC\s*[0-9]")
-_QS = re.compile(r"QS\s*[0-9]")
 _FN = re.compile(r"FN\s*([0-9]+)\s*")
 _LONGEST_FIRST = sorted(path_block.FORMS, key=len, reverse=True)
 _PATHS = re.compile("|".join(r"\s+".join(form.split()) + r"(?![A-Z0-9])" for form in _LONGEST_FIRST))
@@ -83,9 +81,14 @@ _OUTSIDE = (
     *("TCH PROBE", "POLARKIN", "LT", "FPOL", "FSELECT", "FLT", "FCT", "FL", "FC"),
     *("SPL", "WHILE", "IF", "STRAIGHT", "SQL", "TABDATA", "CALL SELECTED CYCLE"),
     *("SEL CYCLE", "SEL CORR-TABLE", "PRESET COPY", "PRESET CORR", "OPEN FILE"),
+    *("SEL CONTOUR", "DECLARE CONTOUR", "QC", "DECLARE STRING", "QS"),
 )
-_FREE = "Free contour programming (FK: FPOL, FL, FC, FLT, FCT, FSELECT)"
-_TOGETHER = dict.fromkeys(("FPOL", "FSELECT", "FLT", "FCT", "FL", "FC"), _FREE)  # told as one
+_FREE = Refused("Free contour programming (FK: FPOL, FL, FC, FLT, FCT, FSELECT)", "")
+_TOGETHER = {
+    **dict.fromkeys(("FPOL", "FSELECT", "FLT", "FCT", "FL", "FC"), _FREE),
+    **dict.fromkeys(("SEL CONTOUR", "DECLARE CONTOUR", "QC"), CONTOUR_FORMULA),
+    **dict.fromkeys(("DECLARE STRING", "QS"), STRING),
+}  # told as one
 _OUTSIDE_PATTERNS = tuple((name, re.compile(r"\s+".join(name.split()) + r"(?![A-Z])")) for name in _OUTSIDE)
 
 
@@ -175,8 +178,6 @@ _KEYWORDS: dict[str, Callable[[Cursor, int], Node]] = {
     "CYCL CALL": cycle_blocks.call,
     "PATTERN DEF": pattern_block.pattern,
     "CONTOUR DEF": contour_blocks.definition,
-    "DECLARE CONTOUR": contour_blocks.declaration,
-    "SEL CONTOUR": contour_blocks.selection,
     "GLOBAL DEF": cycle_blocks.global_definition,
     "PRESET SELECT": cycle_blocks.preset,
     "WMAT": structure_blocks.material,
@@ -189,7 +190,6 @@ _KEYWORDS: dict[str, Callable[[Cursor, int], Node]] = {
     },
     "LBL": lambda cursor, _: structure_blocks.label(cursor),
     "FUNCTION": structure_blocks.function,
-    "DECLARE STRING": text_blocks.declare,
     "STOP": _stop,
 }
 
@@ -205,10 +205,6 @@ def _by_letter(cursor: Cursor) -> Node:
         return path_block.paraxial(cursor, column)
     if match := cursor.take(_FN):
         return q_parameters.function(cursor, int(match.group(1)[:4]), column)
-    if _QS.match(cursor.upper, cursor.at):
-        return text_blocks.assign(cursor, column)
-    if _QC.match(cursor.upper, cursor.at):
-        return contour_blocks.formula(cursor, column)
     if _Q.match(cursor.upper, cursor.at):
         return q_parameters.assign(cursor)
     raise _no_block(cursor)
@@ -221,7 +217,7 @@ def _no_block(cursor: Cursor) -> ProgramError:
         if pattern.match(cursor.upper, cursor.at):
             if name == "TCH PROBE":
                 return structure_blocks.touch_probe(cursor, column)
-            return unsupported(cursor.line, column, _TOGETHER.get(name, name))
+            return _TOGETHER.get(name, Refused(name, "")).error(cursor.line, column)
     text = Message("'{next_word}' cannot begin a block.", next_word=cursor.next_word)
     hint = cursor.advice("Begin the block with a word such as L, PLANE, TOOL CALL or LBL.")
     return syntax(cursor.line, column, text, hint)

@@ -27,13 +27,6 @@ class Value(NamedTuple):
         return Operation("negative", (made,), self.column) if self.negative else made
 
 
-class TextName(NamedTuple):
-    """``QS5`` where a name is asked for: the text that it holds is the name."""
-
-    number: int
-    column: int = 0
-
-
 class AxisWord(NamedTuple):
     """``X+10`` or ``IX+10``."""
 
@@ -107,7 +100,7 @@ class RoundBlank:
 class ToolCall:
     """``TOOL CALL 1 Z S3000 F500 DL+0.1``; a call without a tool changes speed or feed only."""
 
-    tool: int | str | Value | TextName | None = None  # a Value: the number is in a Q parameter
+    tool: int | str | Value | None = None  # a Value: the number is in a Q parameter
     tool_axis: str = ""
     speed: Value | None = None
     feed: Value | None = None
@@ -189,7 +182,7 @@ class Label:
 class Call:
     """``CALL LBL 1``, with ``REP n`` a repeat of the section behind the label."""
 
-    name: int | str | TextName
+    name: int | str
     repeat: Value | None = None
     column: int = 0
 
@@ -204,79 +197,13 @@ class Assign:
     kind: str = "Q"  # Q, QL or QR
 
 
-class TextPart(NamedTuple):
-    """A part of a text: in quotes (no ``kind``), ``QS``, or TOCHAR, SUBSTR, SYSSTR, CFGREAD.
-
-    ``first`` and ``second`` are the number and its decimals of TOCHAR, begin and length of SUBSTR.
-    """
-
-    kind: str
-    text: str = ""
-    number: int = 0
-    column: int = 0
-    first: Formula | None = None
-    second: Formula | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class TextAssign:
-    """``QS5 = "A" || QS6``; DECLARE STRING may give several: their numbers and parts."""
-
-    texts: tuple[tuple[int, tuple[TextPart, ...]], ...]
-    column: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class TextRead:
-    """``Q5 = INSTR( SRC_QS10 SEA_QS13 BEG2 )``: a number that TONUMB, INSTR, STRLEN or STRCOMP finds."""
-
-    kind: str
-    q: int
-    function: str
-    source: int
-    sought: int | None = None
-    begin: Formula | None = None
-    column: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class TableOpen:
-    """``FN 26: TABOPEN TAB1.TAB``: the free table of FN 27 and FN 28."""
-
-    name: str
-    column: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class TableRead:
-    """``FN 28: TABREAD Q10 = 6/"X,Y"``: cells of a row into Q10, Q11, …"""
-
-    kind: str
-    q: int
-    row: Formula
-    columns: tuple[str, ...]
-    column: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class TableWrite:
-    """``FN 27: TABWRITE 5/"RADIUS,DEPTH" = Q5``: Q5, Q6, … into cells of a row."""
-
-    kind: str
-    q: int
-    row: Formula
-    columns: tuple[str, ...]
-    column: int = 0
-
-
 @dataclass(frozen=True, slots=True)
 class Jump:
     """``FN 9: IF +Q1 EQU +5 GOTO LBL 3``; ``condition`` is the whole comparison."""
 
     condition: Formula
-    name: int | str | TextName
+    name: int | str
     column: int = 0
-    texts: tuple[TextPart, TextPart] | None = None  # that are compared instead: 1 means equal, 0 unequal
 
 
 @dataclass(frozen=True, slots=True)
@@ -388,8 +315,7 @@ class ContourPart(NamedTuple):
 
     label: int | str
     pocket: bool | None
-    file: str = ""  # a program of its own instead of a subprogram,
-    declared: int | None = None  # or the number of DECLARE CONTOUR
+    file: str = ""  # a program of its own instead of a subprogram
 
 
 @dataclass(frozen=True, slots=True)
@@ -401,30 +327,11 @@ class ContourDef:
 
 
 @dataclass(frozen=True, slots=True)
-class ContourDeclare:
-    """``DECLARE CONTOUR QC1 = "120.H"``."""
-
-    number: int
-    part: ContourPart
-    column: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class ContourFormula:
-    """``QC10 = ( QC1 | QC3 ) \\ QC2``, the area that is milled; ``SEL CONTOUR QC10`` takes one again."""
-
-    number: int
-    formula: Formula
-    column: int = 0
-    selected: bool = False
-
-
-@dataclass(frozen=True, slots=True)
 class Selection:
     """``SEL TABLE "N.D"``, ``SEL PATTERN "P.PNT"``, ``SEL PGM "A.H"``: ``kind`` is the word behind SEL."""
 
     kind: str
-    name: str | TextName
+    name: str
     column: int = 0
 
 
@@ -432,7 +339,7 @@ class Selection:
 class ProgramCall:
     """``CALL PGM name``; without a name the one of SEL PGM (``CALL SELECTED PGM``)."""
 
-    name: str | TextName
+    name: str
     column: int = 0
 
 
@@ -522,11 +429,6 @@ Node = (
     | ProgramCall
     | Selection
     | Assign
-    | TextAssign
-    | TextRead
-    | TableOpen
-    | TableRead
-    | TableWrite
     | Jump
     | SystemRead
     | SystemWrite
@@ -538,8 +440,6 @@ Node = (
     | CycleCall
     | PatternDef
     | ContourDef
-    | ContourDeclare
-    | ContourFormula
     | TipControl
     | Stop
     | Heading

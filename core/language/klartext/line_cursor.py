@@ -7,7 +7,8 @@ from functools import lru_cache
 
 from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import INPUT_VALUE, fault, syntax, unsupported
-from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, TextName, Value
+from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, Value
+from core.language.klartext.refused_codes import STRING
 from core.language.typography import ascii_upper, typed
 from core.message import Message
 
@@ -18,7 +19,7 @@ _TEXT = re.compile(r"\(?[^\W\d_]{3}|\(")
 _WHOLE = re.compile(r"[0-9]+(?![0-9.,])")
 _QUOTED = re.compile(r'"([^"]*)"')
 _WORD = re.compile(r"[^\s]+")
-_TEXT_PARAMETER = re.compile(r"QS\s*([0-9]{1,4})(?![0-9])")
+_TEXT_PARAMETER = re.compile(r"QS\s*[0-9]")
 _HIGHEST_Q = 1999
 
 
@@ -115,13 +116,8 @@ class Cursor:
 
     def name(self, what: str, most: int) -> int | str:
         """A number, or a name in quotes."""
+        self._demand_no_text()
         start = self.at
-        if text := _TEXT_PARAMETER.match(self.upper, self.at):
-            raise unsupported(
-                self.line,
-                start + 1,
-                Message("{what} with a name from string parameter {word}", what=what, word=text.group()),
-            )
         match = self.take(_QUOTED)
         if match is None:
             return self.whole(what, most)
@@ -132,14 +128,15 @@ class Cursor:
             )
         return name
 
-    def name_or_text(self, what: str, most: int) -> int | str | TextName:
-        """A number, a name in quotes, or a text parameter that holds the name."""
-        return self.text_name() or self.name(what, most)
+    def file(self) -> str:
+        """All that is left as the name of a file, in quotes or not; empty where nothing is."""
+        self._demand_no_text()
+        return self.rest().strip('"')
 
-    def text_name(self) -> TextName | None:
-        """A text parameter where one stands here."""
-        column, match = self.column, self.take(_TEXT_PARAMETER)
-        return None if match is None else TextName(int(match.group(1)), column)
+    def _demand_no_text(self) -> None:
+        """Raises ProgramError for a text parameter that is to hold a name."""
+        if _TEXT_PARAMETER.match(self.upper, self.at):
+            raise STRING.error(self.line, self.column)
 
     def quoted(self) -> str | None:
         """What stands in quotes here; None where nothing does."""

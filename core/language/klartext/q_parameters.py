@@ -11,11 +11,9 @@ from core.language.formulas import (
     FormulaError,
     FormulaReader,
     Grammar,
-    Number,
     Operation,
     Parameter,
 )
-from core.language.klartext import text_blocks
 from core.language.klartext.klartext_faults import syntax, unsupported
 from core.language.klartext.klartext_nodes import (
     Assign,
@@ -24,11 +22,10 @@ from core.language.klartext.klartext_nodes import (
     Node,
     SystemRead,
     SystemWrite,
-    TextPart,
-    TextRead,
     Unheeded,
 )
 from core.language.klartext.line_cursor import Cursor
+from core.language.klartext.refused_codes import FREE_TABLE, STRING
 from core.message import Message
 
 _NUMBER = re.compile(r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:E[+-]?[0-9]{1,3})?")
@@ -86,8 +83,10 @@ _TWO = {1: ("+", "plus"), 2: ("-", "minus"), 3: ("*", "times"), 4: ("DIV", "over
 _ONE = {5: ("SQRT", "square root"), 6: ("SIN", "sine"), 7: ("COS", "cosine")}
 _ANGLE = 13
 _JUMPS = {9: ("EQU", "equal"), 10: ("NE", "unequal"), 11: ("GT", "greater"), 12: ("LT", "less")}
-_EQUAL, _UNEQUAL = 9, 10
+_EQUAL = 9
 _A_TEXT = re.compile(r'"|QS')
+_OF_TEXTS = re.compile(r"(?:TONUMB|INSTR|STRLEN|STRCOMP)(?![A-Z])")
+_OF_FREE_TABLES = frozenset({26, 27, 28})
 WHETHER = "?"
 """Behind the letters of a parameter: 1 where it has a value, else 0."""
 _UNHEEDED = {15: "PRINT", 16: "F-PRINT", 38: "SEND"}
@@ -115,11 +114,11 @@ def formula(cursor: Cursor, what: str) -> Formula:
     return made
 
 
-def assign(cursor: Cursor) -> Assign | TextRead:
-    """``Q5 = …`` to the end of the line."""
+def assign(cursor: Cursor) -> Assign:
+    """``Q5 = …`` to the end of the line. Raises ProgramError for what would be found in a text."""
     column, (kind, number) = cursor.column, _target(cursor)
-    if (text := text_blocks.read(cursor, kind, number)) is not None:
-        return text
+    if _OF_TEXTS.match(cursor.upper, cursor.at):
+        raise STRING.error(cursor.line, cursor.column)
     made = formula(cursor, f"{kind}{number}")
     if not cursor.done:
         raise cursor.expected("Expected an operator")
@@ -138,6 +137,8 @@ def function(cursor: Cursor, number: int, column: int) -> Node:
         return _READERS[number](cursor, column)
     if number == 0 or number in _TWO or number in _ONE or number == _ANGLE:
         return _arithmetic(cursor, number, column)
+    if number in _OF_FREE_TABLES:
+        raise FREE_TABLE.error(cursor.line, column)
     what = (
         Message(" {of_the_builder}", of_the_builder=_OF_THE_BUILDER[number])
         if number in _OF_THE_BUILDER
@@ -203,12 +204,11 @@ def _jump(cursor: Cursor, number: int, column: int) -> Jump:
     word, name = _JUMPS[number]
     if not cursor.take(re.compile(r"IF")):
         raise cursor.expected(Message("FN {number} needs IF", number=number))
-    if (texts := _texts(cursor, number, word)) is not None:
-        condition: Formula = Number(1.0 if number == _EQUAL else 0.0)
-        return _whole_jump(cursor, condition, texts)
+    if _A_TEXT.match(cursor.upper, cursor.at):
+        raise STRING.error(cursor.line, cursor.column)
     value = cursor.value("IF")
     if number == _EQUAL and (state := cursor.keyword("IS UNDEFINED", "IS DEFINED")):
-        condition = Parameter(value.kind + WHETHER, value.q, value.column)
+        condition: Formula = Parameter(value.kind + WHETHER, value.q, value.column)
         if state == "IS UNDEFINED":
             condition = Operation("not", (condition,), column)
     else:
@@ -217,21 +217,12 @@ def _jump(cursor: Cursor, number: int, column: int) -> Jump:
     return _whole_jump(cursor, condition)
 
 
-def _texts(cursor: Cursor, number: int, word: str) -> tuple[TextPart, TextPart] | None:
-    """Two texts that FN 9 or FN 10 compares; None where it compares numbers."""
-    if number not in {_EQUAL, _UNEQUAL} or not _A_TEXT.match(cursor.upper, cursor.at):
-        return None
-    first = text_blocks.part(cursor)
-    _demand(cursor, word, number)
-    return first, text_blocks.part(cursor)
-
-
-def _whole_jump(cursor: Cursor, condition: Formula, texts: tuple[TextPart, TextPart] | None = None) -> Jump:
+def _whole_jump(cursor: Cursor, condition: Formula) -> Jump:
     """The label behind GOTO. Raises ProgramError."""
     if not cursor.keyword("GOTO LBL"):
         raise cursor.expected("A jump needs GOTO LBL")
     at = cursor.column
-    made = Jump(condition, cursor.name_or_text("GOTO LBL", MOST_LABEL), at, texts)
+    made = Jump(condition, cursor.name("GOTO LBL", MOST_LABEL), at)
     if not cursor.done:
         raise cursor.expected("Unexpected word in a jump")
     return made
@@ -288,7 +279,4 @@ _READERS: dict[int, Callable[[Cursor, int], Node]] = {
     17: _system_write,
     18: _system,
     20: _wait,
-    26: text_blocks.open_table,
-    27: text_blocks.write_table,
-    28: text_blocks.read_table,
 }

@@ -20,7 +20,6 @@ from core.language.klartext.klartext_nodes import (
     ProgramCall,
     RoundBlank,
     Selection,
-    TextName,
     TipControl,
     ToolCall,
     ToolDef,
@@ -128,10 +127,10 @@ def _demand_all(cursor: Cursor, corner: tuple[AxisWord, ...]) -> None:
 def tool_call(cursor: Cursor) -> ToolCall:
     """The words behind ``TOOL CALL``: tool, axis, S, F (FU, FZ), DL and DR."""
     column = cursor.column
-    tool: int | str | Value | TextName | None = None
+    tool: int | str | Value | None = None
     _demand_no_index(cursor)
     if cursor.take(_TOOL):
-        tool = cursor.name_or_text("TOOL CALL", MOST_TOOL)
+        tool = cursor.name("TOOL CALL", MOST_TOOL)
     elif cursor.take(_TOOL_BY_Q):
         tool = cursor.value("TOOL CALL")
     found = cursor.take(_AXIS)
@@ -250,7 +249,7 @@ def label(cursor: Cursor) -> Label:
 def call(cursor: Cursor) -> Call:
     """The label behind ``CALL LBL``, and its repeats; ``REP 3/3`` is how older controls write three."""
     column = cursor.column
-    name = cursor.name_or_text("CALL LBL", MOST_LABEL)
+    name = cursor.name("CALL LBL", MOST_LABEL)
     if name == 0:
         text = "LBL 0 ends a subprogram; it cannot be called."
         raise syntax(cursor.line, column, text, "Call another label.")
@@ -273,7 +272,7 @@ def _repeats(cursor: Cursor) -> Value:
 
 def call_program(cursor: Cursor, column: int) -> ProgramCall:
     """The file behind ``CALL PGM``, in quotes or not."""
-    name = cursor.text_name() or cursor.rest().strip('"')
+    name = cursor.file()
     if not name:
         raise cursor.expected("CALL PGM needs the name of a program")
     return ProgramCall(name, column)
@@ -291,7 +290,7 @@ def selection(kind: str) -> Callable[[Cursor, int], Selection]:
     """What reads the file behind ``SEL TABLE``, ``SEL PATTERN`` or ``SEL PGM``."""
 
     def read(cursor: Cursor, column: int) -> Selection:
-        name = cursor.text_name() or cursor.rest().strip('"')
+        name = cursor.file()
         if not name:
             raise cursor.expected(Message("SEL {kind} needs a file name", kind=kind))
         return Selection(kind, name, column)

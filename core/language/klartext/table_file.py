@@ -1,4 +1,4 @@
-"""Tables of the control, their rows by number: datums (.D), points (.PNT), free ones (.TAB).
+"""Tables of the control, their rows by number: datums (.D), points (.PNT).
 
 ``BEGIN NAME.D MM``, a line with the names of the columns, a line a row below their names, ``[END]``. A cell
 stands from under its column's name to the next one; an empty one tells nothing.
@@ -11,8 +11,7 @@ from collections.abc import Sequence
 
 from core.language.source import Source
 
-ENDINGS = (".D", ".PNT", ".TAB")
-_FREE = ".TAB"
+ENDINGS = (".D", ".PNT")
 _NAME = re.compile(r"[A-Z0-9_]+")
 _INCH = re.compile(r"BEGIN\s.*\bINCH\b", re.IGNORECASE)
 
@@ -30,8 +29,7 @@ def table_rows(source: Source) -> dict[int, Row]:
     head = next((at for at, text in enumerate(lines) if text.strip().upper().startswith("NR")), None)
     if head is None:
         return {}
-    free = source.name.upper().endswith(_FREE)  # its cells are what they are
-    scale = 25.4 if not free and any(_INCH.match(text) for text in lines[:head]) else 1.0
+    scale = 25.4 if any(_INCH.match(text) for text in lines[:head]) else 1.0
     columns = [(match.group(), match.start()) for match in _NAME.finditer(lines[head].upper())]
     found: dict[int, Row] = {}
     for text in lines[head + 1 :]:

@@ -1,4 +1,4 @@
-"""Faces, circular slots, the older cycles 210 to 215: what is gone over, how far the tool's edge reaches."""
+"""Circular slots, the older cycles 210 to 215: what is gone over, how far the tool's edge reaches."""
 
 from __future__ import annotations
 
@@ -18,12 +18,7 @@ def told(parameters: str) -> dict[str, float]:
     return {name: float(value) for name, value in (each.split("=") for each in parameters.split())}
 
 
-FACE = told(
-    "Q218=50 Q219=31 Q227=2 Q386=-3 Q202=2 Q369=0.5 Q370=1.6"
-    " Q207=500 Q385=250 Q253=750 Q200=2 Q357=1 Q204=20 Q389=0"
-)
 OLD = told("Q200=2 Q201=-10 Q206=150 Q202=5 Q207=500 Q203=0 Q204=50 Q216=50 Q217=50")
-SURFACE = "Q225=0 Q226=5 Q227=-2 Q228=100 Q229=15 Q230=5 Q231=15 Q232=125 Q233=25 Q234=15 Q235=125 Q236=25"
 SLOT = "Q215=0 Q219=12 Q368=0 Q375=60 Q367=0 Q216=50 Q217=50 Q376=0 Q248=90 Q378=0 Q377=1 Q207=500 Q351=1"
 LEVELS = " Q201=-7 Q202=3 Q369=0 Q206=150 Q338=0 Q200=2 Q203=0 Q204=50 Q366=1 Q385=250"
 OF: dict[int, dict[str, float]] = {
@@ -33,10 +28,6 @@ OF: dict[int, dict[str, float]] = {
     213: OLD | told("Q218=40 Q219=30 Q220=2 Q221=0"),
     214: OLD | told("Q222=79 Q223=80"),
     215: OLD | told("Q222=81 Q223=80"),
-    230: told("Q225=10 Q226=12 Q227=2.5 Q218=80 Q219=60 Q240=7 Q206=150 Q207=500 Q209=200 Q200=2"),
-    231: told(SURFACE + " Q240=40 Q207=500"),
-    232: FACE | told("Q225=10 Q226=12"),
-    233: FACE | told("Q215=0 Q350=1 Q367=-1"),
     254: told(SLOT + LEVELS),
 }
 
@@ -50,61 +41,6 @@ def milled(number: int, **q: float) -> Ran:
 def rectangle(x: float, y: float, length: float, width: float) -> Points:
     u, v = np.meshgrid(np.linspace(x, x + length, 41), np.linspace(y, y + width, 29))
     return np.stack([u.ravel(), v.ravel()], axis=1)
-
-
-@pytest.mark.parametrize("strategy", [0, 1, 2, 3, 4])
-@pytest.mark.parametrize("overlap", [0.5, 1.6, 1.99])
-@pytest.mark.long
-def test_every_spot_of_a_face_is_gone_over_at_every_depth(strategy: int, overlap: float) -> None:
-    """From Z2 to Z-2.5 in even infeeds of 2 at most (3 of 1.5), the last half millimetre at Q385."""
-    ran = milled(233 if strategy > 2 else 232, q389=strategy, q370=overlap)
-    points = cuts(ran)
-    x, y = (50.0, 50.0) if strategy > 2 else (10.0, 12.0)
-    for z in (0.5, -1.0, -2.5, -3.0):
-        level = points[np.abs(points[:, 2] - z) < 1e-6][:, :2]
-        assert left_standing(level, rectangle(x, y, 50, 31)) <= R + 1e-3 + 0.01
-        assert level[:, 1].max() <= y + 31 - R + 1e-9  # the last row ends with the face
-    assert {round(block.feed * 60) for block in ran.blocks if block.kind is Kind.FEED} == {250, 500, 750}
-
-
-@pytest.mark.parametrize("strategy", [0, 1, 2, 3])
-def test_a_face_is_come_to_from_outside_and_no_rapid_is_in_it(strategy: int) -> None:
-    for block in milled(232 if strategy < 3 else 233, q389=strategy).blocks:
-        spots = way(block)
-        if block.kind is Kind.RAPID and block.moves and np.ptp(spots[:, :2], axis=0).max() > 1e-9:
-            assert spots[:, 2].min() >= 4.0 - 1e-9
-        if block.kind is Kind.FEED and spots[-1, 2] < spots[0, 2] - 1e-9:
-            x = 10.0 if strategy < 3 else 50.0
-            assert spots[:, 0].max() <= x - R - 1.0 + 1e-9
-
-
-def test_sides_may_be_signed_and_rows_along_the_second_axis() -> None:
-    points = cuts(milled(233, q218=-50, q219=-31, q350=2, q367=-1, q389=0))
-    level = points[np.abs(points[:, 2] + 3.0) < 1e-6][:, :2]
-    assert left_standing(level, rectangle(0.0, 19.0, 50, 31)) <= R + 0.02
-    middle = cuts(milled(233, q367=0))
-    level = middle[np.abs(middle[:, 2] + 3.0) < 1e-6][:, :2]
-    assert left_standing(level, rectangle(25.0, 34.5, 50, 31)) <= R + 0.02
-
-
-def test_multipass_rows_stand_evenly_from_edge_to_edge() -> None:
-    """7 rows over 60 mm: 10 mm from each other, out of the face by the radius at both ends."""
-    rows = [
-        block for block in milled(230).blocks if block.kind is Kind.FEED and round(block.feed * 60) == 500
-    ]
-    ends = [way(block)[-1] for block in rows]
-    assert [end[1] for end in ends] == pytest.approx([12, 22, 32, 42, 52, 62, 72])
-    assert [end[0] for end in ends] == pytest.approx([90 + R, 10 - R] * 3 + [90 + R])
-    assert {end[2] for end in ends} == {2.5}
-
-
-def test_a_ruled_surface_runs_between_its_two_lines() -> None:
-    rows = [
-        block for block in milled(231).blocks if block.kind is Kind.FEED and np.ptp(way(block)[:, 0]) > 1e-6
-    ]
-    assert len(rows) == 39  # the fortieth ends where it begins: P3 is P4
-    assert way(rows[0])[0] == pytest.approx([0, 5, -2])
-    assert way(rows[0])[-1] == pytest.approx([100, 15, 5])
 
 
 def in_slot(points: Points) -> Points:
@@ -178,14 +114,6 @@ def test_thread_cutting_starts_and_stops_the_spindle_itself() -> None:
 @pytest.mark.parametrize(
     ("number", "q", "names"),
     [
-        (230, {"q240": 1}, "Q240"),
-        (230, {"q207": 99999}, "rapid"),
-        (231, {"q240": 0}, "Q240"),
-        (232, {"q386": 5}, "Q386"),
-        (232, {"q389": 7}, "Q389"),
-        (232, {"q370": 2}, "Q370"),
-        (233, {"q347": 1}, "limit"),
-        (233, {"q367": 8}, "Q367"),
         (254, {"q219": 70}, "slot"),
         (254, {"q219": 5}, "does not fit anywhere"),
         (254, {"q248": 350}, "ends of the slot overlap"),

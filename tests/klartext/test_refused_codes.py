@@ -1,0 +1,79 @@
+"""Codes that no real program uses are refused by name: one error with its place, and what to use instead."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.language.klartext.refused_codes import CONTOUR_FORMULA, FREE_TABLE, INSTEAD_OF_CYCLE, STRING
+from tests.klartext.running import run
+
+CONTOURS = "\nCYCL DEF 20 DATA Q1=-5 Q2=+1\nCYCL DEF 22 ROUGH-OUT Q10=-5 Q11=150 Q12=400\nCYCL CALL"
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "column", "instead"),
+    [
+        ('DECLARE CONTOUR QC1 = "ROUND"\nQC10 = QC1 | QC1' + CONTOURS, 3, 1, CONTOUR_FORMULA.instead),
+        ("QC10 = ( QC1 | QC2 ) \\ QC3" + CONTOURS, 3, 1, CONTOUR_FORMULA.instead),
+        ('SEL CONTOUR "MODEL"' + CONTOURS, 3, 1, CONTOUR_FORMULA.instead),
+        ("CONTOUR DEF P1 = QC1" + CONTOURS, 3, 18, CONTOUR_FORMULA.instead),
+        ('DECLARE STRING QS1 = "HOLE"\nQS2 = QS1 || " 5"\nTOOL CALL QS2 Z S500', 3, 1, STRING.instead),
+        ("QS5 = SYSSTR( ID10321 NR0 )\nCALL PGM QS5", 3, 1, STRING.instead),
+        ("Q5 = TONUMB( SRC_QS1 )\nL X+Q5 FMAX", 3, 6, STRING.instead),
+        ("Q5 = STRLEN( SRC_QS1 )", 3, 6, STRING.instead),
+        ("Q5 = INSTR( SRC_QS1 SEA_QS2 )", 3, 6, STRING.instead),
+        ("Q5 = STRCOMP( SRC_QS1 SEA_QS2 )", 3, 6, STRING.instead),
+        ('FN 9: IF QS1 EQU "A" GOTO LBL 1\nLBL 1', 3, 10, STRING.instead),
+        ('FN 10: IF "A" NE QS1 GOTO LBL 1\nLBL 1', 3, 11, STRING.instead),
+        ("FN 9: IF +1 EQU +1 GOTO LBL QS7", 3, 29, STRING.instead),
+        ("CALL LBL QS1\nCALL LBL QS2", 3, 10, STRING.instead),
+        ("SEL PGM QS5\nCALL SELECTED PGM", 3, 9, STRING.instead),
+        ("CALL PGM QS5", 3, 10, STRING.instead),
+        ("TOOL CALL QS1 Z S100\nL X+5 F AUTO", 3, 11, STRING.instead),
+        ("TOOL DEF QS1 L+0 R+5", 3, 10, STRING.instead),
+        (
+            'FN 26: TABOPEN T.TAB\nFN 28: TABREAD Q1 = 5/"X"\nFN 27: TABWRITE 5/"X" = Q1\nL X+Q1 FMAX',
+            3,
+            1,
+            FREE_TABLE.instead,
+        ),
+        *(
+            (
+                f"CYCL DEF {number}.0 NAME\nCYCL DEF {number}.1 SET UP2\nCYCL CALL",
+                3,
+                1,
+                INSTEAD_OF_CYCLE[number],
+            )
+            for number in (6, 15, 16)
+        ),
+        *(
+            (f"CYCL DEF {number} NAME Q207=+500\nCYCL CALL", 3, 1, INSTEAD_OF_CYCLE[number])
+            for number in INSTEAD_OF_CYCLE
+            if number >= 200
+        ),
+    ],
+)
+def test_one_error_tells_the_place_and_the_remedy(text: str, line: int, column: int, instead: str) -> None:
+    (error,) = run(text).errors
+    assert (error.code, error.line, error.column) == ("Not supported", line, column)
+    assert error.hint == instead
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("QC1 = QC2", "QC"),
+        ("QS1 = QS2", "QS"),
+        ("FN 26: TABOPEN A.TAB", "FN 26"),
+        *((f"CYCL DEF {number} X", f"CYCL DEF {number}") for number in INSTEAD_OF_CYCLE if number >= 200),
+    ],
+)
+def test_the_error_names_the_code(text: str, code: str) -> None:
+    (error,) = run(text).errors
+    assert code in error.message
+
+
+def test_contours_by_label_and_names_in_quotes_go_on_being_read() -> None:
+    assert run('CONTOUR DEF P1 = LBL 1 I2 = "ROUND.H"\nM30\nLBL 1\nLBL 0').codes == []
+    assert run('CALL LBL "SIDE"\nM30\nLBL "SIDE"\nLBL 0').codes == []
+    assert run('FN 20: WAIT FOR SYNC\nFN 38: SEND /"%f" / +Q1').codes == []
