@@ -117,7 +117,7 @@ class Gearing:
         self._speed = cam.sign * phase.speed  # at which it is played, turns/s
         if self._speed < _STANDS:
             raise DriverError(
-                ("the spindle is not turning, so no axis can be synchronized with the spindle"),
+                "the spindle is not turning, so no axis can be synchronized with the spindle",
                 "thread-no-encoder",
             )
         self._queue = self._empty()
@@ -128,10 +128,8 @@ class Gearing:
         """Replace what lies behind the start of this way."""
         if not self.fits(cam):
             raise DriverError(
-                (
-                    "the axes cannot change to another spindle index pulse while they are "
-                    "synchronized with the spindle"
-                ),
+                "the axes cannot change to another spindle index pulse while they are "
+                "synchronized with the spindle",
                 "broken-path",
                 reason="other-index",
             )
@@ -324,10 +322,8 @@ class GearedQueue(SetpointQueue):
         gearing = self._gearing
         if gearing is not None and len(segments.t) and not gearing.still_at(float(segments.t[0])):
             raise DriverError(
-                (
-                    "the axes are synchronized with the spindle; stop the axes before you start a "
-                    "time-based move"
-                ),
+                "the axes are synchronized with the spindle; stop the axes before you start a "
+                "time-based move",
                 "broken-path",
                 reason="follows-spindle",
             )

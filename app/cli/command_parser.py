@@ -141,13 +141,11 @@ def add_screen_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--demo",
         action="store_true",
-        help=(
-            "open the screen with a separate data store that contains sample offsets; you "
-            "can change these offsets"
-        ),
+        help="open the screen with a separate data store that contains sample offsets; you "
+        "can change these offsets",
     )
     parser.add_argument(
-        "--kiosk", action="store_true", help=("run in full screen; the window cannot be closed")
+        "--kiosk", action="store_true", help="run in full screen; the window cannot be closed"
     )
     texts = {
         "machine": "machine file (default: the shipped simulated lathe)",
@@ -170,7 +168,7 @@ def settled(args: argparse.Namespace) -> argparse.Namespace:
         if command and getattr(args, name):
             raise CommandError(
                 Message(
-                    ("--{name} opens the screen; remove this option to run {command}"),
+                    "--{name} opens the screen; remove this option to run {command}",
                     name=name,
                     command=command,
                 ),

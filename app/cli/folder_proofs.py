@@ -168,7 +168,7 @@ class _Run:
             )
         if isinstance(error, ModuleNotFoundError) and self._version:
             return Message(
-                ("TurnDesk is not installed on the dask worker ({error}); install TurnDesk there"),
+                "TurnDesk is not installed on the dask worker ({error}); install TurnDesk there",
                 error=error,
             )
         from app.cli.crash_report import keep_crash

@@ -45,7 +45,7 @@ def add_part_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keep-stock",
         action="store_true",
-        help=("save the --stock setting in the data store, together with the program name"),
+        help="save the --stock setting in the data store, together with the program name",
     )
     parser.add_argument(
         "--as", dest="as_name", metavar="NAME", help="user who saves the stock (only with --keep-stock)"

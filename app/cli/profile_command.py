@@ -62,20 +62,20 @@ def _add_drawing_options(parser: argparse.ArgumentParser) -> None:
         "--layer", default="", metavar="NAME", help="layer of the contour (default: all layers)"
     )
     parser.add_argument(
-        "--axis", default="", metavar="NAME", help=("name of the axis in the drawing, as shown by --list")
+        "--axis", default="", metavar="NAME", help="name of the axis in the drawing, as shown by --list"
     )
     parser.add_argument(
         "--contour",
         type=int,
         default=1,
         metavar="N",
-        help=("number of the contour in the drawing, as shown by --list"),
+        help="number of the contour in the drawing, as shown by --list",
     )
     parser.add_argument(
         "--front",
         choices=("right", "left"),
         default="right",
-        help=("end of the drawing at which the front face of the part is located"),
+        help="end of the drawing at which the front face of the part is located",
     )
     parser.add_argument(
         "--zero", choices=("face", "back", "origin"), default="face", help="location of Z0 in the drawing"
@@ -85,7 +85,7 @@ def _add_drawing_options(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.0,
         metavar="Z",
-        help=("Z value of the location that --zero selects (default: 0)"),
+        help="Z value of the location that --zero selects (default: 0)",
     )
     parser.add_argument(
         "--side", choices=("outside", "bore"), default="outside", help="surface of the part to cut"
@@ -94,7 +94,7 @@ def _add_drawing_options(parser: argparse.ArgumentParser) -> None:
         "--gap",
         type=float,
         metavar="MM",
-        help=("join contour ends that are closer together than this distance, in mm"),
+        help="join contour ends that are closer together than this distance, in mm",
     )
 
 
@@ -127,7 +127,7 @@ def _add_tool_options(parser: argparse.ArgumentParser) -> None:
         "--comp",
         type=int,
         metavar="D",
-        help=("number of the tool offset or cutting edge for nose radius compensation; 0: no G41"),
+        help="number of the tool offset or cutting edge for nose radius compensation; 0: no G41",
     )
     parser.add_argument(
         "--tools", metavar="FILE", help="file with tool shapes to use instead of the stored shapes"
@@ -154,7 +154,7 @@ def _run(args: argparse.Namespace) -> int:
         args.who = may_write(args)
     if args.side == "bore" and args.hole is None and not args.list:
         raise CommandError(
-            ("boring requires a starting hole; specify the diameter of the hole with --hole"), "no-hole"
+            "boring requires a starting hole; specify the diameter of the hole with --hole", "no-hole"
         )
     args.metric = args.metric or not machine.inch
     args.dialect = _language(args, machine)
@@ -199,10 +199,8 @@ def _check_unit(drawing: Drawing, view: View, net: Net, machine: Machine) -> Non
     if (wrong := wrong_unit(net, view.unit, shop_of(machine, {}).travel)) is not None:
         size, name = wrong[0], wrong[1].lower()
         words = Message(
-            (
-                "{drawing} is {size}, which is too large for this machine; with {name} as the "
-                "unit, the drawing would fit, so use --unit {name2}"
-            ),
+            "{drawing} is {size}, which is too large for this machine; with {name} as the "
+            "unit, the drawing would fit, so use --unit {name2}",
             drawing=drawing.name,
             size=size,
             name=name,

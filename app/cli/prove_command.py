@@ -74,7 +74,7 @@ def add_folder_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scheduler",
         metavar="HOST:PORT",
-        help=("prove with the worker processes of a dask.distributed scheduler"),
+        help="prove with the worker processes of a dask.distributed scheduler",
     )
     parser.add_argument(
         "--no-cache", action="store_true", help="prove all programs again, including those proved before"
@@ -117,10 +117,8 @@ def _for_workers(args: argparse.Namespace) -> bool:
     many = given or any(Path(name).is_dir() for name in args.files)
     if "-" in args.files and (many or len(args.files) > 1):
         raise CommandError(
-            (
-                "the file name - means one program from stdin, which is proved on this computer; do "
-                "not combine - with other files, folders or --jobs"
-            ),
+            "the file name - means one program from stdin, which is proved on this computer; do "
+            "not combine - with other files, folders or --jobs",
             "stdin-alone",
         )
     if args.no_cache and not many:
@@ -134,10 +132,8 @@ def _for_workers(args: argparse.Namespace) -> bool:
         )
     if args.jobs is not None and args.scheduler is not None:
         raise CommandError(
-            (
-                "--jobs and --scheduler cannot be used together, because the scheduler has its "
-                "own worker processes"
-            ),
+            "--jobs and --scheduler cannot be used together, because the scheduler has its "
+            "own worker processes",
             "jobs-and-scheduler",
         )
     return many

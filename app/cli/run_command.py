@@ -83,10 +83,8 @@ def run(args: argparse.Namespace) -> int:
     if report.missing_tools:
         names = ", ".join(edge_name(key) for key in report.missing_tools)
         why = Message(
-            (
-                "{path}: no offset has been set for {names}; set the offset with turndesk "
-                "offsets set, or use --offsets"
-            ),
+            "{path}: no offset has been set for {names}; set the offset with turndesk "
+            "offsets set, or use --offsets",
             path=path,
             names=names,
         )

@@ -24,14 +24,13 @@ _STDOUT = "-"
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the command."""
     parser = subparsers.add_parser(
-        "scope", help=("show scope data from a saved record or from the last few minutes")
+        "scope", help="show scope data from a saved record or from the last few minutes"
     )
     parser.add_argument(
         "file",
         metavar="FILE",
-        help=(
-            "scope record file (.scope), or the file now.ring, before.ring or run.ring in the records folder"
-        ),
+        help="scope record file (.scope), or the file now.ring, before.ring or run.ring in the "
+        "records folder",
     )
     parser.add_argument(
         "--csv", metavar="OUT", nargs="?", const=_STDOUT, help="write the samples as CSV (default: to stdout)"

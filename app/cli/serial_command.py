@@ -77,7 +77,7 @@ def _add_line(parser: argparse.ArgumentParser) -> None:
         help="serial port, such as /dev/ttyUSB0 or COM3; to list the ports: turndesk serial ports",
     )
     parser.add_argument(
-        "--baud", type=int, metavar="RATE", help=("baud rate in bits per second, usually 110 to 115200")
+        "--baud", type=int, metavar="RATE", help="baud rate in bits per second, usually 110 to 115200"
     )
     parser.add_argument(
         "--bits", type=int, choices=(7, 8), help="data bits; older controls use 7 with --parity E"
@@ -161,11 +161,11 @@ def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
         )
     if not 110 <= model.baud <= 1_000_000:
         raise CommandError(
-            Message(("--baud {baud} is out of range; use 110 to 1000000"), baud=model.baud), "baud"
+            Message("--baud {baud} is out of range; use 110 to 1000000", baud=model.baud), "baud"
         )
     if not 0 <= model.leader <= 2000:
         raise CommandError(
-            Message(("--leader {leader} is out of range; use 0 to 2000"), leader=model.leader), "leader"
+            Message("--leader {leader} is out of range; use 0 to 2000", leader=model.leader), "leader"
         )
     return model
 

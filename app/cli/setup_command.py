@@ -28,7 +28,7 @@ def add_parser(subparsers: SubParsers) -> None:
     )
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     save = actions.add_parser(
-        "save", help=("save the stored data, settings, programs and machine file in one FILE")
+        "save", help="save the stored data, settings, programs and machine file in one FILE"
     )
     save.add_argument("file", metavar="FILE")
     save.add_argument("--machine", metavar="FILE", help="machine file to include in the saved setup")

@@ -63,10 +63,8 @@ def written(steps: Sequence[Step], new: Setting) -> Written:
             raise StepError(
                 [
                     Message(
-                        (
-                            "step {number}: a program must begin with a head; put a step with kind = "
-                            '"head" first'
-                        ),
+                        "step {number}: a program must begin with a head; put a step with kind = "
+                        '"head" first',
                         number=number,
                     )
                 ]

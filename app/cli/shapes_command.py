@@ -52,7 +52,7 @@ def add_parser(subparsers: SubParsers) -> None:
         "file",
         metavar="FORM.toml",
         nargs="?",
-        help=("file with the steps of the program; - reads the steps from stdin"),
+        help="file with the steps of the program; - reads the steps from stdin",
     )
     parser.add_argument("--list", action="store_true", help="list the kinds of steps and their keys")
     parser.add_argument(

@@ -44,7 +44,7 @@ def stock_lines(part: PartReport, dialect: Dialect) -> str:
     inch = dialect is Dialect.OMNITURN
     volume, unit = volume_of(dialect), "in³" if inch else "mm³"
     pieces = (
-        Message((", pieces parted off: {pieces_count}"), pieces_count=len(part.pieces)) if part.pieces else ""
+        Message(", pieces parted off: {pieces_count}", pieces_count=len(part.pieces)) if part.pieces else ""
     )
     return (
         f"  stock {_named(part.stock, dialect)}: {volume(part.removed):.4g} {unit}"

@@ -45,10 +45,10 @@ def add_parser(subparsers: SubParsers) -> None:
             add_consent_options(action)
     actions.add_parser(
         "upgrade",
-        help=("upgrade the stored data of an older TurnDesk version, as the operator screen also does"),
+        help="upgrade the stored data of an older TurnDesk version, as the operator screen also does",
     )
     verify = actions.add_parser(
-        "verify", help=("check every database page, reference and program text of the stored data")
+        "verify", help="check every database page, reference and program text of the stored data"
     )
     verify.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
@@ -187,7 +187,7 @@ def _verify(args: argparse.Namespace) -> int:
         sys.stdout.write(
             f"{path} is undamaged\n"
             if has_store(data_folder())
-            else Message(("{data_folder} does not contain any stored data yet"), data_folder=data_folder())
+            else Message("{data_folder} does not contain any stored data yet", data_folder=data_folder())
             + "\n"
         )
     sys.stderr.write("".join(f"turndesk: {path}: {problem}\n" for problem in problems))

@@ -118,7 +118,7 @@ def _demand_pin(store: Store, row: PersonRow) -> None:
         store.set_setting(_WRONG, None).result()
         return
     told = Message(
-        ("wrong PIN for {row} entered on the command line; consecutive wrong PINs: {wrong}"),
+        "wrong PIN for {row} entered on the command line; consecutive wrong PINs: {wrong}",
         row=row.name,
         wrong=wrong + 1,
     )

@@ -119,7 +119,7 @@ class Access:
             self.wrong.wrong(self.clock())
             self.note(
                 Message(
-                    ("wrong PIN for {row}; consecutive wrong PINs: {count}"),
+                    "wrong PIN for {row}; consecutive wrong PINs: {count}",
                     row=row.name,
                     count=self.wrong.count,
                 )

@@ -59,13 +59,11 @@ def open_document(path: Path, samples: Path) -> Document:
     text = _text(path)
     if text.count("\n") >= MOST_LINES:
         raise TooLongError(
-            (
-                Message(
-                    "{path} has over {most_lines} lines, too many for this editor; split the file in "
-                    "another editor",
-                    path=path.name,
-                    most_lines=MOST_LINES,
-                )
+            Message(
+                "{path} has over {most_lines} lines, too many for this editor; split the file in "
+                "another editor",
+                path=path.name,
+                most_lines=MOST_LINES,
             ),
             "too-long",
         )

@@ -51,7 +51,7 @@ class Search:
             return Message("{value}, INCLUDING PARTS OF WORDS", value=found)
         more = self.inside(text)
         return (
-            Message(("{value}; {more} MORE ARE PARTS OF LONGER WORDS"), value=found, more=more)
+            Message("{value}; {more} MORE ARE PARTS OF LONGER WORDS", value=found, more=more)
             if more
             else found
         )

@@ -273,7 +273,7 @@ class JobsModel:
             partial(
                 self._write,
                 lambda c: job_queue.remove(c, job.id),
-                change=(Message("job {program} removed", program=job.program)),
+                change=Message("job {program} removed", program=job.program),
             ),
         )
 

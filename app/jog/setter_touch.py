@@ -136,7 +136,7 @@ class SetterTouch:
         about = signed(touched.error, metric).removeprefix("+")
         cause = tr(
             Message(
-                ("measured at the tool setter, direction {direction}, ±{error}"),
+                "measured at the tool setter, direction {direction}, ±{error}",
                 direction=way_word(way),
                 error=about,
             )

@@ -104,7 +104,7 @@ class ToolSetting:
         if self.by_setter:
             return tr(
                 Message(
-                    ("SAVE {tool} {axis} MEASURED AT THE TOOL SETTER?"),
+                    "SAVE {tool} {axis} MEASURED AT THE TOOL SETTER?",
                     tool=name,
                     axis=self.touching.name.upper(),
                 )

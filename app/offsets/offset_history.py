@@ -130,7 +130,7 @@ class OffsetHistory:
             _at, which, change, _why = self.in_words(self.last[0])
             return f"{which}   {change}"
         return (
-            tr(Message(("{count} offsets changed. F5: show the changes"), count=len(self.last)))
+            tr(Message("{count} offsets changed. F5: show the changes", count=len(self.last)))
             if self.last
             else ""
         )

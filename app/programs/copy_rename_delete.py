@@ -178,7 +178,7 @@ class CopyRenameDelete:
         elif question == COPY:
             self._change(lambda: copy_program(here.path, self.own, name), "COPIED AS {name}")
         else:
-            self._change(lambda: rename_program(here.path, name, self.persistence), ("RENAMED TO {name}"))
+            self._change(lambda: rename_program(here.path, name, self.persistence), "RENAMED TO {name}")
 
     def delete(self) -> None:
         """The marked program, after asking; its text stays among the versions."""
@@ -197,7 +197,7 @@ class CopyRenameDelete:
             return
         self._change(
             lambda: delete_program(program.path, self.persistence),
-            ("{name} DELETED. ITS STORED VERSIONS REMAIN"),
+            "{name} DELETED. ITS STORED VERSIONS REMAIN",
         )
 
     def _change(self, work: Callable[[], str], words: str) -> None:

@@ -337,7 +337,7 @@ class ImportExport:
         if self.out:
             words = tr(
                 Message(
-                    ("COPIED AND VERIFIED: {count}. YOU CAN REMOVE THE USB STICK"),
+                    "COPIED AND VERIFIED: {count}. YOU CAN REMOVE THE USB STICK",
                     count=count,
                 )
             )

@@ -60,11 +60,9 @@ def write_out(target: Path, data: bytes) -> None:
             _fill(draft, data)
             if draft.read_bytes() != data:
                 raise FileError(
-                    (
-                        Message(
-                            ("VERIFICATION OF {target} FAILED. USE ANOTHER USB STICK"),
-                            target=target.name,
-                        )
+                    Message(
+                        "VERIFICATION OF {target} FAILED. USE ANOTHER USB STICK",
+                        target=target.name,
                     ),
                     "read-back-differs",
                 )

@@ -88,7 +88,7 @@ class ChartsSection(QualitySection):
         if not drift and found.at_least is not None:
             drift = tr(
                 Message(
-                    ("no drift; Cpk is at least {minimum} (95 % confidence)"),
+                    "no drift; Cpk is at least {minimum} (95 % confidence)",
                     minimum=fixed(found.at_least, 2),
                 )
             )

@@ -79,7 +79,7 @@ class CorrectionEffect:
         if effect.busy:
             return tr("SIMULATING THE PART WITH OLD AND NEW OFFSETS")
         return (
-            tr(Message(("PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}"), why=effect.trouble))
+            tr(Message("PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}", why=effect.trouble))
             if effect.trouble
             else ""
         )

@@ -210,14 +210,12 @@ class ReadingsSection(QualitySection):
                 lambda c: measured_parts.void_reading(c, last.id),
                 done,
                 self.watch.refuse,
-                (
-                    Message(
-                        "program {program}, part {part}: reading of {feature} ({last} mm) removed",
-                        feature=feature.name,
-                        part=last.part,
-                        program=self.data.program,
-                        last=f"{last.value:g}",
-                    )
+                Message(
+                    "program {program}, part {part}: reading of {feature} ({last} mm) removed",
+                    feature=feature.name,
+                    part=last.part,
+                    program=self.data.program,
+                    last=f"{last.value:g}",
                 ),
             ),
         )

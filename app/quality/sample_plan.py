@@ -27,7 +27,7 @@ def bar(found: dict[str, int]) -> str:
     """Why no other part begins where parts wait for the plan; empty where nothing is due."""
     part, names = _newest(found)
     return (
-        Message(("part {part} must be measured before the next part starts: {names}"), part=part, names=names)
+        Message("part {part} must be measured before the next part starts: {names}", part=part, names=names)
         if found
         else ""
     )

@@ -158,7 +158,7 @@ class ToolLifeWatch:
             done,
             said,
             Message(
-                ("cutting time of T{number} set to {seconds} min"),
+                "cutting time of T{number} set to {seconds} min",
                 number=number,
                 seconds=f"{seconds / 60.0:.1f}",
             ),

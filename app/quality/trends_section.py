@@ -141,7 +141,7 @@ class TrendsSection(QualitySection):
             return tr("no drive on this machine reports its load")
         return tr(
             Message(
-                ("last load {last} %, highest load {maximum} %"),
+                "last load {last} %, highest load {maximum} %",
                 last=fixed(loads[-1], 0),
                 maximum=fixed(max(loads), 0),
             )

@@ -42,7 +42,7 @@ def pdf_of(html: str, title: str, paper: Paper) -> bytes:
                 lines[-1]
                 if lines
                 else Message(
-                    ("the PDF was not created (return code {returncode})"), returncode=done.returncode
+                    "the PDF was not created (return code {returncode})", returncode=done.returncode
                 ),
             )
         return path.read_bytes()

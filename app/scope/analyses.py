@@ -400,7 +400,7 @@ def _thread_sheet(title: str, thread: Thread, vmax: float, metric: bool, marked:
         tr(Message("Lead: {lead} per revolution", lead=_length(abs(thread.lead), metric))),
         tr(
             Message(
-                ("The thread entry angles agree within {angle}°"), angle=formats.fixed(thread.entry_spread, 2)
+                "The thread entry angles agree within {angle}°", angle=formats.fixed(thread.entry_spread, 2)
             )
         ),
         tr("Flank infeed shifts the entry angle with the depth."),

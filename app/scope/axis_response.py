@@ -226,7 +226,7 @@ def response_sheet(title: str, found: AxisResponse, metric: bool) -> Sheet:
     notes = (
         tr(
             Message(
-                ("Last move of {axis}. These values are for information only; no setting was changed."),
+                "Last move of {axis}. These values are for information only; no setting was changed.",
                 axis=found.letter,
             )
         ),

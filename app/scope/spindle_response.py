@@ -153,10 +153,8 @@ def spindle_sheet(title: str, found: SpindleResponse) -> Sheet:
     notes = (
         tr(
             Message(
-                (
-                    "The acceleration in the machine file is {accel} rpm/s; a speed within {share} "
-                    "of the target counts as reached."
-                ),
+                "The acceleration in the machine file is {accel} rpm/s; a speed within {share} "
+                "of the target counts as reached.",
                 accel=formats.fixed(model.accel, 0),
                 share=formats.percent(model.at_speed),
             )

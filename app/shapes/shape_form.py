@@ -105,7 +105,7 @@ class ShapeForm:
             word = self.fields[min(self.marked, len(self.fields) - 1)].word
             return [
                 Refusal(
-                    word, ("These values do not make a valid shape: check the last value that you entered.")
+                    word, "These values do not make a valid shape: check the last value that you entered."
                 )
             ]
 

@@ -261,7 +261,7 @@ class Sharing:
             here, others = family.versions.get(family.here), [each.id for each in family.elsewhere]
             if here is None or not others:
                 raise TakeError(
-                    ("no decision is necessary, because no other control has changed this program"),
+                    "no decision is necessary, because no other control has changed this program",
                     "nothing-to-settle",
                 )
             follows = (here.id, *others)

@@ -78,7 +78,7 @@ def _refused(error: HTTPError) -> str:
     if error.code in {HTTPStatus.FORBIDDEN, HTTPStatus.UNAUTHORIZED}:
         return tr("access token rejected")
     return one_line(
-        tr(Message(("the server returns HTTP status {answer}"), answer=f"{error.code} {error.reason}"))
+        tr(Message("the server returns HTTP status {answer}", answer=f"{error.code} {error.reason}"))
     )
 
 

@@ -24,10 +24,8 @@ AXES: Entries = {
             "the cut is too heavy",
             "the drive has no power, or its motor cable is disconnected",
         ),
-        (
-            "Check where the tool is and free the axis. Press Reset, then Drives On. Home any "
-            "axis shown as not homed"
-        ),
+        "Check where the tool is and free the axis. Press Reset, then Drives On. Home any "
+        "axis shown as not homed",
         tells=True,
     ),
     "in-position": stop(
@@ -48,10 +46,8 @@ AXES: Entries = {
             "the drives received a command that they cannot execute in their present state",
             "a drive lost its ready signal",
         ),
-        (
-            "Press Reset, then Drives On, and start again. If the alarm returns, find the "
-            "rejected command in the log"
-        ),
+        "Press Reset, then Drives On, and start again. If the alarm returns, find the "
+        "rejected command in the log",
     ),
     "power-lost": off(
         105,
@@ -124,10 +120,8 @@ AXES: Entries = {
             "the axis travel in the machine file is too long",
             "a fault in the switch or its cable",
         ),
-        (
-            "Press Reset, then Drives On, and home the axis. If the axis is still on its limit "
-            "switch, first move the axis off the switch by hand"
-        ),
+        "Press Reset, then Drives On, and home the axis. If the axis is still on its limit "
+        "switch, first move the axis off the switch by hand",
         tells=True,
     ),
     "homing": off(
@@ -157,20 +151,16 @@ AXES: Entries = {
             "the speed or the travel in the machine file differs from the drive settings",
             "the spindle was too fast for the thread's lead",
         ),
-        (
-            "Press Reset, then Drives On. Compare the machine file with the drive settings "
-            "before running the program again"
-        ),
+        "Press Reset, then Drives On. Compare the machine file with the drive settings "
+        "before running the program again",
         tells=True,
     ),
     "queue-dry": off(
         115,
         "drives ran out of setpoints",
         ("the computer was busy with another task for too long", "interference on the bus"),
-        (
-            "Press Reset, then Drives On. Close other programs on this computer, then restart "
-            "the program at the interrupted line"
-        ),
+        "Press Reset, then Drives On. Close other programs on this computer, then restart "
+        "the program at the interrupted line",
     ),
     "standstill": off(
         116,
@@ -180,10 +170,8 @@ AXES: Entries = {
             "a fault in the encoder or its cable",
             "the drive is tuned too soft to hold the axis, or its motor cable is disconnected",
         ),
-        (
-            "Keep clear of the axis: the axis may jump when freed. Find what is holding "
-            "the axis, then press Reset and Drives On"
-        ),
+        "Keep clear of the axis: the axis may jump when freed. Find what is holding "
+        "the axis, then press Reset and Drives On",
         tells=True,
     ),
     "encoder-still": off(
@@ -197,10 +185,8 @@ AXES: Entries = {
             "the axis is jammed, or the tool has hit something",
             "the motor cable is disconnected",
         ),
-        (
-            "Check the actual position of the axis. Check the encoder and its coupling. "
-            "Press Reset, then Drives On. Home any axis shown as not homed"
-        ),
+        "Check the actual position of the axis. Check the encoder and its coupling. "
+        "Press Reset, then Drives On. Home any axis shown as not homed",
         tells=True,
     ),
     "moved-unasked": off(

@@ -20,10 +20,8 @@ WIRES: Entries = {
             "the CAN interface was unplugged",
             "another master is on the bus",
         ),
-        (
-            "PRESS E-STOP: the spindle may be turning. Check cable, terminators and interface, "
-            "then press Reset to reopen the bus"
-        ),
+        "PRESS E-STOP: the spindle may be turning. Check cable, terminators and interface, "
+        "then press Reset to reopen the bus",
         tells=True,
     ),
     "io-silent": off(
@@ -33,10 +31,8 @@ WIRES: Entries = {
             "a fault in the module's bus cable or power supply",
             "the module restarted and its outputs dropped out",
         ),
-        (
-            "Check the module's power and cable, then press Reset and Drives On. Its "
-            "outputs were off: check clamps, brakes and valves"
-        ),
+        "Check the module's power and cable, then press Reset and Drives On. Its "
+        "outputs were off: check clamps, brakes and valves",
         tells=True,
     ),
     "output": stop(
@@ -56,10 +52,8 @@ WIRES: Entries = {
             "the driver host was stopped or has failed; the axes, spindle and outputs are off",
             "the computer ran out of memory",
         ),
-        (
-            "PRESS E-STOP: the spindle may be turning. Check the tool, then press Reset to start "
-            "a new driver host. Home any axis shown as not homed"
-        ),
+        "PRESS E-STOP: the spindle may be turning. Check the tool, then press Reset to start "
+        "a new driver host. Home any axis shown as not homed",
     ),
     "feeder-silent": off(
         512,
@@ -68,19 +62,15 @@ WIRES: Entries = {
             "the computer is overloaded; the axes stop at the end of their queued motion",
             ("the driver host has failed"),
         ),
-        (
-            "PRESS E-STOP: the spindle may be turning. Check where the tool is, then press Reset "
-            "to end the driver host and start a new one"
-        ),
+        "PRESS E-STOP: the spindle may be turning. Check where the tool is, then press Reset "
+        "to end the driver host and start a new one",
     ),
     "controller-lost": off(
         521,
         "the connection to the controller is lost",
         ("the controller cable was unplugged or damaged", "the controller's power is off"),
-        (
-            "PRESS E-STOP: the spindle may be turning. Check the cable and the power, then press "
-            "Reset to reconnect. Home any axis shown as not homed"
-        ),
+        "PRESS E-STOP: the spindle may be turning. Check the cable and the power, then press "
+        "Reset to reconnect. Home any axis shown as not homed",
     ),
     "controller-silent": off(
         522,
@@ -95,7 +85,7 @@ WIRES: Entries = {
             "the controller's reset button or reset input was activated",
             "the controller's power supply failed briefly",
         ),
-        ("The program was canceled. Check where the tool is. Press Reset, then Drives On, and home the axes"),
+        "The program was canceled. Check where the tool is. Press Reset, then Drives On, and home the axes",
     ),
     "controller-refuses": off(
         524,
@@ -104,10 +94,8 @@ WIRES: Entries = {
             "the controller's settings do not allow the programmed travel, speed or spindle command",
             "a block was corrupted during transmission",
         ),
-        (
-            "Press Reset, then Drives On. Compare the controller's settings with the machine "
-            "file ('turndesk machine check')"
-        ),
+        "Press Reset, then Drives On. Compare the controller's settings with the machine "
+        "file ('turndesk machine check')",
         tells=True,
     ),
     "controller-alarm": off(
@@ -150,10 +138,8 @@ WIRES: Entries = {
             ),
             "the computer ran out of memory",
         ),
-        (
-            "PRESS E-STOP: the spindle may be turning. Check the tool, then press Reset to "
-            "restart HAL. Home any axis shown as not homed"
-        ),
+        "PRESS E-STOP: the spindle may be turning. Check the tool, then press Reset to "
+        "restart HAL. Home any axis shown as not homed",
         tells=True,
     ),
     "hal-silent": off(
@@ -166,10 +152,8 @@ WIRES: Entries = {
             ),
             "the HAL bridge process has been stopped",
         ),
-        (
-            "PRESS E-STOP: the spindle may be turning. Check where the tool is and close other "
-            "programs, then press Reset and Drives On"
-        ),
+        "PRESS E-STOP: the spindle may be turning. Check where the tool is and close other "
+        "programs, then press Reset and Drives On",
         tells=True,
     ),
     "hal-thread": off(
@@ -179,11 +163,9 @@ WIRES: Entries = {
             "the rtapi_app process has ended; only the boards' watchdogs now control the axes",
             "an interface board does not respond to its driver because of a cable or power fault",
         ),
-        (
-            "PRESS E-STOP: the spindle may be turning. Check power and cables of the "
-            "interface boards, then press Reset to restart HAL. Home any axis shown as not "
-            "homed"
-        ),
+        "PRESS E-STOP: the spindle may be turning. Check power and cables of the "
+        "interface boards, then press Reset to restart HAL. Home any axis shown as not "
+        "homed",
     ),
     "hal-board": off(
         535,
@@ -194,10 +176,8 @@ WIRES: Entries = {
             "an EtherCAT slave is not operational, or the bus is still starting",
             "the 7I76E has lost the link to its field I/O",
         ),
-        (
-            "PRESS E-STOP: the spindle may be turning. Check the cable and the board power, then "
-            "press Reset. Home any axis shown as not homed"
-        ),
+        "PRESS E-STOP: the spindle may be turning. Check the cable and the board power, then "
+        "press Reset. Home any axis shown as not homed",
     ),
     "hal-setup": off(
         534,
@@ -206,10 +186,8 @@ WIRES: Entries = {
             "a HAL pin named in the machine file does not exist or has the wrong type",
             "a board or component does not load, or another LinuxCNC session is running",
         ),
-        (
-            "Run 'turndesk machine check' with the machine file to list every pin. Correct the "
-            "fault, then press Reset"
-        ),
+        "Run 'turndesk machine check' with the machine file to list every pin. Correct the "
+        "fault, then press Reset",
         tells=True,
     ),
 }

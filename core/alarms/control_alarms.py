@@ -15,10 +15,8 @@ CONTROL: Entries = {
         902,
         "planned path is not continuous",
         ("an internal error in TurnDesk; the axes did not move along the faulty part of the path",),
-        (
-            "Press Reset, then Drives On. Save the program and the log (F10), then restart the "
-            "program at another line"
-        ),
+        "Press Reset, then Drives On. Save the program and the log (F10), then restart the "
+        "program at another line",
     ),
     "not-safe": off(
         905,
@@ -30,7 +28,7 @@ CONTROL: Entries = {
             ),
             "an internal error in TurnDesk; see the log",
         ),
-        ("PRESS E-STOP and switch the machine off. Save the log (F10), then exit and restart TurnDesk"),
+        "PRESS E-STOP and switch the machine off. Save the log (F10), then exit and restart TurnDesk",
         tells=True,
     ),
     "control-silent": off(
@@ -47,10 +45,8 @@ CONTROL: Entries = {
             ),
             "an internal error in TurnDesk; see the log",
         ),
-        (
-            "PRESS E-STOP: the display is out of date. Close other programs and stop backups and "
-            "updates. Save the log, then exit and restart TurnDesk"
-        ),
+        "PRESS E-STOP: the display is out of date. Close other programs and stop backups and "
+        "updates. Save the log, then exit and restart TurnDesk",
         tells=True,
     ),
     "feeder-tripped": hold(
@@ -61,10 +57,8 @@ CONTROL: Entries = {
             "the computer is too slow or too hot, or its disk does not respond",
             "the screen was locked or the computer was in sleep mode",
         ),
-        (
-            "Check the tool. Read on the screen which functions will restart, then press Cycle "
-            "Start. Measure this part, because it is not counted automatically"
-        ),
+        "Check the tool. Read on the screen which functions will restart, then press Cycle "
+        "Start. Measure this part, because it is not counted automatically",
         tells=True,
     ),
     "switched-off": hold(
@@ -74,10 +68,8 @@ CONTROL: Entries = {
             "a faulty fuse, relay or terminal has changed the state of the output",
             "a pendant or the drive's own software is also switching the output",
         ),
-        (
-            "Find the cause. Read the list of outputs that will be restored, then press Cycle "
-            "Start. Measure this part, because it is not counted"
-        ),
+        "Find the cause. Read the list of outputs that will be restored, then press Cycle "
+        "Start. Measure this part, because it is not counted",
         tells=True,
     ),
     "late": hold(

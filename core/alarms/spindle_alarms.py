@@ -87,7 +87,7 @@ SPINDLE: Entries = {
             "the power supply is off",
             ("wrong baud rate or address"),
         ),
-        ("IF THE SPINDLE IS TURNING, PRESS E-STOP. Check the inverter's cable and power, then press Reset"),
+        "IF THE SPINDLE IS TURNING, PRESS E-STOP. Check the inverter's cable and power, then press Reset",
         tells=True,
     ),
     "spindle-disagrees": stop(
@@ -141,10 +141,8 @@ SPINDLE: Entries = {
             ),
             "the index pulse of the spindle encoder was not found",
         ),
-        (
-            "Before moving any axis, check whether a boring bar is still in its hole. Press "
-            "Reset, then test the spindle orientation in MDI"
-        ),
+        "Before moving any axis, check whether a boring bar is still in its hole. Press "
+        "Reset, then test the spindle orientation in MDI",
         tells=True,
     ),
     "spindle-slow": hold(
@@ -163,10 +161,8 @@ SPINDLE: Entries = {
         223,
         "spindle switch off",
         ("the spindle switch is at OFF",),
-        (
-            "Set the spindle switch to AUTO, then press Cycle Start: the spindle starts as shown, "
-            "and the program resumes. If the collet is open, press Reset and start again"
-        ),
+        "Set the spindle switch to AUTO, then press Cycle Start: the spindle starts as shown, "
+        "and the program resumes. If the collet is open, press Reset and start again",
     ),
     "spindle-has-stopped": hold(
         225,
@@ -175,10 +171,8 @@ SPINDLE: Entries = {
             "the safety circuit, the guard or the spindle drive has switched the spindle off",
             ("the driver host received no data from the control for a short time and made the machine safe"),
         ),
-        (
-            "Check the spindle and the tool. Press Cycle Start to restart the spindle as shown "
-            "on the screen and resume"
-        ),
+        "Check the spindle and the tool. Press Cycle Start to restart the spindle as shown "
+        "on the screen and resume",
     ),
     "spindle-late": hold(
         226,
@@ -187,16 +181,14 @@ SPINDLE: Entries = {
             "the load, the belt or the drive prevents the spindle from recovering its speed",
             ("the spindle override was turned down"),
         ),
-        ("Check the spindle and the tool. Press Cycle Start to try again or Reset to cancel the program"),
+        "Check the spindle and the tool. Press Cycle Start to try again or Reset to cancel the program",
     ),
     "spindle-pot": hold(
         224,
         "spindle override at 0",
         ("the spindle override is at 0",),
-        (
-            "Turn up the spindle override. Press Cycle Start to start the spindle as shown on "
-            "the screen and resume"
-        ),
+        "Turn up the spindle override. Press Cycle Start to start the spindle as shown on "
+        "the screen and resume",
     ),
 }
 

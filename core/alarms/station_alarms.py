@@ -16,19 +16,15 @@ STATION: Entries = {
         601,
         "no response from operator station",
         ("the operator station's cable is disconnected or damaged", "the power supply is off"),
-        (
-            "The buttons of the operator station do not work. Check the station's cable "
-            "and power, then press Cycle Start"
-        ),
+        "The buttons of the operator station do not work. Check the station's cable "
+        "and power, then press Cycle Start",
     ),
     "pot-jumps": hold(
         602,
         "override signal unstable",
         ("the track of the feed or spindle override pot is worn", "the override pot's cable is loose"),
-        (
-            "Turn the pot slowly through its range, and replace the pot if its signal is still "
-            "unstable. Then press Cycle Start"
-        ),
+        "Turn the pot slowly through its range, and replace the pot if its signal is still "
+        "unstable. Then press Cycle Start",
     ),
     "guard-open": hold(
         604,
@@ -40,10 +36,8 @@ STATION: Entries = {
         605,
         "pendant disconnected",
         ("the pendant was unplugged", "a fault in the pendant's cable or hub"),
-        (
-            "Plug the pendant in again, then press Cycle Start. To work without the "
-            "pendant, remove [pendant] and all pendant entries from the machine file"
-        ),
+        "Plug the pendant in again, then press Cycle Start. To work without the "
+        "pendant, remove [pendant] and all pendant entries from the machine file",
         tells=True,
     ),
     "controller-holds": hold(

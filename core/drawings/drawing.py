@@ -102,12 +102,10 @@ def within_limits(found: Iterable[Drawn], name: str) -> Iterator[Drawn]:
     for count, each in enumerate(found):
         if count >= MOST_ELEMENTS:
             raise DrawingError(
-                (
-                    Message(
-                        "{name} has more than {most_elements} lines: save only the layer with the contour.",
-                        name=name,
-                        most_elements=MOST_ELEMENTS,
-                    )
+                Message(
+                    "{name} has more than {most_elements} lines: save only the layer with the contour.",
+                    name=name,
+                    most_elements=MOST_ELEMENTS,
                 ),
                 "too-many-lines",
             )

@@ -218,14 +218,12 @@ def _not_too_steep(kept: Iterable[Element], reach: Reach) -> None:
     for each in kept:
         if each.end[0] > each.start[0] + _SAME and _rise(each) > reach.rise + 1e-3:
             raise DrawingError(
-                (
-                    Message(
-                        "The tool edge is at {rise} degrees, but the contour at Z {start} mm is at {item} "
-                        "degrees: use a tool that can turn shoulders.",
-                        rise=f"{math.degrees(reach.rise):.0f}",
-                        start=f"{each.start[1]:.3f}",
-                        item=f"{math.degrees(_rise(each)):.0f}",
-                    )
+                Message(
+                    "The tool edge is at {rise} degrees, but the contour at Z {start} mm is at {item} "
+                    "degrees: use a tool that can turn shoulders.",
+                    rise=f"{math.degrees(reach.rise):.0f}",
+                    start=f"{each.start[1]:.3f}",
+                    item=f"{math.degrees(_rise(each)):.0f}",
                 ),
                 "too-steep",
             )

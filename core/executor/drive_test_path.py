@@ -65,7 +65,7 @@ class DriveTestPath:
         longest = LONGEST if self.shape is Shape.RAMP else LARGEST
         if not 0.0 < abs(self.size) <= longest + _ROUND:
             return Message(
-                ("the travel of this test must be greater than 0 and at most {longest} mm"),
+                "the travel of this test must be greater than 0 and at most {longest} mm",
                 longest=f"{longest:g}",
             )
         if self.shape is Shape.RAMP:

@@ -253,7 +253,7 @@ class Executor:
                 context.log(
                     "starved",
                     Message(
-                        ("the control software did not run for {now} s"), now=f"{context.now - before:.2f}"
+                        "the control software did not run for {now} s", now=f"{context.now - before:.2f}"
                     ),
                 )
                 if self._control.cycle is not None:  # before what was pressed meanwhile stops or ends it
@@ -311,11 +311,9 @@ class Executor:
             if isinstance(command, _STARTS) and self._context.now - posted > _STALE:
                 self._context.log(
                     "refused",
-                    (
-                        Message(
-                            ("the {name} command arrived too late and was ignored"),
-                            name=type(command).__name__,
-                        )
+                    Message(
+                        "the {name} command arrived too late and was ignored",
+                        name=type(command).__name__,
                     ),
                 )
             else:

@@ -104,22 +104,14 @@ class _OneAxis:
         if self._lasts("pushed", error > pushed) > axis.still_time and unmoved > axis.still_time:
             raise AlarmError(
                 "standstill",
-                (
-                    Message(
-                        "{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)
-                    )
-                ),
+                Message("{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)),
             )
         beside = self._lasts("beside", error > axis.in_position) > _ARRIVES and rest > _ARRIVES
         frozen = self._lasts("frozen", error > _CLOSE * axis.count) > _FROZEN and unmoved > _FROZEN
         if beside or frozen:
             raise AlarmError(
                 "standstill",
-                (
-                    Message(
-                        "{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)
-                    )
-                ),
+                Message("{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)),
             )
 
     def sent(self) -> None:
@@ -140,9 +132,7 @@ class _OneAxis:
         if self._lasts("moved", off > axis.still_window) > axis.still_time:
             raise AlarmError(
                 "moved-unasked",
-                Message(
-                    ("{axis} has moved by {off} without a command"), axis=axis.name, off=self._words(off)
-                ),
+                Message("{axis} has moved by {off} without a command", axis=axis.name, off=self._words(off)),
             )
 
     def _note_speed(self, speed: float) -> None:
@@ -164,12 +154,10 @@ class _OneAxis:
         elif self._t - since > _UNMOVED and sent > least and abs(demand - actual) > least:
             raise AlarmError(
                 "encoder-still",
-                (
-                    Message(
-                        "{axis} was commanded to move {sent}, but its encoder does not count",
-                        axis=axis.name,
-                        sent=self._words(sent),
-                    )
+                Message(
+                    "{axis} was commanded to move {sent}, but its encoder does not count",
+                    axis=axis.name,
+                    sent=self._words(sent),
                 ),
             )
 

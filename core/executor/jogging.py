@@ -309,7 +309,7 @@ class Jogger:
         if self._short and self.testing:
             self._context.log(
                 "refused",
-                (Message("the drive test of {axis} was stopped before it was finished", axis=self.axis)),
+                Message("the drive test of {axis} was stopped before it was finished", axis=self.axis),
             )
         elif self._short:
             self._context.log(

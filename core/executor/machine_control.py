@@ -390,11 +390,9 @@ class MachineControl:
                 self.alarm(
                     AlarmError(
                         "not-safe",
-                        (
-                            Message(
-                                "a driver does not carry out the stop command for {undone}",
-                                undone=self.safe.undone,
-                            )
+                        Message(
+                            "a driver does not carry out the stop command for {undone}",
+                            undone=self.safe.undone,
                         ),
                     )
                 )

@@ -79,7 +79,7 @@ class PartCount:
             counters.made += 1
             text, line = (
                 Message(
-                    ("part {parts} completed in {seconds} s"), parts=counters.parts, seconds=f"{seconds:.2f}"
+                    "part {parts} completed in {seconds} s", parts=counters.parts, seconds=f"{seconds:.2f}"
                 ),
                 self._context.line,
             )

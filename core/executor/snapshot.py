@@ -284,5 +284,5 @@ def demand_allowed(old: State, new: State) -> None:
     """Raises TransitionError unless ``new`` may follow ``old``."""
     if new not in TRANSITIONS[old]:
         raise TransitionError(
-            Message(("the machine state cannot change from {old} to {new}"), old=old.value, new=new.value)
+            Message("the machine state cannot change from {old} to {new}", old=old.value, new=new.value)
         )

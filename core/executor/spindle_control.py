@@ -348,7 +348,7 @@ class SpindleControl:
         self._now = now
         measured = self._port.speed()
         if not math.isfinite(measured):  # the last speed stays: what is not known does not stand
-            raise AlarmError("spindle-encoder", ("the spindle drive reports a speed that is not a number"))
+            raise AlarmError("spindle-encoder", "the spindle drive reports a speed that is not a number")
         self.measured = measured
         self._radius = radius
         self._watch_standing(now)

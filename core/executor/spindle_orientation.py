@@ -35,7 +35,7 @@ class Orientation:
     def bring(self, angle: float, sense: int) -> bool:
         """Ask for an angle, once; True as soon as the spindle is held there. Raises DriverError."""
         if self._port is None:
-            raise AlarmError("spindle-orient", ("this machine cannot orient the spindle to an angle"))
+            raise AlarmError("spindle-orient", "this machine cannot orient the spindle to an angle")
         if self._asked != (angle, sense):
             self._reached = False
             self._port.orient(angle, sense)
@@ -56,10 +56,8 @@ class Orientation:
             self._reached = False
             raise AlarmError(
                 "spindle-orient",
-                (
-                    Message(
-                        "the spindle drive no longer holds the spindle at {requested} degrees",
-                        requested=f"{self._asked[0]:g}",
-                    )
+                Message(
+                    "the spindle drive no longer holds the spindle at {requested} degrees",
+                    requested=f"{self._asked[0]:g}",
                 ),
             )

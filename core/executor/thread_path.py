@@ -344,10 +344,8 @@ class ThreadRetract(NamedTuple):
         metric = self.block.modal.metric
         at = f"{z - self.block.offset_z:.3f}" if metric else f"{(z - self.block.offset_z) / _INCH:.4f}"
         return Message(
-            (
-                "{why}: the tool retracted from the thread at Z{position}, and the rest of "
-                "this thread pass is not cut"
-            ),
+            "{why}: the tool retracted from the thread at Z{position}, and the rest of "
+            "this thread pass is not cut",
             why=self.why,
             position=at,
         )

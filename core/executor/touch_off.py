@@ -170,10 +170,8 @@ class TouchOff:
             return ""
         far = self._length(abs(end - (high if command.sign > 0 else low)))
         return Message(
-            (
-                "the search for the touch point would exceed the travel of {axis} by "
-                "{distance}; jog the axis back first"
-            ),
+            "the search for the touch point would exceed the travel of {axis} by "
+            "{distance}; jog the axis back first",
             axis=command.axis,
             distance=far,
         )
@@ -239,10 +237,8 @@ class TouchOff:
             far = self._length(over)
             self.end(
                 Message(
-                    (
-                        "the axis moved {distance} past the touch point, which is more than the "
-                        "overtravel setting; check the tool setter"
-                    ),
+                    "the axis moved {distance} past the touch point, which is more than the "
+                    "overtravel setting; check the tool setter",
                     distance=far,
                 )
             )

@@ -16,7 +16,7 @@ def turns_at_axis(log: Log, line: int, turn: float) -> bool:
     angle = abs(degrees(turn))
     if angle > _TOLD:
         text = Message(
-            ("The path passes through the spindle centerline, where C turns by {angle} degrees."),
+            "The path passes through the spindle centerline, where C turns by {angle} degrees.",
             angle=f"{angle:.0f}",
         )
         log.warn(
@@ -24,9 +24,7 @@ def turns_at_axis(log: Log, line: int, turn: float) -> bool:
             1,
             "plane-centre",
             text,
-            (
-                "At the spindle centerline, the tool does not move while C turns; route the path "
-                "around the centerline."
-            ),
+            "At the spindle centerline, the tool does not move while C turns; route the path "
+            "around the centerline.",
         )
     return angle > _SAME

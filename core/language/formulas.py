@@ -135,7 +135,7 @@ class FormulaReader:
         self._depth += 1
         if self._depth > _DEEPEST:
             raise FormulaError(
-                self.at, "The formula is nested too deeply", ("Split the contour into smaller parts.")
+                self.at, "The formula is nested too deeply", "Split the contour into smaller parts."
             )
         made = self._operand()
         while (sign := self._operator()) is not None:
@@ -198,7 +198,7 @@ class FormulaReader:
         while self._grammar.separator and self._takes(self._grammar.separator):
             found.append(self._expression(0))
         if not self._takes("]"):
-            raise FormulaError(self.at, "The closing square bracket is missing", ("Write ] after the index."))
+            raise FormulaError(self.at, "The closing square bracket is missing", "Write ] after the index.")
         return found[0] if len(found) == 1 else Operation(INDICES, tuple(found), column)
 
     def _enclosed(self) -> Formula:

@@ -95,7 +95,7 @@ def load_source(path: Path, said: Dialect | None = None) -> Source:
         raise _refused(
             "file-unreadable",
             Message("{path} cannot be read: {cause}.", path=path.name, cause=reason),
-            ("Check the file name and the disk."),
+            "Check the file name and the disk.",
         ) from problem
     return source_of(path.name, data, said)
 
@@ -150,14 +150,12 @@ def _check_line_lengths(name: str, text: str) -> None:
         if len(line) > _LONGEST_LINE:
             raise _refused(
                 "line-too-long",
-                (
-                    Message(
-                        "Line {number} of {name} has {line_count} characters; the maximum is {longest_line}.",
-                        number=number,
-                        name=name,
-                        line_count=len(line),
-                        longest_line=_LONGEST_LINE,
-                    )
+                Message(
+                    "Line {number} of {name} has {line_count} characters; the maximum is {longest_line}.",
+                    number=number,
+                    name=name,
+                    line_count=len(line),
+                    longest_line=_LONGEST_LINE,
                 ),
                 "Choose a program file with line breaks.",
                 number,

@@ -144,16 +144,12 @@ def _slide_by_c(piece: Pieces, table: BlockTable, index: int) -> Pieces:
     needed, turn = way / feed * 360.0, float(end[2] - start[2])
     if abs(turn) < needed * (1.0 - _ROUNDING):
         raise MotionError(
-            (
-                Message(
-                    (
-                        "Block {number}: the move needs {needed} degrees of C rotation, but C turns "
-                        "only {turn} degrees."
-                    ),
-                    number=f"{table.n[index]:.0f}",
-                    needed=f"{needed:g}",
-                    turn=f"{abs(turn):g}",
-                )
+            Message(
+                "Block {number}: the move needs {needed} degrees of C rotation, but C turns "
+                "only {turn} degrees.",
+                number=f"{table.n[index]:.0f}",
+                needed=f"{needed:g}",
+                turn=f"{abs(turn):g}",
             ),
             "rotary-range",
         )

@@ -35,10 +35,8 @@ def constant_rates(table: BlockTable) -> FloatArray:
     _refuse(
         table,
         endless,
-        (
-            "the spindle speed has no upper limit at the spindle centerline; program a "
-            "speed limit, or set rpm_max"
-        ),
+        "the spindle speed has no upper limit at the spindle centerline; program a "
+        "speed limit, or set rpm_max",
         "no-speed-limit",
     )
     rate = np.where(table.per_rev, table.feed * rpm / 60.0, table.feed)

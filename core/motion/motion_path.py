@@ -219,13 +219,11 @@ def _demand_unbroken(table: BlockTable, end: FloatArray | None) -> None:
     if (gap > GAP).any():
         i = int(gap.max(axis=1).argmax()) + len(table.n) - len(before)
         raise MotionError(
-            (
-                Message(
-                    "Block {number} starts {max} mm from the end of the previous block. Plan the block from "
-                    "the current machine position.",
-                    number=f"{table.n[i]:.0f}",
-                    max=f"{gap.max():.4f}",
-                )
+            Message(
+                "Block {number} starts {max} mm from the end of the previous block. Plan the block from "
+                "the current machine position.",
+                number=f"{table.n[i]:.0f}",
+                max=f"{gap.max():.4f}",
             ),
             "broken-path",
         )

@@ -274,15 +274,11 @@ def _braked_into(run: _Run, allowed: FloatArray, square: float, slack: float) ->
     fits = fits[fits > 0]
     if not len(fits):
         raise MotionError(
-            (
-                Message(
-                    (
-                        "At {square} mm/s, the axes cannot stop within the remaining {sum} mm. Start "
-                        "from a position on this path, at a lower speed."
-                    ),
-                    square=f"{math.sqrt(square):.3f}",
-                    sum=f"{run.length.sum():.4f}",
-                )
+            Message(
+                "At {square} mm/s, the axes cannot stop within the remaining {sum} mm. Start "
+                "from a position on this path, at a lower speed.",
+                square=f"{math.sqrt(square):.3f}",
+                sum=f"{run.length.sum():.4f}",
             ),
             "cannot-stop",
         )
@@ -298,15 +294,11 @@ def _demand_passable(braked: FloatArray, hard: FloatArray, slack: float) -> None
     if over.any():
         i = int(over.argmax())
         raise MotionError(
-            (
-                Message(
-                    (
-                        "A speed of {braked} mm/s is too high for the rest of the path, which allows "
-                        "{hard} mm/s. Plan from a position and a speed that are valid for this path."
-                    ),
-                    braked=f"{math.sqrt(braked[i]):.3f}",
-                    hard=f"{math.sqrt(hard[i]):.3f}",
-                )
+            Message(
+                "A speed of {braked} mm/s is too high for the rest of the path, which allows "
+                "{hard} mm/s. Plan from a position and a speed that are valid for this path.",
+                braked=f"{math.sqrt(braked[i]):.3f}",
+                hard=f"{math.sqrt(hard[i]):.3f}",
             ),
             "too-fast",
         )
@@ -338,12 +330,10 @@ def _brake(path: Path, at: float, v: float, first: int) -> Profile:
 def _rest(path: Path, v: float) -> Profile:
     if v * v > 2.0 * NEAR * float(path.a.max(initial=1.0)):
         raise MotionError(
-            (
-                Message(
-                    "At {value} mm/s, the axes cannot stop at the end of the path. Start planning before the "
-                    "end of the path.",
-                    value=f"{v:.3f}",
-                )
+            Message(
+                "At {value} mm/s, the axes cannot stop at the end of the path. Start planning before the "
+                "end of the path.",
+                value=f"{v:.3f}",
             ),
             "cannot-stop-at-end",
         )
@@ -354,13 +344,11 @@ def _start(path: Path, start_s: float | None) -> float:
     at = float(path.s[0]) if start_s is None else start_s
     if not path.s[0] - NEAR <= at <= path.s[-1] + NEAR:
         raise MotionError(
-            (
-                Message(
-                    "Distance {position} mm is not on the path, which runs from {s} to {s2} mm.",
-                    position=at,
-                    s=f"{path.s[0]:.6f}",
-                    s2=f"{path.s[-1]:.6f}",
-                )
+            Message(
+                "Distance {position} mm is not on the path, which runs from {s} to {s2} mm.",
+                position=at,
+                s=f"{path.s[0]:.6f}",
+                s2=f"{path.s[-1]:.6f}",
             ),
             "not-on-path",
         )

@@ -142,14 +142,12 @@ def _settled_centre(table: BlockTable, arc: IntArray) -> FloatArray:
     if (off > RADII_DIFFER).any():
         worst = int(off.argmax())
         raise MotionError(
-            (
-                Message(
-                    "Block {number}: the arc starts {radii} mm and ends {radii2} mm from its center. Correct "
-                    "the center or the end point.",
-                    number=f"{table.n[arc[worst]]:.0f}",
-                    radii=f"{radii[0][worst]:.4f}",
-                    radii2=f"{radii[1][worst]:.4f}",
-                )
+            Message(
+                "Block {number}: the arc starts {radii} mm and ends {radii2} mm from its center. Correct "
+                "the center or the end point.",
+                number=f"{table.n[arc[worst]]:.0f}",
+                radii=f"{radii[0][worst]:.4f}",
+                radii2=f"{radii[1][worst]:.4f}",
             ),
             "arc-radii-differ",
         )

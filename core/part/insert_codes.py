@@ -216,14 +216,12 @@ class _Size:
         if not found or len(found) < len(min(known, key=len)):
             place, figures = self.place + len(found) + 1, " ".join(sorted(known))
             raise InsertCodeError(
-                (
-                    Message(
-                        "{code}: character {place} is missing; it specifies the {what}, one of: {values}",
-                        code=self.code,
-                        place=place,
-                        what=what,
-                        values=figures,
-                    )
+                Message(
+                    "{code}: character {place} is missing; it specifies the {what}, one of: {values}",
+                    code=self.code,
+                    place=place,
+                    what=what,
+                    values=figures,
                 ),
                 "character-missing",
             )
@@ -267,9 +265,7 @@ def _metric(size: _Size) -> tuple[float, float, float]:
     if size.shape != "R":
         return circle, thickness, size.take(size.left[:2], "corner radius (tenths of a mm)", _CORNER)
     if (
-        size.take(
-            size.left[:2], ("round-insert code (in place of the corner radius)"), {"00": 0.0, "M0": 1.0}
-        )
+        size.take(size.left[:2], "round-insert code (in place of the corner radius)", {"00": 0.0, "M0": 1.0})
         and edge == "12"
     ):
         circle = _METRIC_ROUND

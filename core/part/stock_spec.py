@@ -107,11 +107,9 @@ def _round_stock(text: str, kind: str, lengths: list[float], allowance: float) -
         )
     if kind == "tube" and not 0.0 < bore < diameter:
         raise StockError(
-            (
-                Message(
-                    "{text}: the bore of a tube must be more than 0 and less than its diameter",
-                    text=f"{text!r}",
-                )
+            Message(
+                "{text}: the bore of a tube must be more than 0 and less than its diameter",
+                text=f"{text!r}",
             ),
             "bore",
         )
@@ -159,10 +157,7 @@ def profile_stock(given: str, text: str, scale: float, allowance: float) -> Stoc
         raise StockError("the points of a profile must run in one direction along Z", "turns-back")
     if any(row[1] < 0.0 for row in rows) or any(len(row) > 2 and not 0.0 <= row[2] <= row[1] for row in rows):
         raise StockError(
-            (
-                "profile radii cannot be negative, and the bore radius cannot be larger than "
-                "the outside radius"
-            ),
+            "profile radii cannot be negative, and the bore radius cannot be larger than the outside radius",
             "radius",
         )
     outside: tuple[Point, ...] = tuple((row[0] * scale + allowance, row[1] * scale) for row in rows)
@@ -177,9 +172,7 @@ def _rows(text: str) -> list[list[float]]:
     import csv
 
     with failures_as(
-        lambda _error: StockError(
-            ("the profile is damaged; it must be CSV text with columns z, r"), "damaged"
-        )
+        lambda _error: StockError("the profile is damaged; it must be CSV text with columns z, r", "damaged")
     ):
         return _numbered_rows(csv.reader(io.StringIO(text)))
 
@@ -208,21 +201,17 @@ def _numbers(row: list[str], number: int) -> list[float]:
     if max(map(abs, values)) > 10.0 * _LARGEST:
         raise StockError(
             Message(
-                ("row {number} of the profile has a value that is too large; check the unit"), number=number
+                "row {number} of the profile has a value that is too large; check the unit", number=number
             ),
             "too-far-out",
         )
     if not 2 <= len(values) <= 3:
         raise StockError(
-            (
-                Message(
-                    (
-                        "row {number} of the profile has {values_count} numbers; write either z, r or "
-                        "z, r, bore in each row"
-                    ),
-                    number=number,
-                    values_count=len(values),
-                )
+            Message(
+                "row {number} of the profile has {values_count} numbers; write either z, r or "
+                "z, r, bore in each row",
+                number=number,
+                values_count=len(values),
             ),
             "number-count",
         )

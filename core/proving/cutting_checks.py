@@ -151,7 +151,7 @@ class CuttingChecks:
                 maximum=f"{most:.0f}",
             )
             self._report(
-                block, Severity.ERROR, "surface-speed", text, ("Correct S, or write G97 if S is in rpm.")
+                block, Severity.ERROR, "surface-speed", text, "Correct S, or write G97 if S is in rpm."
             )
         limited = abs(block.x) <= abs(block.x0) and abs(block.rpm) < most  # as G26 does
         if modal.css_max is None and fastest > most and not limited:
@@ -199,7 +199,7 @@ class CuttingChecks:
         if block.per_rev or block.kind in _METAL or block.modal.c_locked:
             text = "This move cuts with the collet open, so the part is not clamped."
             self._report(
-                block, Severity.ERROR, "collet-open", text, ("Close the collet with M12 before this move.")
+                block, Severity.ERROR, "collet-open", text, "Close the collet with M12 before this move."
             )
         elif block.x != block.x0 or block.z < block.z0:
             text = (
@@ -207,7 +207,7 @@ class CuttingChecks:
                 "spindle, as a bar pull does."
             )
             self._report(
-                block, Severity.WARNING, "collet-open", text, ("Close the collet with M12 before this move.")
+                block, Severity.WARNING, "collet-open", text, "Close the collet with M12 before this move."
             )
 
     def _live_tool_off(self, block: Block) -> None:
@@ -262,7 +262,7 @@ class CuttingChecks:
                 Severity.WARNING,
                 "collet-open",
                 text,
-                ("Write M12 at the end or the start of the program."),
+                "Write M12 at the end or the start of the program.",
             )
         )
 

@@ -79,12 +79,10 @@ class EdgeChecks:
             around = f"{_turning(move):.0f}°"
             yield Found(
                 "arc-loop",
-                (
-                    Message(
-                        "{tool} feeds through the part along an arc of {around}.",
-                        tool=edge_name(tool),
-                        around=around,
-                    )
+                Message(
+                    "{tool} feeds through the part along an arc of {around}.",
+                    tool=edge_name(tool),
+                    around=around,
                 ),
             )
             return
@@ -144,15 +142,11 @@ class EdgeChecks:
             deep = move.modal.length_text(beyond)
             yield Found(
                 "over-axis",
-                (
-                    Message(
-                        (
-                            "{tool} cuts {depth} past the spindle centerline, on the side opposite to "
-                            "where the tool is mounted."
-                        ),
-                        tool=edge_name(tool),
-                        depth=deep,
-                    )
+                Message(
+                    "{tool} cuts {depth} past the spindle centerline, on the side opposite to "
+                    "where the tool is mounted.",
+                    tool=edge_name(tool),
+                    depth=deep,
                 ),
             )
 
@@ -165,13 +159,11 @@ class EdgeChecks:
             text = move.modal.length_text
             yield Found(
                 "past-part-off",
-                (
-                    Message(
-                        "{tool} cuts at Z {z}, but the part ends at Z {parted_at}.",
-                        tool=edge_name(tool),
-                        z=text(z),
-                        parted_at=text(self.parted_at),
-                    )
+                Message(
+                    "{tool} cuts at Z {z}, but the part ends at Z {parted_at}.",
+                    tool=edge_name(tool),
+                    z=text(z),
+                    parted_at=text(self.parted_at),
                 ),
             )
 
@@ -213,13 +205,11 @@ class EdgeChecks:
             text = move.modal.length_text
             yield Found(
                 "drill-too-deep",
-                (
-                    Message(
-                        "{tool} goes {depth} deep, but its cutting length is only {length}.",
-                        tool=edge_name(tool),
-                        depth=text(deep),
-                        length=text(shape.length),
-                    )
+                Message(
+                    "{tool} goes {depth} deep, but its cutting length is only {length}.",
+                    tool=edge_name(tool),
+                    depth=text(deep),
+                    length=text(shape.length),
                 ),
             )
 
@@ -326,12 +316,10 @@ def _wrong_side(
     if deep > max(_WRONG_SIDE, 2.0 * shape.nose_radius):
         yield Found(
             "wrong-side",
-            (
-                Message(
-                    "{tool} cuts {depth} deep with the trailing edge of its insert.",
-                    tool=edge_name(tool),
-                    depth=text(deep),
-                )
+            Message(
+                "{tool} cuts {depth} deep with the trailing edge of its insert.",
+                tool=edge_name(tool),
+                depth=text(deep),
             ),
         )
         return

@@ -121,12 +121,10 @@ class PartFindings:
             self._add(
                 "neighbour-tool",
                 move,
-                (
-                    Message(
-                        "{other}, next to {tool} on the gang plate, collides with the stock.",
-                        other=edge_name(other),
-                        tool=edge_name(tool),
-                    )
+                Message(
+                    "{other}, next to {tool} on the gang plate, collides with the stock.",
+                    other=edge_name(other),
+                    tool=edge_name(tool),
                 ),
             )
         if move.quick:
@@ -177,12 +175,10 @@ class PartFindings:
             self._add(
                 "into-tailstock",
                 move,
-                (
-                    Message(
-                        "{tool} collides with the tailstock, {what}.",
-                        tool=edge_name(tool),
-                        what=_depth(met, move),
-                    )
+                Message(
+                    "{tool} collides with the tailstock, {what}.",
+                    tool=edge_name(tool),
+                    what=_depth(met, move),
                 ),
             )
         highest = self.clamping.max_rpm
@@ -234,10 +230,8 @@ class PartFindings:
             self._add(
                 "rubs-surface",
                 move,
-                (
-                    Message(
-                        "{tool} returns in rapid along the surface it has just turned.", tool=edge_name(tool)
-                    )
+                Message(
+                    "{tool} returns in rapid along the surface it has just turned.", tool=edge_name(tool)
                 ),
             )
 
@@ -264,7 +258,7 @@ class PartFindings:
                 "unmade-cut",
                 line,
                 n,
-                (Message("Live tool {tool} feeds but never touches material.", tool=edge_name(tool))),
+                Message("Live tool {tool} feeds but never touches material.", tool=edge_name(tool)),
             )
 
     def standing(self, line: int, n: int, tool: int) -> None:
@@ -273,7 +267,7 @@ class PartFindings:
             "cut-standing",
             line,
             n,
-            (Message("{tool} cuts while neither the tool nor the spindle turns.", tool=edge_name(tool))),
+            Message("{tool} cuts while neither the tool nor the spindle turns.", tool=edge_name(tool)),
         )
 
     def nothing_cut(self, line: int, n: int, text: str) -> None:
@@ -289,11 +283,7 @@ class PartFindings:
                 "through-part",
                 move.line,
                 move.n,
-                (
-                    Message(
-                        ("{tool} moves across the spindle centerline through the part."), tool=edge_name(tool)
-                    )
-                ),
+                Message("{tool} moves across the spindle centerline through the part.", tool=edge_name(tool)),
             )
         if not move.quick:
             self._airs.mill(move.line, move.n, tool, lambda: bool(met) or touches())
@@ -305,7 +295,7 @@ class PartFindings:
                 "rapid-into-stock",
                 move.line,
                 move.n,
-                (Message("A live tool runs into material in rapid at {place}.", place=where)),
+                Message("A live tool runs into material in rapid at {place}.", place=where),
             )
 
     def _over_axis(self, move: MillMove) -> bool:
@@ -330,12 +320,10 @@ class PartFindings:
             self._add(
                 "part-off-left",
                 move,
-                (
-                    Message(
-                        "{tool} parts off down to {thick}, but the part is not cut off.",
-                        tool=edge_name(tool),
-                        thick=thick,
-                    )
+                Message(
+                    "{tool} parts off down to {thick}, but the part is not cut off.",
+                    tool=edge_name(tool),
+                    thick=thick,
                 ),
             )
         self._left = None

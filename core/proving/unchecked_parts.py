@@ -33,7 +33,7 @@ def _phrases(
     used = list(used)
     if without := [n for n in used if n and n not in shapes]:
         yield Message(
-            ("{without}: tool holder, edge length and hand of the tool not defined"), without=_names(without)
+            "{without}: tool holder, edge length and hand of the tool not defined", without=_names(without)
         )
     if short := [n for n in used if n in shapes and shapes[n].kind in _DEEP and not shapes[n].length]:
         yield Message("{short}: maximum tool depth (unknown: no flute length defined)", short=_names(short))
@@ -47,10 +47,7 @@ def _phrases(
     if gang and (beside := sorted(gang.keys() - shapes.keys())):
         yield (
             Message(
-                (
-                    "{tools}: collisions on the gang plate while a neighboring tool cuts (no tool "
-                    "shape defined)"
-                ),
+                "{tools}: collisions on the gang plate while a neighboring tool cuts (no tool shape defined)",
                 tools=_names(beside),
             )
         )

@@ -34,13 +34,13 @@ def availability(shift: Span, running: Iterable[Span]) -> Availability:
     """
     if shift.end <= shift.start:
         raise QualityError(
-            ("the end of a shift must be later than its start; correct the shift times"), "shift-times"
+            "the end of a shift must be later than its start; correct the shift times", "shift-times"
         )
     producing, reached = 0.0, shift.start
     for span in sorted(running):
         if span.end < span.start:
             raise QualityError(
-                ("the end of a cycle is earlier than its start because the clock was set back"),
+                "the end of a cycle is earlier than its start because the clock was set back",
                 "clock-set-back",
             )
         start, end = max(span.start, reached), min(span.end, shift.end)

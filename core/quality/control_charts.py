@@ -106,7 +106,7 @@ def average_and_range(samples: npt.ArrayLike) -> ChartPair:
     if len(table) < 2:
         raise QualityError(
             Message(
-                ("an X-bar chart needs at least 2 complete samples of {shape} parts; measure more parts"),
+                "an X-bar chart needs at least 2 complete samples of {shape} parts; measure more parts",
                 shape=table.shape[1],
             ),
             "too-few-readings",
@@ -128,7 +128,7 @@ def individuals(values: Sequence[float]) -> ChartPair:
     _demand_finite(points)
     if len(points) < 2:
         raise QualityError(
-            ("an individuals chart needs at least 2 values; measure more parts"), "too-few-readings"
+            "an individuals chart needs at least 2 values; measure more parts", "too-few-readings"
         )
     factors = CONSTANTS[2]
     moving = np.abs(np.diff(points))

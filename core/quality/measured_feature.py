@@ -90,9 +90,7 @@ def check_feature(feature: Feature) -> None:
         )
     if not all(map(math.isfinite, (feature.nominal, feature.low, feature.high))):
         raise QualityError(
-            Message(
-                ("{feature}: the nominal dimension and the limits must be numbers"), feature=feature.name
-            ),
+            Message("{feature}: the nominal dimension and the limits must be numbers", feature=feature.name),
             "not-a-number",
         )
     if not 0.0 < feature.nominal <= SIZE_MOST:
@@ -106,11 +104,9 @@ def check_feature(feature: Feature) -> None:
         )
     if feature.low >= feature.high:
         raise QualityError(
-            (
-                Message(
-                    "{feature}: the lower deviation must be below the upper deviation; correct one of them",
-                    feature=feature.name,
-                )
+            Message(
+                "{feature}: the lower deviation must be below the upper deviation; correct one of them",
+                feature=feature.name,
             ),
             "limits-reversed",
         )
@@ -131,28 +127,20 @@ def check_feature(feature: Feature) -> None:
         )
     if feature.grows not in {1, -1}:
         raise QualityError(
-            (
-                Message(
-                    (
-                        "{feature}: the direction must be +1 (a positive correction makes the "
-                        "dimension larger) or -1 (a positive correction makes the dimension smaller)"
-                    ),
-                    feature=feature.name,
-                )
+            Message(
+                "{feature}: the direction must be +1 (a positive correction makes the "
+                "dimension larger) or -1 (a positive correction makes the dimension smaller)",
+                feature=feature.name,
             ),
             "direction",
         )
     if not 0 <= feature.every <= EVERY_MOST:
         raise QualityError(
-            (
-                Message(
-                    (
-                        "{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for "
-                        "no sampling plan"
-                    ),
-                    feature=feature.name,
-                    every_most=EVERY_MOST,
-                )
+            Message(
+                "{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for "
+                "no sampling plan",
+                feature=feature.name,
+                every_most=EVERY_MOST,
             ),
             "interval",
         )

@@ -94,22 +94,18 @@ def check_life(life: ToolLife) -> None:
         )
     if not (math.isfinite(life.limit_seconds) and 0.0 <= life.limit_seconds <= SECONDS_MOST):
         raise QualityError(
-            (
-                Message(
-                    "T{number}: tool life must be 0 to {seconds_most} cutting minutes; 0 means no limit",
-                    number=life.number,
-                    seconds_most=f"{SECONDS_MOST / 60.0:g}",
-                )
+            Message(
+                "T{number}: tool life must be 0 to {seconds_most} cutting minutes; 0 means no limit",
+                number=life.number,
+                seconds_most=f"{SECONDS_MOST / 60.0:g}",
             ),
             "limit-in-minutes",
         )
     if not 0.0 < life.warn <= 1.0:
         raise QualityError(
-            (
-                Message(
-                    ("T{number}: the tool-life warning must be set between 1 and 100 % of the tool life"),
-                    number=life.number,
-                )
+            Message(
+                "T{number}: the tool-life warning must be set between 1 and 100 % of the tool life",
+                number=life.number,
             ),
             "warning-share",
         )

@@ -62,20 +62,16 @@ def propose(
     newest = np.asarray(readings[-rule.last :], dtype=np.float64)
     if not np.isfinite(newest).all():
         raise QualityError(
-            Message(("{feature}: a reading is not a number; delete that reading"), feature=feature.name),
+            Message("{feature}: a reading is not a number; delete that reading", feature=feature.name),
             "not-a-number",
         )
     if float(np.abs(newest - feature.middle).max()) > _FAR * feature.width:
         raise QualityError(
-            (
-                Message(
-                    (
-                        "{feature}: a reading is off by more than {distance} times the tolerance, "
-                        "which is too large for tool wear; measure again"
-                    ),
-                    feature=feature.name,
-                    distance=f"{_FAR:g}",
-                )
+            Message(
+                "{feature}: a reading is off by more than {distance} times the tolerance, "
+                "which is too large for tool wear; measure again",
+                feature=feature.name,
+                distance=f"{_FAR:g}",
             ),
             "reading-too-far",
         )
@@ -83,7 +79,7 @@ def propose(
     deviation = mean - feature.middle
     if abs(deviation) <= rule.dead * feature.width + 1e-12:
         return _nothing(
-            feature, len(newest), mean, ("the deviation is within the dead band, so no correction is needed")
+            feature, len(newest), mean, "the deviation is within the dead band, so no correction is needed"
         )
     change = -feature.grows * _whole_steps(rule.step * deviation, resolution)
     if change == 0.0:
@@ -91,20 +87,15 @@ def propose(
             feature,
             len(newest),
             mean,
-            ("the correction would be less than the smallest offset step, so no correction is needed"),
+            "the correction would be less than the smallest offset step, so no correction is needed",
         )
     at_offset = change / 2.0 if feature.axis == "x" else change
     if abs(at_offset) > WEAR_MOST:
         raise QualityError(
-            (
-                Message(
-                    (
-                        "{feature}: a correction of {change} mm is too large to be tool wear; touch "
-                        "the tool off"
-                    ),
-                    feature=feature.name,
-                    change=f"{change:.4f}",
-                )
+            Message(
+                "{feature}: a correction of {change} mm is too large to be tool wear; touch the tool off",
+                feature=feature.name,
+                change=f"{change:.4f}",
             ),
             "correction-too-large",
         )

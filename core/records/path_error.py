@@ -95,20 +95,15 @@ def path_error(
 def _check(programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray) -> None:
     if len(measured) < LEAST or len(programmed) < 2:
         raise AnalysisError(
-            (
-                Message(
-                    (
-                        "a path error plot needs at least {minimum} samples of a path; record while a "
-                        "program runs"
-                    ),
-                    minimum=LEAST,
-                )
+            Message(
+                "a path error plot needs at least {minimum} samples of a path; record while a program runs",
+                minimum=LEAST,
             ),
             "too-few-samples",
         )
     if len(lines) != len(programmed) or len(due) != len(measured):
         raise AnalysisError(
-            ("the number of path points and the number of line numbers differ"), "lengths-differ"
+            "the number of path points and the number of line numbers differ", "lengths-differ"
         )
     if not (np.isfinite(programmed).all() and np.isfinite(measured).all()):
         raise AnalysisError(UNTOLD, "no-positions")
@@ -125,14 +120,9 @@ def of_samples(
     """
     if len(demand) < LEAST:
         raise AnalysisError(
-            (
-                Message(
-                    (
-                        "a path error plot needs at least {minimum} samples of a path; record while a "
-                        "program runs"
-                    ),
-                    minimum=LEAST,
-                )
+            Message(
+                "a path error plot needs at least {minimum} samples of a path; record while a program runs",
+                minimum=LEAST,
             ),
             "too-few-samples",
         )

@@ -98,13 +98,13 @@ def checked_record(record: Record) -> Record:
     if not 0.0 <= record.started <= _LATEST:
         raise UnsoundError(
             Message(
-                ("the start time of the scope record, {started} s after January 1, 1970, is not valid"),
+                "the start time of the scope record, {started} s after January 1, 1970, is not valid",
                 started=f"{record.started:g}",
             )
         )
     if not 0.0 <= record.rate < np.inf:
         raise UnsoundError(
-            Message(("the sampling rate of {rate} samples per second is not valid"), rate=f"{record.rate:g}")
+            Message("the sampling rate of {rate} samples per second is not valid", rate=f"{record.rate:g}")
         )
     if not all(text.isprintable() for channel in record.channels for text in channel[:2]):
         raise UnsoundError("a channel name is not text")

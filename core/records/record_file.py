@@ -106,15 +106,11 @@ def _read(path: Path, data: io.BytesIO) -> Record:
         version = told["version"]
         if version > _VERSION:
             raise RecordError(
-                (
-                    Message(
-                        (
-                            "{path} has file version {version}, which this TurnDesk cannot read; "
-                            "open it with a newer TurnDesk"
-                        ),
-                        path=path,
-                        version=version,
-                    )
+                Message(
+                    "{path} has file version {version}, which this TurnDesk cannot read; "
+                    "open it with a newer TurnDesk",
+                    path=path,
+                    version=version,
                 ),
                 "newer-version",
             )

@@ -209,15 +209,11 @@ def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found
     _, version, length, head = _START.unpack(start)
     if version > _VERSION:
         raise RecordError(
-            (
-                Message(
-                    (
-                        "{path} has file version {version}, which this TurnDesk cannot read; "
-                        "open it with a newer TurnDesk"
-                    ),
-                    path=path,
-                    version=version,
-                )
+            Message(
+                "{path} has file version {version}, which this TurnDesk cannot read; "
+                "open it with a newer TurnDesk",
+                path=path,
+                version=version,
             ),
             "newer-version",
         )
@@ -248,7 +244,7 @@ def _rings(path: Path, found: _Found, read: Callable[[int], bytes]) -> Iterator[
     for room, width in zip(found.rooms, widths, strict=True):
         size = room * (width + 1) * 8
         if not 0 < size <= MOST_BYTES:
-            raise UnsoundError(Message(("the row count in the file header, {room}, is not valid"), room=room))
+            raise UnsoundError(Message("the row count in the file header, {room}, is not valid", room=room))
         data = read(size)
         if len(data) != size:
             raise RecordError(

@@ -46,12 +46,10 @@ def step_response(times: FloatArray, request: FloatArray, response: FloatArray, 
     way = float(request[-1] - request[0])
     if abs(way) <= 2.0 * band:
         raise AnalysisError(
-            (
-                Message(
-                    ("a step of {step} is too small for the in-position window of {band}; use a larger step"),
-                    step=f"{abs(way):.4f}",
-                    band=f"{band:.4f}",
-                )
+            Message(
+                "a step of {step} is too small for the in-position window of {band}; use a larger step",
+                step=f"{abs(way):.4f}",
+                band=f"{band:.4f}",
             ),
             "step-too-small",
         )
@@ -151,14 +149,9 @@ def ramp_response(times: FloatArray, request: FloatArray, response: FloatArray) 
 def _check(times: FloatArray, request: FloatArray, response: FloatArray) -> None:
     if len(times) < LEAST:
         raise AnalysisError(
-            (
-                Message(
-                    (
-                        "a response measurement needs at least {minimum} samples, but this driver "
-                        "supplies fewer"
-                    ),
-                    minimum=LEAST,
-                )
+            Message(
+                "a response measurement needs at least {minimum} samples, but this driver supplies fewer",
+                minimum=LEAST,
             ),
             "too-few-samples",
         )

@@ -100,10 +100,8 @@ def find_thread(
         runs = _alike(runs)
     if not runs:
         raise AnalysisError(
-            (
-                "this time range does not contain a thread pass, because no axis moves at a "
-                "steady speed for two spindle revolutions"
-            ),
+            "this time range does not contain a thread pass, because no axis moves at a "
+            "steady speed for two spindle revolutions",
             "no-pass",
         )
     if lead is None:

@@ -91,23 +91,19 @@ def reach(filled: Filled, setting: Setting, deep: float, word: str) -> Iterator[
     if shape.length and deep > shape.length / setting.mm + 1e-9:
         yield Refusal(
             word,
-            (
-                Message(
-                    "Depth {depth} is more than the reach of {name}, which is {length}. Use a longer blade.",
-                    depth=f"{deep:.4g}",
-                    name=name,
-                    length=f"{shape.length / setting.mm:.4g}",
-                )
+            Message(
+                "Depth {depth} is more than the reach of {name}, which is {length}. Use a longer blade.",
+                depth=f"{deep:.4g}",
+                name=name,
+                length=f"{shape.length / setting.mm:.4g}",
             ),
         )
     if shape.width and abs(shape.width / setting.mm - wide) > 0.001 / setting.mm * 25.4:
         yield Refusal(
             "WIDE",
-            (
-                Message(
-                    "The blade width in the tool data of {name} is {width}: enter that width.",
-                    name=name,
-                    width=f"{shape.width / setting.mm:.4g}",
-                )
+            Message(
+                "The blade width in the tool data of {name} is {width}: enter that width.",
+                name=name,
+                width=f"{shape.width / setting.mm:.4g}",
             ),
         )

@@ -200,10 +200,8 @@ def _speed_sketch(_filled: Filled) -> Sketch:
 
 SPEED = Shape(
     "FEED AND SPEED",
-    (
-        "rpm, surface speed, feed per revolution and feed per minute: TurnDesk calculates "
-        "the values that you leave empty"
-    ),
+    "rpm, surface speed, feed per revolution and feed per minute: TurnDesk calculates "
+    "the values that you leave empty",
     (
         Field("MATERIAL", "MATERIAL", Kind.CHOICE, "STEEL", tuple(MATERIALS)),
         Field("WORK", "WORK", Kind.CHOICE, Work.TURN.upper(), tuple(each.upper() for each in Work)),
@@ -275,7 +273,7 @@ def _thread_says(filled: Filled, setting: Setting) -> tuple[str, ...]:
     start = filled.n("CREST") - outwards * 2.0 * first
     return (
         Message(
-            ("thread depth {depth} per side, depth of the first pass {first}"),
+            "thread depth {depth} per side, depth of the first pass {first}",
             depth=plain(deep, 4),
             first=plain(first, 4),
         ),

@@ -95,7 +95,7 @@ def _read_sinumerik(lines: Iterable[str], setting: Setting) -> tuple[Row, ...] |
 def contour_refusals(rows: Sequence[Row]) -> Iterator[Refusal]:
     """What is wrong with a table of points, row by row."""
     if len(rows) < 2:
-        yield Refusal(row_word(len(rows) + 1), ("A contour needs at least two points: enter the next point."))
+        yield Refusal(row_word(len(rows) + 1), "A contour needs at least two points: enter the next point.")
         return
     if rows[0].x is None or rows[0].z is None:
         yield Refusal(row_word(1), "The first point is the start of the contour: enter X and Z.")
@@ -109,11 +109,9 @@ def contour_refusals(rows: Sequence[Row]) -> Iterator[Refusal]:
         number = next(n for n, (_, r) in enumerate(there, 1) if r < -SAME)
         yield Refusal(
             row_word(number),
-            (
-                Message(
-                    ("Point {number} is past the spindle centerline: X is a diameter and must be 0 or more."),
-                    number=number,
-                )
+            Message(
+                "Point {number} is past the spindle centerline: X is a diameter and must be 0 or more.",
+                number=number,
             ),
         )
 
@@ -123,24 +121,18 @@ def _row(row: Row, number: int, begin: Point, end: Point) -> Iterator[Refusal]:
     if chord < SAME:
         yield Refusal(
             row_word(number),
-            (
-                Message(
-                    "Point {number} is the same as the previous point: enter another X or Z.", number=number
-                )
-            ),
+            Message("Point {number} is the same as the previous point: enter another X or Z.", number=number),
         )
     elif row.arc and chord > 2.0 * abs(row.arc) + _OFF:
         yield Refusal(
             row_word(number),
-            (
-                Message(
-                    "The arc to point {number} spans {chord}, but with radius {arc} it can span only "
-                    "{arc2}: enter a larger radius.",
-                    number=number,
-                    chord=f"{chord:.4f}",
-                    arc=f"{abs(row.arc):g}",
-                    arc2=f"{2 * abs(row.arc):.4f}",
-                )
+            Message(
+                "The arc to point {number} spans {chord}, but with radius {arc} it can span only "
+                "{arc2}: enter a larger radius.",
+                number=number,
+                chord=f"{chord:.4f}",
+                arc=f"{abs(row.arc):g}",
+                arc2=f"{2 * abs(row.arc):.4f}",
             ),
         )
 
@@ -149,10 +141,8 @@ def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) 
     if row.chamfer < 0 or row.radius < 0:
         yield Refusal(
             row_word(number),
-            (
-                Message(
-                    "The corner at point {number} has a size below 0: enter the correct size.", number=number
-                )
+            Message(
+                "The corner at point {number} has a size below 0: enter the correct size.", number=number
             ),
         )
     size = row.chamfer or row.radius
@@ -161,19 +151,15 @@ def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) 
     if number == len(rows):
         yield Refusal(
             row_word(number),
-            (Message("The corner at point {number} needs a line after it: add a point.", number=number)),
+            Message("The corner at point {number} needs a line after it: add a point.", number=number),
         )
     elif row.arc or rows[number].arc:
         yield Refusal(
             row_word(number),
-            (
-                Message(
-                    (
-                        "Point {number} has a chamfer or radius next to an arc. The control can cut a "
-                        "chamfer or radius only between two straight lines."
-                    ),
-                    number=number,
-                )
+            Message(
+                "Point {number} has a chamfer or radius next to an arc. The control can cut a "
+                "chamfer or radius only between two straight lines.",
+                number=number,
             ),
         )
     else:
@@ -184,16 +170,12 @@ def _corner(rows: Sequence[Row], there: Sequence[Point], number: int, row: Row) 
         if back > room + SAME:
             yield Refusal(
                 row_word(number),
-                (
-                    Message(
-                        (
-                            "The corner at point {number} needs {back} of line length, but the line is "
-                            "only {room} long: make the corner smaller."
-                        ),
-                        number=number,
-                        back=f"{back:.4f}",
-                        room=f"{room:.4f}",
-                    )
+                Message(
+                    "The corner at point {number} needs {back} of line length, but the line is "
+                    "only {room} long: make the corner smaller.",
+                    number=number,
+                    back=f"{back:.4f}",
+                    room=f"{room:.4f}",
                 ),
             )
 

@@ -40,27 +40,23 @@ def _drill_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if start >= deep:
         yield Refusal(
             "START",
-            (
-                Message(
-                    "The hole starts at a depth of {start} and ends at {depth}, so nothing is drilled.",
-                    start=f"{start:g}",
-                    depth=f"{deep:g}",
-                )
+            Message(
+                "The hole starts at a depth of {start} and ends at {depth}, so nothing is drilled.",
+                start=f"{start:g}",
+                depth=f"{deep:g}",
             ),
         )
     if peck and peck > deep - start + setting.near:
         yield Refusal(
             "PECK",
-            (Message("A peck of {peck} is deeper than the hole: enter 0 for no pecking.", peck=f"{peck:g}")),
+            Message("A peck of {peck} is deeper than the hole: enter 0 for no pecking.", peck=f"{peck:g}"),
         )
     if not peck and deep - start > _DEEP * across:
         yield Refusal(
             "PECK",
-            (
-                Message(
-                    "Drilling {depth} diameters deep without pecking clogs the drill: enter a peck depth.",
-                    depth=f"{(deep - start) / across:.1f}",
-                )
+            Message(
+                "Drilling {depth} diameters deep without pecking clogs the drill: enter a peck depth.",
+                depth=f"{(deep - start) / across:.1f}",
             ),
         )
     shape = setting.tool(filled.n("T"))
@@ -69,12 +65,10 @@ def _drill_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if shape is not None and shape.diameter and abs(shape.diameter / setting.mm - across) > 1e-4:
         yield Refusal(
             "DIA",
-            (
-                Message(
-                    "The drill diameter in the tool data of {name} is {diameter}: enter that diameter.",
-                    name=name,
-                    diameter=f"{shape.diameter / setting.mm:.4g}",
-                )
+            Message(
+                "The drill diameter in the tool data of {name} is {diameter}: enter that diameter.",
+                name=name,
+                diameter=f"{shape.diameter / setting.mm:.4g}",
             ),
         )
     yield from too_fast(filled, setting)

@@ -54,23 +54,19 @@ def _part_checks(filled: Filled, setting: Setting) -> Iterator[Refusal]:
     if end >= top:
         yield Refusal(
             "TO",
-            (
-                Message(
-                    "Parting off starts at diameter {top} and runs inward: end diameter {end} must be less.",
-                    top=f"{top:g}",
-                    end=f"{end:g}",
-                )
+            Message(
+                "Parting off starts at diameter {top} and runs inward: end diameter {end} must be less.",
+                top=f"{top:g}",
+                end=f"{end:g}",
             ),
         )
     for word in ("BACK", "NEXT"):
         if filled.n(word) >= (top - end) / 2.0 > 0.0:
             yield Refusal(
                 word,
-                (
-                    Message(
-                        "A chamfer of {word} removes the whole wall: enter a smaller chamfer.",
-                        word=f"{filled.n(word):g}",
-                    )
+                Message(
+                    "A chamfer of {word} removes the whole wall: enter a smaller chamfer.",
+                    word=f"{filled.n(word):g}",
                 ),
             )
     if filled.n("BACK") > filled.n("LONG"):

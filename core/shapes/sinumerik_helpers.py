@@ -84,7 +84,7 @@ SINUMERIK_ROUGH = replace(ROUGH, name="CYCLE95 ROUGHING", cut=_rough, fields=(*R
 SINUMERIK_THREADING = replace(
     THREADING,
     name="THREAD CYCLE97",
-    use=("calls the tool, leads in, and cuts passes with a constant chip cross-section"),
+    use="calls the tool, leads in, and cuts passes with a constant chip cross-section",
     cut=_thread,
 )
 SINUMERIK_BAR_FEED = replace(BAR_FEED, cut=_bar_feed, checks=_bar_feed_checks, ends=SINUMERIK_LOOP.ends)

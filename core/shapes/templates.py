@@ -85,7 +85,7 @@ def _loop_sketch(_filled: Filled) -> Sketch:
 
 START = Shape(
     "START OF PROGRAM",
-    ("units, diameter programming, rapid rates, coolant"),
+    "units, diameter programming, rapid rates, coolant",
     HEAD.fields,
     HEAD.cut,
     HEAD.sketch,

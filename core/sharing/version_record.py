@@ -49,7 +49,7 @@ def read_version(name: str, record: bytes) -> SharedVersion:
     size, follows = values.get("size"), values.get("follows")
     if values.get("format") != FORMAT or not isinstance(size, int) or not isinstance(follows, list):
         raise RecordError(
-            ("the record is in a format that this TurnDesk version does not support"), "not-this-format"
+            "the record is in a format that this TurnDesk version does not support", "not-this-format"
         )
     if not all(isinstance(each, str) and each.isprintable() for each in texts) or not all(
         map(is_id, follows)

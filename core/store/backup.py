@@ -220,12 +220,10 @@ def _unwritable(target: Path, error: Exception) -> StoreError:
     if isinstance(error, OSError | sqlite3.Error) and cause_of(target, error) in {Cause.FULL, Cause.LOCKED}:
         return why(target, error)
     return StoreError(
-        (
-            Message(
-                "{target} cannot be written ({error}); check the folder, its free space and its permissions",
-                target=target,
-                error=said(error),
-            )
+        Message(
+            "{target} cannot be written ({error}); check the folder, its free space and its permissions",
+            target=target,
+            error=said(error),
         ),
         "cannot-write",
     )

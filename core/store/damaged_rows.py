@@ -28,10 +28,8 @@ def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
             connection.execute(f"INSERT INTO {table} VALUES ({marks})", row_sums.readable(row))
             told.append(
                 Message(
-                    (
-                        "{table} was damaged in the data store; the last values entered were restored "
-                        "from the history"
-                    ),
+                    "{table} was damaged in the data store; the last values entered were restored "
+                    "from the history",
                     table=named(table, key),
                 )
             )
@@ -50,10 +48,8 @@ def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
     row = row_sums.row(connection, "part_features", feature)
     which = Message("{row} {row2}", row=_shown(row[1]), row2=_shown(row[2])) if row else feature
     told = Message(
-        (
-            "{which} was damaged in the data store and was removed from the list of "
-            "measured features; enter the feature again"
-        ),
+        "{which} was damaged in the data store and was removed from the list of "
+        "measured features; enter the feature again",
         which=named("part_features", which),
     )
     every = ", ".join(
@@ -74,7 +70,7 @@ def _measure_no_more(connection: sqlite3.Connection, feature: Key) -> str:
     gone = connection.execute("DELETE FROM part_readings WHERE feature = ?", (feature,)).rowcount
     connection.execute("DELETE FROM part_features WHERE id = ?", (feature,))
     return Message(
-        ("{details}. The readings of this feature (number of readings: {gone}) were also lost"),
+        "{details}. The readings of this feature (number of readings: {gone}) were also lost",
         details=told,
         gone=gone,
     )

@@ -61,12 +61,9 @@ def check_header(path: Path) -> None:
         raise why(path, error) from error
     if len(header) < 100 or not header.startswith(_MAGIC):
         raise StoreError(
-            (
-                Message(
-                    "{path} is not a database and was not changed. Restore a backup: turndesk store "
-                    "restore FILE",
-                    path=path,
-                )
+            Message(
+                "{path} is not a database and was not changed. Restore a backup: turndesk store restore FILE",
+                path=path,
             ),
             "not-a-database",
         )
@@ -87,12 +84,10 @@ def check_kind(path: Path) -> None:
         if not (isinstance(error, FileNotFoundError) and path.is_symlink()):
             raise why(path, error) from error
         raise StoreError(
-            (
-                Message(
-                    "{path} is a link to {readlink}, which does not exist; mount its disk, then try again",
-                    path=path,
-                    readlink=path.readlink(),
-                )
+            Message(
+                "{path} is a link to {readlink}, which does not exist; mount its disk, then try again",
+                path=path,
+                readlink=path.readlink(),
             ),
             "link-without-target",
         ) from error
@@ -103,12 +98,10 @@ def check_kind(path: Path) -> None:
         ) from error
     if not stat.S_ISREG(mode):
         raise StoreError(
-            (
-                Message(
-                    "{path} is a folder, a pipe or a device, not a file, and was not changed. Move it to "
-                    "another location",
-                    path=path,
-                )
+            Message(
+                "{path} is a folder, a pipe or a device, not a file, and was not changed. Move it to "
+                "another location",
+                path=path,
             ),
             "not-a-file",
         )
@@ -193,14 +186,12 @@ def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
         raise why(path, error) from error
     if version > newest:
         raise StoreError(
-            (
-                Message(
-                    "{path} was written by a newer TurnDesk (store version {version}, this one supports "
-                    "{newest}) and was not changed. Use the newer TurnDesk",
-                    path=path,
-                    version=version,
-                    newest=newest,
-                )
+            Message(
+                "{path} was written by a newer TurnDesk (store version {version}, this one supports "
+                "{newest}) and was not changed. Use the newer TurnDesk",
+                path=path,
+                version=version,
+                newest=newest,
             ),
             "newer-version",
         )
@@ -251,13 +242,11 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
             if connection.in_transaction:
                 connection.rollback()
             raise StoreError(
-                (
-                    Message(
-                        "the data store cannot be upgraded to version {number} and stays at the previous "
-                        "version: {connection}",
-                        number=number,
-                        connection=why(_path_of(connection), error),
-                    )
+                Message(
+                    "the data store cannot be upgraded to version {number} and stays at the previous "
+                    "version: {connection}",
+                    number=number,
+                    connection=why(_path_of(connection), error),
                 ),
                 "migration-failed",
             ) from error
@@ -335,13 +324,11 @@ class WriterLock:
             os.close(self._file)
             who = Message(" (process {owner})", owner=owner) if owner else ""
             raise StoreError(
-                (
-                    Message(
-                        "the data store in {folder} is in use by another TurnDesk{who}; close that TurnDesk, "
-                        "or make the entry there",
-                        folder=folder,
-                        who=who,
-                    )
+                Message(
+                    "the data store in {folder} is in use by another TurnDesk{who}; close that TurnDesk, "
+                    "or make the entry there",
+                    folder=folder,
+                    who=who,
                 ),
                 "in-use",
             ) from error
@@ -461,16 +448,12 @@ def check_log(path: Path, reader: sqlite3.Connection) -> None:
     lost = _lost_changes(path, reader)
     if lost:
         raise StoreError(
-            (
-                Message(
-                    (
-                        "{path}: the log of this database is damaged, and {lost} cannot be read. Start "
-                        "turndesk once to save a copy of the log and continue with the earlier data, "
-                        "or restore a backup"
-                    ),
-                    path=path,
-                    lost=_changes(lost),
-                )
+            Message(
+                "{path}: the log of this database is damaged, and {lost} cannot be read. Start "
+                "turndesk once to save a copy of the log and continue with the earlier data, "
+                "or restore a backup",
+                path=path,
+                lost=_changes(lost),
             ),
             "damaged-log",
         )
@@ -534,13 +517,10 @@ def make_folder(folder: Path) -> None:
         if cause_of(folder, error) is Cause.FULL:
             raise why(folder, error) from error
         raise StoreError(
-            (
-                Message(
-                    "the folder {folder} cannot be created ({cause}); set TURNDESK_HOME to a folder "
-                    "that you own",
-                    folder=folder,
-                    cause=error.strerror,
-                )
+            Message(
+                "the folder {folder} cannot be created ({cause}); set TURNDESK_HOME to a folder that you own",
+                folder=folder,
+                cause=error.strerror,
             ),
             "cannot-make-folder",
         ) from error
@@ -553,15 +533,11 @@ def _refuse_lost_file(path: Path) -> None:
     if _has_log(path):
         log, _ = companions(path)
         raise StoreError(
-            (
-                Message(
-                    (
-                        "{path} is missing, but its log {log} still exists; put the file back, or move "
-                        "the log to another folder"
-                    ),
-                    path=path,
-                    log=log.name,
-                )
+            Message(
+                "{path} is missing, but its log {log} still exists; put the file back, or move "
+                "the log to another folder",
+                path=path,
+                log=log.name,
             ),
             "database-gone",
         )

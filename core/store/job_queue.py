@@ -140,10 +140,8 @@ def begin(connection: sqlite3.Connection, job: int) -> None:
     row = next((row for row in jobs(connection) if row.id == job), None)
     if row is None:
         raise StoreError(
-            (
-                "the data of this job does not match its checksum; clear the job from the "
-                "queue and enter the job again"
-            ),
+            "the data of this job does not match its checksum; clear the job from the "
+            "queue and enter the job again",
             "damaged-job",
         )
     connection.execute("UPDATE jobs SET base = ? WHERE id = ?", (row.counted, job))

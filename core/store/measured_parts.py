@@ -89,7 +89,7 @@ def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
     if not done.rowcount:
         raise StoreError(
             Message(
-                ("{row} is not in the list of measured features anymore; enter the feature again"),
+                "{row} is not in the list of measured features anymore; enter the feature again",
                 row=row.name,
             ),
             "feature-gone",

@@ -169,28 +169,19 @@ def _check_edge(kind: Kind, number: int, rows: Mapping[int, Row], wanted: Mappin
         return
     if tool_of(number) not in rows:
         raise StoreError(
-            (
-                Message(
-                    (
-                        "the offset of {number} has never been set; set cutting edge D1 of this tool "
-                        "before {number2}"
-                    ),
-                    number=edge_name(tool_of(number)),
-                    number2=edge_name(number),
-                )
+            Message(
+                "the offset of {number} has never been set; set cutting edge D1 of this tool "
+                "before {number2}",
+                number=edge_name(tool_of(number)),
+                number2=edge_name(number),
             ),
             "never-set",
         )
     if wanted.get("master"):
         raise StoreError(
-            (
-                Message(
-                    (
-                        "{number} is an additional cutting edge; set cutting edge D1 of this tool as "
-                        "the master"
-                    ),
-                    number=edge_name(number),
-                )
+            Message(
+                "{number} is an additional cutting edge; set cutting edge D1 of this tool as the master",
+                number=edge_name(number),
             ),
             "not-first-edge",
         )
@@ -203,10 +194,8 @@ def _other_masters(rows: Mapping[int, Row], number: int) -> list[tuple[int, Tool
 def never_set(number: int) -> str:
     """Why a tool cannot be the master."""
     return Message(
-        (
-            "the offset of {number} has never been set, so the offsets of other tools "
-            "cannot be relative to this tool; touch off this tool first"
-        ),
+        "the offset of {number} has never been set, so the offsets of other tools "
+        "cannot be relative to this tool; touch off this tool first",
         number=edge_name(number),
     )
 
@@ -516,12 +505,10 @@ def _select(
 
 def _damaged_entry(entry: object) -> StoreError:
     return StoreError(
-        (
-            Message(
-                "entry {entry} of the offset history is damaged; the offsets themselves are verified "
-                "by separate checksums. Restore a backup to recover the history",
-                entry=entry,
-            )
+        Message(
+            "entry {entry} of the offset history is damaged; the offsets themselves are verified "
+            "by separate checksums. Restore a backup to recover the history",
+            entry=entry,
         ),
         "damaged-history",
     )

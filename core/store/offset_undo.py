@@ -24,11 +24,9 @@ def undo_step(
     changed_since = [str(row.number) for row in rows if now.get(row.number) != row.new]
     if not rows or rows[0].step != step or changed_since:
         raise StoreError(
-            (
-                Message(
-                    "offset {changed_since} was changed later; undo that change first",
-                    changed_since=", ".join(changed_since) or number or "",
-                )
+            Message(
+                "offset {changed_since} was changed later; undo that change first",
+                changed_since=", ".join(changed_since) or number or "",
             ),
             "changed-since",
         )
@@ -45,7 +43,7 @@ def _check(kind: Kind, rows: Mapping[int, Row]) -> None:
     if len(masters) > 1:
         raise StoreError(
             Message(
-                ("{masters} would both be master tools; clear the current master first"),
+                "{masters} would both be master tools; clear the current master first",
                 masters=" and ".join(masters),
             ),
             "two-masters",
@@ -53,7 +51,7 @@ def _check(kind: Kind, rows: Mapping[int, Row]) -> None:
     if orphans := [edge_name(n) for n in rows if tool_of(n) not in rows]:
         raise StoreError(
             Message(
-                ("cutting edge {orphans} would be left without a tool; clear this cutting edge first"),
+                "cutting edge {orphans} would be left without a tool; clear this cutting edge first",
                 orphans=", ".join(orphans),
             ),
             "has-further-edges",

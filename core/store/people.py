@@ -105,9 +105,7 @@ def _demand_service(connection: sqlite3.Connection) -> None:
     levels = {level for (level,) in connection.execute("SELECT level FROM people")}
     if levels and max(levels) < 3:
         raise StoreError(
-            (
-                "the list of users must contain one user with SERVICE level who can add the others; "
-                "add this user first"
-            ),
+            "the list of users must contain one user with SERVICE level who can add the others; "
+            "add this user first",
             "last-service-person",
         )

@@ -54,13 +54,10 @@ def export(store: Store, folder: Path) -> int:
         if cause_of(folder, error) is Cause.FULL:
             raise why(folder, error) from error
         raise StoreError(
-            (
-                Message(
-                    "{target} cannot be written ({error}); check the folder, its free space and its "
-                    "permissions",
-                    target=folder,
-                    error=said(error),
-                )
+            Message(
+                "{target} cannot be written ({error}); check the folder, its free space and its permissions",
+                target=folder,
+                error=said(error),
             ),
             "cannot-write",
         ) from error
@@ -199,15 +196,10 @@ def program_files(folder: Path) -> dict[str, bytes]:
         return {path.name: input_bytes(path, _LARGEST) for path in sorted((folder / PROGRAMS).iterdir())}
     except OSError as error:
         raise StoreError(
-            (
-                Message(
-                    (
-                        "{folder} is not an exported folder ({error}); specify a folder that 'store "
-                        "export' created"
-                    ),
-                    folder=folder,
-                    error=said(error),
-                )
+            Message(
+                "{folder} is not an exported folder ({error}); specify a folder that 'store export' created",
+                folder=folder,
+                error=said(error),
             ),
             "not-an-export",
         ) from error

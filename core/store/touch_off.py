@@ -43,7 +43,7 @@ def touch_off(
     if old is None and (touch.x is None or touch.z is None):
         raise StoreError(
             Message(
-                ("the offset of {number} has never been set; touch off both X and Z"),
+                "the offset of {number} has never been set; touch off both X and Z",
                 number=edge_name(number),
             ),
             "needs-both-axes",

@@ -165,10 +165,8 @@ class Bus(canopen.Network):
             if self.garbled >= _GARBLED:
                 self.lost(
                     Message(
-                        (
-                            "invalid CAN frames received, the last with ID {arbitration_id}; check the "
-                            "node numbers"
-                        ),
+                        "invalid CAN frames received, the last with ID {arbitration_id}; check the "
+                        "node numbers",
                         arbitration_id=f"{message.arbitration_id:03X}",
                     )
                 )

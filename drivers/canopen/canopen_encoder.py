@@ -70,7 +70,7 @@ class CanEncoder:
         if self._drive is None and silent > 3.0 * self._bus.config.heartbeat:
             self._wrong(
                 Message(
-                    ("no heartbeat from the encoder for {silent} s; check cable and power"),
+                    "no heartbeat from the encoder for {silent} s; check cable and power",
                     silent=f"{silent:.2f}",
                 )
             )
@@ -163,10 +163,8 @@ class CanEncoder:
         if turns > most:
             self._wrong(
                 Message(
-                    (
-                        "the encoder count jumped by {revolutions} revolutions in one step; check "
-                        "cable and shield"
-                    ),
+                    "the encoder count jumped by {revolutions} revolutions in one step; check "
+                    "cable and shield",
                     revolutions=f"{turns:.2f}",
                 )
             )

@@ -49,19 +49,15 @@ _NODE = (
         Kind.CHOICE,
         choices=tuple(PROFILES),
         default="",
-        meaning=(
-            "Family of the drive. Default: `drive` of [canopen]; without it the family that the EDS "
-            "file names, or plain CiA 402."
-        ),
+        meaning="Family of the drive. Default: `drive` of [canopen]; without it the family that the EDS "
+        "file names, or plain CiA 402.",
     ),
     Field(
         "eds",
         Kind.TEXT,
         default="",
-        meaning=(
-            "EDS file of the device, in the folder of the machine file. Default: the objects of the "
-            "family or of the standard."
-        ),
+        meaning="EDS file of the device, in the folder of the machine file. Default: the objects of the "
+        "family or of the standard.",
     ),
     Field(
         "counts_per_rev",
@@ -69,19 +65,15 @@ _NODE = (
         low=0,
         high=100_000_000,
         default=0,
-        meaning=(
-            "Encoder counts per motor revolution, 4 × the lines, for drives that use rpm as "
-            "their unit of speed. 0: the drive uses counts/s. For the spindle: counts per "
-            "spindle revolution, needed for threads and C."
-        ),
+        meaning="Encoder counts per motor revolution, 4 × the lines, for drives that use rpm as "
+        "their unit of speed. 0: the drive uses counts/s. For the spindle: counts per "
+        "spindle revolution, needed for threads and C.",
     ),
 )
 NODE_REFERENCE = TableReference(
     "canopen.nodes.…",
-    (
-        "A device on the bus. A drive must be named after its axis or be named "
-        "`spindle`; other devices can have any name."
-    ),
+    "A device on the bus. A drive must be named after its axis or be named "
+    "`spindle`; other devices can have any name.",
     _NODE,
 )
 SDO_REFERENCE = TableReference(

@@ -91,10 +91,8 @@ class CanopenSpindle:
             )
         if rpm and self.kept:
             raise DriverError(
-                (
-                    "the spindle stays off because its drive is engaged as the C axis; release the "
-                    "drive with M05 first"
-                ),
+                "the spindle stays off because its drive is engaged as the C axis; release the "
+                "drive with M05 first",
                 "spindle-off",
                 reason="held-as-c",
             )

@@ -411,7 +411,7 @@ class Controller:
         self.keep(report)
         if report.diameter and self.ready:
             self.fail(
-                ("X is in diameter mode (D:1), so the controller has lost its modal state"),
+                "X is in diameter mode (D:1), so the controller has lost its modal state",
                 "controller-modes",
             )
         self.owed_since, self.mute = None, False

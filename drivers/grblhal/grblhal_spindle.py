@@ -201,11 +201,9 @@ class GrblSpindle:
         elif now - self._unlike_since > _CLIPS:
             c.fail(
                 Message(
-                    (
-                        "the controller runs the spindle at {details} rpm instead of {expected} rpm "
-                        "because the controller limits the speed ($30, $31; a changed setting may take "
-                        "effect only after the controller restarts)"
-                    ),
+                    "the controller runs the spindle at {details} rpm instead of {expected} rpm "
+                    "because the controller limits the speed ($30, $31; a changed setting may take "
+                    "effect only after the controller restarts)",
                     details=f"{told[1]:g}",
                     expected=f"{expected:.0f}",
                 ),

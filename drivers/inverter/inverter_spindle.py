@@ -70,10 +70,8 @@ class InverterSpindle:
             # One that turns goes on: a surface speed that is refused for a lost answer costs the part.
             if not (self._attendant.want or self._attendant.warm):
                 raise DriverError(
-                    (
-                        "the spindle stays off until the inverter has sent the required number of "
-                        "valid responses"
-                    ),
+                    "the spindle stays off until the inverter has sent the required number of "
+                    "valid responses",
                     "spindle-off",
                     reason="not-ready",
                 )

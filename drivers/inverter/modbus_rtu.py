@@ -217,10 +217,8 @@ class Modbus:
         if come:
             raise NoAnswerError(
                 Message(
-                    (
-                        "the inverter sent {come_count} bytes but not a valid response; check the line "
-                        "settings and id"
-                    ),
+                    "the inverter sent {come_count} bytes but not a valid response; check the line "
+                    "settings and id",
                     come_count=len(come),
                 ),
                 reason="garbled",

@@ -41,7 +41,7 @@ def check_limits(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
         if segments.p[:, i].min(initial=low) < low - 0.01 or segments.p[:, i].max(initial=high) > high + 0.01:
             raise DriverError(
                 Message(
-                    ("{axis}: setpoints are outside the travel range {low}…{high}; no setpoints were queued"),
+                    "{axis}: setpoints are outside the travel range {low}…{high}; no setpoints were queued",
                     axis=axis.name,
                     low=f"{low:.2f}",
                     high=f"{high:.2f}",

@@ -158,7 +158,7 @@ def _apart(meant: Sequence[DeviceEntry]) -> str:
     if not serials:
         return "the devices cannot be distinguished because they have no serial numbers"
     return Message(
-        ("alternatively, set serial in the machine file to one of these serial numbers: {serials}"),
+        "alternatively, set serial in the machine file to one of these serial numbers: {serials}",
         serials=", ".join(serials),
     )
 
@@ -257,12 +257,10 @@ class KernelDevice:
 def _not_allowed(entry: DeviceEntry, path: Path) -> str:
     vendor, _, product = entry.numbers.partition(":")
     return Message(
-        (
-            "no permission to read {path} (the pendant {entry}): add this line to {rules}: "
-            'SUBSYSTEM=="input", ATTRS{{idVendor}}=="{vendor}", '
-            'ATTRS{{idProduct}}=="{product}", TAG+="uaccess"; then unplug the pendant and '
-            "plug it in again"
-        ),
+        "no permission to read {path} (the pendant {entry}): add this line to {rules}: "
+        'SUBSYSTEM=="input", ATTRS{{idVendor}}=="{vendor}", '
+        'ATTRS{{idProduct}}=="{product}", TAG+="uaccess"; then unplug the pendant and '
+        "plug it in again",
         path=path,
         entry=entry.name,
         rules=RULES,

@@ -118,7 +118,7 @@ class Incoming:
         if self.count > LARGEST:
             raise IncompleteError(
                 Message(
-                    ("more than {largest} MB were received; the received data is not a program"),
+                    "more than {largest} MB were received; the received data is not a program",
                     largest=LARGEST // 1000000,
                 )
             )
@@ -164,10 +164,8 @@ class Incoming:
         if self._wrap and line.lstrip().startswith(self._wrap):
             raise IncompleteError(
                 Message(
-                    (
-                        "line {number} begins with {wrap}, so more than one program was received; send "
-                        "only one program"
-                    ),
+                    "line {number} begins with {wrap}, so more than one program was received; send "
+                    "only one program",
                     number=number,
                     wrap=self._settings.wrap,
                 ),
@@ -177,10 +175,8 @@ class Incoming:
             if character < 0x20 and character != _TAB:
                 raise IncompleteError(
                     Message(
-                        (
-                            "line {number} contains the control character {character} because of "
-                            "interference on the serial line. Nothing was saved; send the program again"
-                        ),
+                        "line {number} contains the control character {character} because of "
+                        "interference on the serial line. Nothing was saved; send the program again",
                         number=number,
                         character=f"{character:02X}",
                     ),
@@ -237,11 +233,9 @@ class Incoming:
             return
         raise IncompleteError(
             Message(
-                (
-                    "parity error in line {lines}; nothing was saved. Check the serial port "
-                    "settings ({line}) and the shield and ground of the cable, then send the "
-                    "program again"
-                ),
+                "parity error in line {lines}; nothing was saved. Check the serial port "
+                "settings ({line}) and the shield and ground of the cable, then send the "
+                "program again",
                 lines=self.lines,
                 line=self._settings.line.words,
             ),
@@ -258,7 +252,7 @@ class Incoming:
         if self.phase is Phase.WAITING:
             came = (
                 Message(
-                    ("{count} characters were received, but not the start character {wrap}"),
+                    "{count} characters were received, but not the start character {wrap}",
                     count=self.count,
                     wrap=wrap,
                 )
@@ -267,20 +261,16 @@ class Incoming:
             )
             return IncompleteError(
                 Message(
-                    (
-                        "{came}; check the serial port settings and the other device, then send the "
-                        "program again"
-                    ),
+                    "{came}; check the serial port settings and the other device, then send the "
+                    "program again",
                     came=came,
                 ),
                 reason="no-begin" if self.count else "nothing",
             )
         return IncompleteError(
             Message(
-                (
-                    "the end character {wrap} is missing after {lines} lines: the program is incomplete "
-                    "and was not saved; send the program again"
-                ),
+                "the end character {wrap} is missing after {lines} lines: the program is incomplete "
+                "and was not saved; send the program again",
                 wrap=wrap,
                 lines=self.lines,
             ),
@@ -335,10 +325,8 @@ def _check(line: bytes, number: int, wrap: bytes, *, seven: bool) -> None:
     if wrap and line.strip().startswith(wrap):
         raise DriverError(
             Message(
-                (
-                    "line {number} begins with {text}, which the other device would treat as the "
-                    "end of the program"
-                ),
+                "line {number} begins with {text}, which the other device would treat as the "
+                "end of the program",
                 number=number,
                 text=wrap.decode(),
             ),

@@ -90,10 +90,8 @@ class Sending(_Transfer):
             self._go_on()
             if self._clock.now() > until:
                 raise DriverError(
-                    (
-                        "the other device has not requested a program (DC1) for 2 minutes; start the "
-                        "transfer on that device"
-                    ),
+                    "the other device has not requested a program (DC1) for 2 minutes; start the "
+                    "transfer on that device",
                     reason="not-asked",
                 )
             come = self._wire.receive(TICK)
@@ -123,10 +121,8 @@ class Sending(_Transfer):
         if still > PATIENCE:
             raise DriverError(
                 Message(
-                    (
-                        "the other device paused the transfer after {file} bytes and has not continued "
-                        "for 2 minutes; check whether that device is ready"
-                    ),
+                    "the other device paused the transfer after {file} bytes and has not continued "
+                    "for 2 minutes; check whether that device is ready",
                     file=out,
                 ),
                 reason="held",
@@ -187,11 +183,9 @@ class Receiving(_Transfer):
         if self._wire.damaged and incoming.phase is not Phase.WAITING:
             raise IncompleteError(
                 Message(
-                    (
-                        "a character in line {lines} is damaged; nothing was saved. Check the serial "
-                        "port settings and the shield and ground of the cable, then send the program "
-                        "again"
-                    ),
+                    "a character in line {lines} is damaged; nothing was saved. Check the serial "
+                    "port settings and the shield and ground of the cable, then send the program "
+                    "again",
                     lines=incoming.lines,
                 ),
                 reason="damaged",

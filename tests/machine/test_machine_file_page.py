@@ -89,7 +89,7 @@ def test_purposes_are_sentences() -> None:
 
 
 @pytest.mark.parametrize(
-    ("row"),
+    "row",
     [
         "| `resolution` | mm or in | 0.00001 to 0.02 mm, .0000003937 to .0007874 in | *derived* |",
         "| `clearance` | mm or in | 0.1 to 100 mm, .003937 to 3.937 in | 31.75 mm, 1.25 in |",

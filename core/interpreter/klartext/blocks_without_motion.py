@@ -43,7 +43,7 @@ class EndlessJumps:
                 node.column,
                 ENDLESS,
                 text,
-                ("In the loop, change a Q parameter that the jump condition uses."),
+                "In the loop, change a Q parameter that the jump condition uses.",
             )
 
 

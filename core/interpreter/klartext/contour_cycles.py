@@ -41,7 +41,7 @@ class Clearing:
         if depth > 0.0:
             raise tool.refuse(
                 Message("Depth Q1={depth} mm is positive (upward).", depth=f"{depth:+.10g}"),
-                ("Enter the depth with a minus sign."),
+                "Enter the depth with a minus sign.",
             )
         self.surface = tool.length(5, 0.0)
         self.bottom = self.surface + depth
@@ -115,7 +115,7 @@ def contour_data(tool: CycleTool) -> None:
     if not 0.0 < tool.plain(2, 1.0) < _MOST_OVERLAP:
         raise tool.refuse(
             "With the programmed path overlap Q2, the cycle cannot clear the area.",
-            ("Set Q2 to a value between 0.0001 and 1.9999."),
+            "Set Q2 to a value between 0.0001 and 1.9999.",
         )
 
 
@@ -315,7 +315,7 @@ def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
     if not elements:
         raise told.tool.refuse(
             Message("Contour {figure} does not contain any elements.", figure=figure.label),
-            ("Add path functions to the contour."),
+            "Add path functions to the contour.",
         )
     if not figure.side:
         return elements

@@ -56,14 +56,14 @@ class FigureRunner(PathRunner):
         """The element of a path function. Raises ProgramError for what no contour has."""
         if node.form.startswith(("APPR", "DEP")):
             raise unsupported(
-                self._state.line, node.column, (Message("{form} inside an SL cycle contour", form=node.form))
+                self._state.line, node.column, Message("{form} inside an SL cycle contour", form=node.form)
             )
         if not node.axes and not node.words and node.form == "L":
             return
         self.side = self.side or node.compensation.strip("0+-")
         made = list(self._elements(node))
         if any(each.upright for each in made):
-            raise unsupported(self._state.line, node.column, ("A vertical arc inside an SL cycle contour"))
+            raise unsupported(self._state.line, node.column, "A vertical arc inside an SL cycle contour")
         if self._corner is not None:
             made[0] = self._rounded(made[0])
         if self._begun < 0 and (node.words or any(word.axis in "XY" for word in node.axes)):
@@ -114,7 +114,7 @@ def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool
             column,
             INPUT_VALUE,
             Message("The contours cannot be combined: {problem}.", problem=problem),
-            ("Correct the entries named in the message."),
+            "Correct the entries named in the message.",
         ) from None
     if not found:
         text = "The contours do not enclose an area because the islands cover the pockets."
@@ -141,7 +141,7 @@ def _is_pocket(state: State, figure: ContourFigure, loop: Loop, column: int) -> 
         return figure.pocket
     if not figure.side:
         text = Message("No machining side is programmed for contour {figure}.", figure=figure.label)
-        raise state.refuse(column, CYCLE_MISSING, text, ("Write RL or RR in the first block of the contour."))
+        raise state.refuse(column, CYCLE_MISSING, text, "Write RL or RR in the first block of the contour.")
     return goes_round(loop) == (figure.side == "L")
 
 

@@ -45,7 +45,7 @@ def _of_the_table(state: State, row: Value, column: int) -> tuple[AxisWord, ...]
     """The axes of a row of the datum table. Raises ProgramError where there is none, or no such row."""
     if state.datum_table is None:
         text = "No datum table is selected."
-        raise state.refuse(column, NO_TABLE, text, ("Select the file with SEL TABLE before this block."))
+        raise state.refuse(column, NO_TABLE, text, "Select the file with SEL TABLE before this block.")
     number = int(word_values.number(state, row, "#", MOST_ROW, 0.0))
     found = state.datum_table.get(number)
     if found is None:
@@ -65,7 +65,7 @@ def _demand_no_turn(state: State, axis: str, value: float, column: int) -> None:
             column,
             WRONG_AXIS,
             text,
-            ("Position the rotary axis with an L block, or program the plane with PLANE."),
+            "Position the rotary axis with an L block, or program the plane with PLANE.",
         )
 
 

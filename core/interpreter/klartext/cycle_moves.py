@@ -80,7 +80,7 @@ class CycleTool:
             found = default
         if found is None:
             text = Message("Cycle {number} needs {parameter}.", number=self._number, parameter=self.named(q))
-            raise self._state.refuse(self._column, CYCLE_MISSING, text, ("Add the parameter to CYCL DEF."))
+            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Add the parameter to CYCL DEF.")
         return found
 
     def length(self, q: int, default: float | None = None) -> float:
@@ -139,7 +139,7 @@ class CycleTool:
                 "Cycle {number} needs the point angle of the tool for a programmed diameter.",
                 number=self._number,
             )
-            raise self.refuse(text, ("Enter the point angle in the tool table, or program Q343=+0 and Q201."))
+            raise self.refuse(text, "Enter the point angle in the tool table, or program Q343=+0 and Q201.")
         return row.point
 
     @property
@@ -165,7 +165,7 @@ class CycleTool:
         if not found:
             text = Message("Cycle {number} needs a running spindle.", number=self._number)
             raise self._state.refuse(
-                self._column, WRONG_RPM, text, ("Start the spindle with M3 before the cycle.")
+                self._column, WRONG_RPM, text, "Start the spindle with M3 before the cycle."
             )
         return found
 
@@ -184,10 +184,8 @@ class CycleTool:
     def warn_uncoupled(self) -> None:
         """Z follows the spindle by its speed, not by its angle: it stands while the spindle turns round."""
         text = Message(
-            (
-                "Cycle {number}: Z is not synchronized with the spindle angle, so Z stops "
-                "while the spindle reverses."
-            ),
+            "Cycle {number}: Z is not synchronized with the spindle angle, so Z stops "
+            "while the spindle reverses.",
             number=self._number,
         )
         hint = "Use a floating tap holder."
@@ -299,7 +297,7 @@ class CycleTool:
         if not -_TURN <= angle <= _TURN:
             raise self.refuse(
                 Message("{parameter} is not a valid spindle angle.", parameter=self.named(q)),
-                ("Enter an angle from -360 to 360 degrees."),
+                "Enter an angle from -360 to 360 degrees.",
             )
         return oriented(self._state, angle)
 

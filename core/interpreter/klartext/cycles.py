@@ -146,7 +146,7 @@ class Cycles:
         if found is None and set(state.setup.presets) - {0}:
             text = Message("Preset {number} is not in the preset table.", number=f"{number:g}")
             raise state.refuse(
-                column, INPUT_VALUE, text, ("Set the preset on the PRESETS page, or correct Q339.")
+                column, INPUT_VALUE, text, "Set the preset on the PRESETS page, or correct Q339."
             )
         if (
             found is not None
@@ -154,13 +154,11 @@ class Cycles:
             and state.kinematics.with_preset(found).basic != state.kinematics.basic
         ):
             text = Message(
-                (
-                    "Preset {number} rotates the workpiece and cannot be activated while a tilted "
-                    "plane is active."
-                ),
+                "Preset {number} rotates the workpiece and cannot be activated while a tilted "
+                "plane is active.",
                 number=f"{number:g}",
             )
-            raise state.refuse(column, CONTRADICTION, text, ("Write PLANE RESET STAY before this block."))
+            raise state.refuse(column, CONTRADICTION, text, "Write PLANE RESET STAY before this block.")
         if found is not None:
             state.kinematics = state.kinematics.with_preset(found)
         elif number:
@@ -219,7 +217,7 @@ class Cycles:
         if not figures:
             text = Message("No contour is defined for cycle {number}.", number=self._number)
             raise self._state.refuse(
-                column, CYCLE_MISSING, text, ("List the contour labels in cycle 14 before this block.")
+                column, CYCLE_MISSING, text, "List the contour labels in cycle 14 before this block."
             )
 
     def _demand_lines(self, column: int) -> None:
@@ -258,14 +256,12 @@ class Cycles:
         """The angle of cycle 13, to which M19 brings the spindle. Raises ProgramError."""
         if not node.words:
             text = "No angle is programmed in cycle 13."
-            raise self._state.refuse(
-                node.column, CYCLE_MISSING, text, ("Write ANGLE with a value in degrees.")
-            )
+            raise self._state.refuse(node.column, CYCLE_MISSING, text, "Write ANGLE with a value in degrees.")
         angle = value(self._state, node.words[-1].value.formula)
         if not -360.0 <= angle <= 360.0:
             text = Message("{parameter} is not a valid spindle angle.", parameter=f"{angle:g}")
             raise self._state.refuse(
-                node.words[-1].column, INPUT_VALUE, text, ("Enter an angle from -360 to 360 degrees.")
+                node.words[-1].column, INPUT_VALUE, text, "Enter an angle from -360 to 360 degrees."
             )
         return angle
 
@@ -278,7 +274,7 @@ class Cycles:
         if not labels:
             text = "Cycle 14 does not list any label."
             raise self._state.refuse(
-                node.column, CYCLE_MISSING, text, ("Write the labels, for example CONTOUR LABEL1 /2.")
+                node.column, CYCLE_MISSING, text, "Write the labels, for example CONTOUR LABEL1 /2."
             )
         self._contours += tuple(ContourPart(label, None) for label in labels)
         if len(self._contours) > _MOST_CONTOURS:
@@ -304,7 +300,7 @@ class Cycles:
                 self._state.line,
                 node.column,
                 Message("{node} is not an axis.", node=node.text),
-                ("Use only A, B and C in cycle 19."),
+                "Use only A, B and C in cycle 19.",
             )
         if not node.words:
             return Plane("RESET", (), Positioning("STAY"), node.column)
@@ -331,14 +327,14 @@ class Cycles:
         state = self._state
         if not self._points:
             text = "Neither PATTERN DEF nor SEL PATTERN has defined any points."
-            raise state.refuse(node.column, CYCLE_MISSING, text, ("Write PATTERN DEF before this block."))
+            raise state.refuse(node.column, CYCLE_MISSING, text, "Write PATTERN DEF before this block.")
         if self._number not in _MACHINING:
             text = "CYCL CALL PAT needs a preceding cycle with a number of 200 or higher."
             raise state.refuse(
                 node.column,
                 CYCLE_MISSING,
                 text,
-                ("Write the CYCL DEF of a machining cycle before this block."),
+                "Write the CYCL DEF of a machining cycle before this block.",
             )
         speed = None if node.feed is None else word_values.feed_word(state, node.feed, node.column)
         surface = state.q.get(_SURFACE, 0.0)
@@ -361,7 +357,7 @@ class Cycles:
             raise unsupported(
                 self._state.line,
                 node.column,
-                (Message("CYCL CALL POS with cycle {number}", number=self._number)),
+                Message("CYCL CALL POS with cycle {number}", number=self._number),
             )
         x, y = tool.here
         for word in node.axes:
@@ -390,7 +386,7 @@ class Cycles:
                 node.column,
                 CYCLE_MISSING,
                 text,
-                ("Write the CYCL DEF of a machining cycle before this block."),
+                "Write the CYCL DEF of a machining cycle before this block.",
             )
         surface = tool.length(203, 0.0)
         above = surface + tool.length(204, 0.0) if tool.plain(301, 1.0) else surface + tool.length(200)

@@ -64,7 +64,7 @@ def per_minute(state: State, feed: float, per: str, column: int) -> float:
     rpm = state.modal.rpm if state.modal.spindle else 0.0
     if rpm <= 0.0:
         text = Message("{word} depends on the spindle speed, but the spindle is stopped.", word=word)
-        raise state.refuse(column, WRONG_RPM, text, ("Start the spindle with M3 or M4 before this block."))
+        raise state.refuse(column, WRONG_RPM, text, "Start the spindle with M3 or M4 before this block.")
     made = feed * rpm * (_teeth(state, column) if per == TOOTH else 1)
     made *= 1.0 if state.scale == 1.0 else _TENTHS
     if made > MOST_FEED:
@@ -92,7 +92,7 @@ def _teeth(state: State, column: int) -> int:
             tool=tool,
         )
         raise state.refuse(
-            column, INPUT_VALUE, text, ("Enter the number of teeth (CUT) in the tool table, or program F.")
+            column, INPUT_VALUE, text, "Enter the number of teeth (CUT) in the tool table, or program F."
         )
     return row.teeth
 

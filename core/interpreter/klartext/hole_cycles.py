@@ -113,10 +113,10 @@ def back_boring(tool: CycleTool) -> Iterator[Block]:
     if depth < 0.0:
         raise tool.refuse(
             Message(
-                ("Q249 = {depth} mm is negative, so the tool would move away from the part."),
+                "Q249 = {depth} mm is negative, so the tool would move away from the part.",
                 depth=f"{depth:+.10g}",
             ),
-            ("Enter the depth without a minus sign."),
+            "Enter the depth without a minus sign.",
         )
     clear, through, slow = surface + tool.length(200), tool.length(250) + tool.length(252), tool.feed(253)
     lowest, end = surface - through - tool.length(200), surface - through + depth
@@ -256,8 +256,8 @@ def bore_milling(tool: CycleTool) -> Iterator[Block]:
     pitch = tool.length(334)
     if way < 0.0 or pitch <= 0.0 or feed <= 0.0:
         raise tool.refuse(
-            ("The tool, infeed or feed rate of cycle 208 is not valid for the hole."),
-            ("Correct the entries named in the message."),
+            "The tool, infeed or feed rate of cycle 208 is not valid for the hole.",
+            "Correct the entries named in the message.",
         )
     yield tool.to(clear)
     if way < SMALLEST:
@@ -295,7 +295,7 @@ def single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
     surface, clear, bottom = heights(tool)
     rpm, sense = tool.rpm, {3: 1.0, 4: -1.0, 5: 0.0}.get(int(tool.plain(426, 3.0)))
     if sense is None:
-        raise tool.refuse("Q426 must be 3, 4 or 5.", ("Enter the M function for the spindle direction."))
+        raise tool.refuse("Q426 must be 3, 4 or 5.", "Enter the M function for the spindle direction.")
     drilling = tool.plain(428, 0.0) * (sense or 1.0) or rpm
     slow, begin = tool.plain(427, 0.0) * sense, surface - max(tool.length(379, 0.0), 0.0)
     yield tool.to(clear)
@@ -323,7 +323,7 @@ def heights(tool: CycleTool) -> tuple[float, float, float]:
     if depth > 0.0:
         raise tool.refuse(
             Message("Depth Q201={depth} mm is positive (upward).", depth=f"{depth:+.10g}"),
-            ("Enter the depth with a minus sign."),
+            "Enter the depth with a minus sign.",
         )
     return surface, surface + tool.length(200), surface + depth
 

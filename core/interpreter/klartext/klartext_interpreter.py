@@ -233,7 +233,7 @@ class Interpreter(Interpretation):
     def _missing_program(self, name: str, column: int) -> ProgramError:
         text = Message("Program {name} is not in the same folder as this program.", name=name)
         return self._state.refuse(
-            column, FILE_MISSING, text, ("Put the file in the same folder as this program.")
+            column, FILE_MISSING, text, "Put the file in the same folder as this program."
         )
 
     def _table(self, name: str, column: int) -> dict[int, Row]:
@@ -241,7 +241,7 @@ class Interpreter(Interpretation):
         if rows is None:
             text = Message("Table {name} is not in the same folder as this program.", name=name)
             raise self._state.refuse(
-                column, FILE_MISSING, text, ("Put the file in the same folder as this program.")
+                column, FILE_MISSING, text, "Put the file in the same folder as this program."
             )
         return rows
 
@@ -337,7 +337,7 @@ class Interpreter(Interpretation):
             )
         if flow is None:
             text = Message("{name} of the contour is not in the program or has no LBL 0.", name=name)
-            raise self._state.refuse(column, LABEL, text, ("Correct the label number, or add the label."))
+            raise self._state.refuse(column, LABEL, text, "Correct the label number, or add the label.")
         runner, lines = FigureRunner(state), MOST_LINES_WITHOUT_BLOCK
         while (line := flow.next()) is not None:
             lines -= 1
@@ -345,7 +345,7 @@ class Interpreter(Interpretation):
                 raise ProgramError(self._flow.located(line.error))
             if lines < 0:
                 raise self._state.refuse(
-                    column, LABEL, Message("{name} never reaches its end.", name=name), ("Correct the value.")
+                    column, LABEL, Message("{name} never reaches its end.", name=name), "Correct the value."
                 )
             if not (line.skip and state.setup.block_delete):
                 state.line, state.text = self._flow.shown_line(line.number), flow.program.text(line)

@@ -190,9 +190,7 @@ def _frame(program: Program) -> Iterator[Diagnostic]:
             yield _wrong(index + 1, "BEGIN PGM appears twice.", "Put only one program in a file.")
     behind = next((index for index in with_blocks if index > program.end), None)
     if behind is not None:
-        yield _wrong(
-            behind + 1, "This block is after END PGM.", ("Move this block to a line before END PGM.")
-        )
+        yield _wrong(behind + 1, "This block is after END PGM.", "Move this block to a line before END PGM.")
     if first.node.inch != last.inch:
         text = "BEGIN PGM and END PGM specify different units."
         yield _wrong(program.end + 1, text, "Write the same unit in BEGIN PGM and END PGM.")

@@ -213,7 +213,7 @@ class State:
     def unheeded(self, what: str, column: int) -> None:
         """Tell that something steers nothing here."""
         self.tell_once(
-            column, Severity.NOTE, "unheeded", Message(("{what} has no effect on this control."), what=what)
+            column, Severity.NOTE, "unheeded", Message("{what} has no effect on this control.", what=what)
         )
 
     # --- blocks -------------------------------------------------------------------------------------------

@@ -99,7 +99,7 @@ def _check_datum(state: State, code: MCode, codes: Sequence[MCode]) -> None:
     """M91 and M92: not while M128 is on, and one of both."""
     if state.m128:
         text: str = Message("M{number} is not allowed while M128 is active.", number=code.number)
-        raise state.refuse(code.column, NOT_WITH_M128, text, ("Switch M128 off with M129 before this block."))
+        raise state.refuse(code.column, NOT_WITH_M128, text, "Switch M128 off with M129 before this block.")
     if {M91, M92} <= {other.number for other in codes}:
         text = "M91 and M92 cannot be in the same block because they measure from different datums."
         raise state.refuse(code.column, CONTRADICTION, text, "Remove one of the two.")

@@ -46,14 +46,14 @@ def _alone(line: nodes.KlartextLine) -> Diagnostic | None:
             return _refuse(
                 column,
                 Message(
-                    ("{form} approaches or departs from a contour and cannot be used in MDI"), form=node.form
+                    "{form} approaches or departs from a contour and cannot be used in MDI", form=node.form
                 ),
             )
         if node.compensation in {"L", "R"}:
             return _refuse(
                 column,
                 Message(
-                    ("R{compensation} needs a contour of more than one block and cannot be used in MDI"),
+                    "R{compensation} needs a contour of more than one block and cannot be used in MDI",
                     compensation=node.compensation,
                 ),
             )

@@ -201,7 +201,7 @@ def _thread_cutting(state: State, tool: CycleTool, lines: Lines, column: int) ->
     rpm, pitch, depth = tool.speed, told.length(2), told.length(1)
     if not rpm or not pitch:
         raise tool.refuse(
-            "Cycle 18 needs a spindle speed and a pitch.", ("Program S in TOOL CALL and PITCH in cycle 18.")
+            "Cycle 18 needs a spindle speed and a pitch.", "Program S in TOOL CALL and PITCH in cycle 18."
         )
     yield tool.turn(rpm if pitch > 0.0 else -rpm)
     yield tool.tap(tool.height + depth, abs(pitch), in_hole=True)

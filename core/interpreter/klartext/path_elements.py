@@ -242,7 +242,7 @@ def _round_the_pole(state: State, node: Move, made: PathElement) -> Iterator[Pat
             node.column,
             ARC_END,
             text,
-            Message(("Program at most {most_turns} revolutions."), most_turns=_MOST_TURNS),
+            Message("Program at most {most_turns} revolutions.", most_turns=_MOST_TURNS),
         )
     z1 = _along(state, node.word("XYZ"[order[2]]), start[2])
     here = start

@@ -116,7 +116,7 @@ class PathRunner:
         if self._side:
             text = Message("{what} is not allowed while radius compensation is active.", what=what)
             raise self._state.refuse(
-                column, COMPENSATION, text, ("End the contour with R0 or DEP before this block.")
+                column, COMPENSATION, text, "End the contour with R0 or DEP before this block."
             )
         yield from self._release()
 
@@ -167,9 +167,7 @@ class PathRunner:
         rotary = _rotary(state, node, state.kinematics.zero)
         if rotary and self._side:
             text = "A rotary axis cannot move while radius compensation is active."
-            raise state.refuse(
-                node.column, COMPENSATION, text, ("End the contour with R0 before this block.")
-            )
+            raise state.refuse(node.column, COMPENSATION, text, "End the contour with R0 before this block.")
         if node.form.startswith(("APPR", "DEP")):
             yield PathElement(
                 self.here, goal(state, node, self.here), feed, state.line, state.text, node.column
@@ -178,9 +176,7 @@ class PathRunner:
         made = list(elements(state, node, self.here, self._direction, feed, rotary))
         if made[0].upright and (self._side or node.compensation in {"L", "R"}):
             text = "Radius compensation is possible only in X and Y, but this arc is vertical."
-            raise state.refuse(
-                node.column, COMPENSATION, text, ("End the contour with R0 before this block.")
-            )
+            raise state.refuse(node.column, COMPENSATION, text, "End the contour with R0 before this block.")
         yield from (replace(each, feed=_plunged(state, each)) for each in made)
 
     def _add(self, made: list[PathElement], *, hold: bool) -> Iterator[Block]:
@@ -251,7 +247,7 @@ class PathRunner:
                 side=self._side,
             )
             raise self._state.refuse(
-                node.column, COMPENSATION, text, ("Write R0 before you change the compensation side.")
+                node.column, COMPENSATION, text, "Write R0 before you change the compensation side."
             )
 
     def _switched(self, node: Move) -> Iterator[Block]:

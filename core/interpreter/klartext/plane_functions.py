@@ -259,7 +259,7 @@ def _demand_tool_axis(state: State, node: Plane) -> None:
     """A plane that is not tilted needs none: programs begin with PLANE SPATIAL SPA+0 SPB+0 SPC+0 STAY."""
     if not state.tool_axis:
         text = "No TOOL CALL has defined a tool axis."
-        raise state.refuse(node.column, TOOL_AXIS_MISSING, text, ("Write TOOL CALL n Z before this block."))
+        raise state.refuse(node.column, TOOL_AXIS_MISSING, text, "Write TOOL CALL n Z before this block.")
 
 
 def _raised(state: State, up: float) -> Vector:

@@ -28,7 +28,7 @@ def points(state: State, node: PatternDef) -> list[Vector]:
             node.column,
             INPUT_VALUE,
             text,
-            Message(("The maximum is {most_points} points."), most_points=MOST_POINTS),
+            Message("The maximum is {most_points} points.", most_points=MOST_POINTS),
         )
     return found
 

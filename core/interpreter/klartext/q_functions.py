@@ -59,7 +59,7 @@ def _predefined(state: State, number: int, column: int) -> float:
             "Q{number}=PREDEF, but no GLOBAL DEF defines Q{number2}.", number=number, number2=number
         )
         raise state.refuse(
-            column, CYCLE_MISSING, text, ("Write GLOBAL DEF before this block, or enter a number.")
+            column, CYCLE_MISSING, text, "Write GLOBAL DEF before this block, or enter a number."
         )
     return state.q_global[number]
 
@@ -118,5 +118,5 @@ def own_error(state: State, node: ErrorMessage) -> ProgramError:
     """FN 14: the fault that the program itself tells, and stops at."""
     text = Message("The program reports its own error {number} and stops.", number=node.number)
     return state.refuse(
-        node.column, OWN_ERROR, text, ("Check the conditions under which the program reaches this block.")
+        node.column, OWN_ERROR, text, "Check the conditions under which the program reaches this block."
     )

@@ -183,7 +183,7 @@ def _touching(state: State, entry: Entry, centre: Point, size: float, *, clockwi
     away = math.hypot(dx, dy)
     if away < size:
         text = Message(
-            ("No path is possible for {form} because the tool is inside the arc of this move."),
+            "No path is possible for {form} because the tool is inside the arc of this move.",
             form=entry.node.form,
         )
         raise state.refuse(

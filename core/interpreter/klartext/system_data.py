@@ -74,10 +74,8 @@ def write_system(state: State, node: SystemWrite) -> None:
                 state.line,
                 node.column,
                 Message(
-                    (
-                        "Writing {name} of tool {tool} to the tool table with FN 17 (enter the value "
-                        "in the tool table instead)"
-                    ),
+                    "Writing {name} of tool {tool} to the tool table with FN 17 (enter the value "
+                    "in the tool table instead)",
                     name=name,
                     tool=tool,
                 ),
@@ -96,7 +94,7 @@ def _cell(state: State, column: int, number: int, index: int) -> float:
     row = _row(state, tool)
     if row is None:
         text = Message("Tool {tool} is not in the tool table.", tool=tool)
-        raise state.refuse(column, TOOL_UNKNOWN, text, ("Add the tool to the tool table."))
+        raise state.refuse(column, TOOL_UNKNOWN, text, "Add the tool to the tool table.")
     if number in _COLUMNS:
         return _COLUMNS[number][1](row) / (state.scale if number in _LENGTHS else 1.0)
     if number not in _EMPTY:

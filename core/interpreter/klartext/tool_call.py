@@ -155,7 +155,7 @@ def _by_cutting_speed(state: State, node: ToolCall, number: int | None) -> float
             node.cutting_speed.column,
             WRONG_RPM,
             text,
-            ("Enter the tool radius R in the tool table, or program S."),
+            "Enter the tool radius R in the tool table, or program S.",
         )
     return speed * 1000.0 / (2.0 * math.pi * radius)
 

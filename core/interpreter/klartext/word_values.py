@@ -68,7 +68,7 @@ def programmed_feed(state: State, feed: Feed | None, column: int) -> tuple[float
         return None
     if feed.kind == "auto":
         if state.tool_feed is None:
-            raise _missing(state, feed.column, "The last TOOL CALL has no F.", ("Program F in TOOL CALL."))
+            raise _missing(state, feed.column, "The last TOOL CALL has no F.", "Program F in TOOL CALL.")
         return state.tool_feed, state.tool_feed_per
     assert feed.value is not None
     found = number(state, feed.value, "F", MOST_FEED, 0.0)

@@ -57,7 +57,7 @@ def _centre_by_radius(state: State, statement: Statement, start: Point, *, clock
     chord = dist(start, (state.x, state.z))
     if chord <= _SAME:
         text = "The arc programmed with R ends at its start point."
-        raise statement.refuse("R", "arc-no-chord", text, ("Program a full circle with I and K."))
+        raise statement.refuse("R", "arc-no-chord", text, "Program a full circle with I and K.")
     if chord > 2 * radius + _TOLERANCE:
         shown, half = state.modal.length_text(radius), state.modal.length_text(chord / 2)
         text = Message(

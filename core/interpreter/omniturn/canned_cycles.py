@@ -53,7 +53,7 @@ def check_count(statement: Statement, letter: str, count: int, what: str) -> Non
             letter,
             "cycle-passes",
             text,
-            (Message("Look for a missing decimal point in {letter}.", letter=letter)),
+            Message("Look for a missing decimal point in {letter}.", letter=letter),
         )
 
 

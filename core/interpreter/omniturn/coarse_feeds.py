@@ -65,7 +65,7 @@ def _check_place(state: State, statement: Statement, code: int) -> None:
             place=place[0],
             place2=place[1],
         )
-        raise statement.refuse(1, "coarse-place", text, ("Move back to the G35 position before G36."))
+        raise statement.refuse(1, "coarse-place", text, "Move back to the G35 position before G36.")
 
 
 def _check_preset(state: State, statement: Statement, code: int, ahead: Sequence[ReadyLine]) -> None:
@@ -79,10 +79,8 @@ def _check_preset(state: State, statement: Statement, code: int, ahead: Sequence
     if max(abs(x - state.px), abs(z - state.pz)) > _SAME or line.modal:
         here = state.modal.length_text(state.px), state.modal.length_text(state.pz)
         text = Message(
-            (
-                "The G92 after G{code} does not match the current position, which is radius "
-                "{position}, Z {position2}."
-            ),
+            "The G92 after G{code} does not match the current position, which is radius "
+            "{position}, Z {position2}.",
             code=code,
             position=here[0],
             position2=here[1],

@@ -69,7 +69,7 @@ class _Reader:
                 line,
                 1,
                 what,
-                ("Write the contour block by block, with only straight moves, arcs, chamfers and roundings."),
+                "Write the contour block by block, with only straight moves, arcs, chamfers and roundings.",
             )
         if line.one_shot is not None and not line.entry.in_contour:
             column = line.code.column if line.code else 1
@@ -77,7 +77,7 @@ class _Reader:
                 line,
                 column,
                 Message("G{one_shot} is not allowed in a contour", one_shot=line.one_shot),
-                ("Remove this text from the program."),
+                "Remove this text from the program.",
             )
         if not _NOSE.isdisjoint(line.modal):
             what = "Nose compensation cannot be turned on or off in a contour"

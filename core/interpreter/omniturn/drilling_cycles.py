@@ -92,7 +92,7 @@ def _retract(state: State, statement: Statement, first: float) -> float:
             text=statement.words["R"].text,
         )
         raise statement.refuse(
-            "R", "cycle-retract", text, ("R is the Z position to which the drill retracts from the hole.")
+            "R", "cycle-retract", text, "R is the Z position to which the drill retracts from the hole."
         )
     return out
 

@@ -28,7 +28,7 @@ def dwell(state: State, statement: Statement) -> Iterator[Block]:
             statement.words["F"].column,
             "dwell-long",
             text,
-            ("Check F; with G04, F is in seconds."),
+            "Check F; with G04, F is in seconds.",
         )
     _shorten_arrival(state, seconds)
     yield state.action(statement.line, statement.part("move"), Dwell(seconds))
@@ -53,10 +53,8 @@ def warn_of_short_dwell(state: State) -> None:
     if left > _DONE:
         needed = max(ceil(left * 100.0 - 1e-6) / 100.0, _SHORTEST)
         text = Message(
-            (
-                "The C drive does not signal when C is in position; at this point, C needs "
-                "another {needed} s to finish its move."
-            ),
+            "The C drive does not signal when C is in position; at this point, C needs "
+            "another {needed} s to finish its move.",
             needed=f"{needed:.2f}",
         )
         state.log.warn(
@@ -64,7 +62,7 @@ def warn_of_short_dwell(state: State) -> None:
             column,
             "dwell-too-short",
             text,
-            (Message("Program a dwell of at least G04F{needed} after this line.", needed=f"{needed:.2f}")),
+            Message("Program a dwell of at least G04F{needed} after this line.", needed=f"{needed:.2f}"),
         )
 
 

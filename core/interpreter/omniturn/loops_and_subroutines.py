@@ -72,7 +72,7 @@ class _Finder:
                     statement,
                     "rf-alone",
                     "RF has no matching G75 or G78.",
-                    ("Add G75 or G78, or remove RF."),
+                    "Add G75 or G78, or remove RF.",
                 )
             elif self._contour is not None:
                 self.found.contours[self._contour.line - 1] = statement.line - 1
@@ -164,7 +164,7 @@ class _Finder:
             self._stray = True
             text = "This line is after the end of the program but not in a subroutine."
             self._refuse(
-                statement, "after-end", text, ("Move this line before M30, or start a subroutine with }n.")
+                statement, "after-end", text, "Move this line before M30, or start a subroutine with }n."
             )
 
     def _no_end(self, line: int) -> None:
@@ -184,7 +184,7 @@ class _Finder:
             text = Message("Subroutine {inside} has no M99.", inside=self._inside)
             line = self.found.subroutines[self._inside] + 1
             self.problems.append(
-                refusal(line, 1, "subroutine-open", text, ("Add M99 at the end of the subroutine."))
+                refusal(line, 1, "subroutine-open", text, "Add M99 at the end of the subroutine.")
             )
 
     def _refuse(self, statement: Statement, code: str, text: str, hint: str) -> None:
@@ -218,7 +218,7 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Struct
         if number not in finder.found.subroutines:
             column, hint = statement.column("P") or 1, "Write the subroutine after M30."
             text = Message(
-                ("Subroutine {number} is called, but the program does not contain }}{number2}."),
+                "Subroutine {number} is called, but the program does not contain }}{number2}.",
                 number=number,
                 number2=number,
             )

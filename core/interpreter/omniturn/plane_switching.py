@@ -47,7 +47,7 @@ def plane_move(state: State, statement: Statement, mill: Mill) -> Iterator[Block
                 statement,
                 "feed-missing",
                 "No feed is programmed for this move.",
-                ("Write F on this line or an earlier line."),
+                "Write F on this line or an earlier line.",
             )
         return
     for leg in _legs(state, statement, whole):
@@ -91,10 +91,8 @@ def _legs(state: State, statement: Statement, whole: PlaneMove) -> list[PlaneMov
     if rho < h - _SAME_PLANE_MOVES:
         near, least = state.modal.length_text(rho), state.modal.length_text(h)
         text = Message(
-            (
-                "The path comes within {nearest} of the spindle centerline, but with the programmed "
-                "H the tool cannot come closer to the centerline than {minimum}."
-            ),
+            "The path comes within {nearest} of the spindle centerline, but with the programmed "
+            "H the tool cannot come closer to the centerline than {minimum}.",
             nearest=near,
             minimum=least,
         )
@@ -190,7 +188,7 @@ def _height(state: State, statement: Statement, mill: Mill) -> None:
             statement,
             "plane-word",
             "H is allowed only with (~PLXC).",
-            ("Remove this text from the program."),
+            "Remove this text from the program.",
             "H",
         )
     if not mill.fresh:
@@ -198,7 +196,7 @@ def _height(state: State, statement: Statement, mill: Mill) -> None:
             statement,
             "plane-h-late",
             "H is programmed after a move or F, but must come first.",
-            ("Write H before the first move and before F."),
+            "Write H before the first move and before F.",
             "H",
         )
     h = plane_length(state, statement, "H", 0.0)
@@ -212,18 +210,18 @@ def _diameter(state: State, statement: Statement, mill: Mill) -> None:
             statement,
             "plane-word",
             "D is allowed only with (~PLZC).",
-            ("Remove this text from the program."),
+            "Remove this text from the program.",
             "D",
         )
     if abs(mill.y) > _SAME:
         text = Message(
-            ("D is programmed while Y is {y}, so D would move Y."), y=state.modal.length_text(mill.y)
+            "D is programmed while Y is {y}, so D would move Y.", y=state.modal.length_text(mill.y)
         )
         raise plane_refusal(statement, "plane-d-late", text, "Move to Y0 before you program D.", "D")
     diameter = plane_length(state, statement, "D", 0.0)
     if diameter <= 0.0:
         raise plane_refusal(
-            statement, "plane-diameter", "D must be a diameter greater than 0.", ("Correct the value."), "D"
+            statement, "plane-diameter", "D must be a diameter greater than 0.", "Correct the value.", "D"
         )
     state.adopt(state.modal._replace(mill=mill._replace(frame=replace(mill.frame, diameter=diameter))))
 

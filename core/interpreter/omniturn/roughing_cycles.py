@@ -38,7 +38,7 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
             most_elements=f"{_MOST_ELEMENTS:,}",
         )
         raise statement.refuse(
-            "G", "cycle-contour-long", text, ("Program the contour with fewer, longer moves.")
+            "G", "cycle-contour-long", text, "Program the contour with fewer, longer moves."
         )
     view = _view(state, statement, contour)
     try:
@@ -49,7 +49,7 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
             text=name(statement),
         )
         raise statement.refuse(
-            "U", "cycle-no-way", text, ("Reduce U, or widen the narrow part of the contour.")
+            "U", "cycle-no-way", text, "Reduce U, or widen the narrow part of the contour."
         ) from None
     rougher = Rougher(area, state.modal.rapid_rate, LIFT)
     if cut is not None:
@@ -78,7 +78,7 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
             statement.code_column,
             "cycle-undercut",
             text,
-            ("Check whether the tool fits into the undercut."),
+            "Check whether the tool fits into the undercut.",
         )
     return [view.placed(move) for move in rougher.moves]
 
@@ -104,7 +104,7 @@ def _passes(
             elements=f"{elements:,}",
         )
         raise statement.refuse(
-            "I", "cycle-passes", text, ("Increase I, or program the contour with fewer moves.")
+            "I", "cycle-passes", text, "Increase I, or program the contour with fewer moves."
         )
     for k in range(1, count + 1):
         rougher.cut(area.deepest * k / count)
@@ -115,7 +115,7 @@ def _passes(
             statement.code_column,
             "cycle-plunge",
             text,
-            ("Check whether the tool can plunge into the material."),
+            "Check whether the tool can plunge into the material.",
         )
 
 
@@ -134,10 +134,8 @@ def _view(state: State, statement: Statement, contour: list[Element]) -> Contour
                 "G",
                 "cycle-quadrant",
                 text,
-                (
-                    "Move the start point so that both ends of the contour are on the same side of it, "
-                    "in X and in Z."
-                ),
+                "Move the start point so that both ends of the contour are on the same side of it, "
+                "in X and in Z.",
             )
         if to_first == to_last == 0:
             text = Message(
@@ -168,7 +166,7 @@ def box_moves(state: State, statement: Statement) -> list[Move]:
             "U",
             "cycle-nothing",
             text,
-            ("U must be less than the distance in X from the start point to the programmed X."),
+            "U must be less than the distance in X from the start point to the programmed X.",
         )
     count = ceil(depth / cut - _WHOLE)
     check_count(statement, "I", count, "passes")

@@ -108,7 +108,7 @@ def check_tool(state: State, line: int, x: float | None, z: float | None) -> Non
             "The first move after {place} has no {ending}.", place=where, ending="X" if x is None else "Z"
         )
         raise program_error(
-            line, 0, "tool-first-move", text, ("Write both X and Z, or write G92 before this move.")
+            line, 0, "tool-first-move", text, "Write both X and Z, or write G92 before this move."
         )
 
 
@@ -119,7 +119,7 @@ def warn_of_title_rapid(state: State, line: int) -> None:
             "This move is a rapid because of the G00 next to the comment on line {title_rapid}.",
             title_rapid=state.title_rapid,
         )
-        state.log.warn(line, 0, "title-rapid", text, ("Write G01 if the move is meant to cut."))
+        state.log.warn(line, 0, "title-rapid", text, "Write G01 if the move is meant to cut.")
     state.title_rapid = 0
 
 

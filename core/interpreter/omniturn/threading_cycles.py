@@ -142,7 +142,7 @@ def _depth(state: State, statement: Statement) -> tuple[float, float]:
             position=here,
         )
         raise statement.refuse(
-            "X", "thread-side", text, ("Position the tool at the depth of the first pass before this line.")
+            "X", "thread-side", text, "Position the tool at the depth of the first pass before this line."
         )
     if x1 * state.x < 0:
         text = Message(
@@ -264,10 +264,8 @@ def _warn(state: State, statement: Statement, thread: Thread) -> None:
     run_up = _run_up(thread)
     if run_up < needed:
         text = Message(
-            (
-                "The acceleration distance is {run_up}, but the Z axis needs {needed} to reach "
-                "the threading feed rate."
-            ),
+            "The acceleration distance is {run_up}, but the Z axis needs {needed} to reach "
+            "the threading feed rate.",
             run_up=state.modal.length_text(max(run_up, 0.0)),
             needed=state.modal.length_text(needed),
         )
@@ -276,7 +274,7 @@ def _warn(state: State, statement: Statement, thread: Thread) -> None:
             statement.code_column,
             "thread-run-up",
             text,
-            ("Start farther from the thread, or reduce S."),
+            "Start farther from the thread, or reduce S.",
         )
 
 

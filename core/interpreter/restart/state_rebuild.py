@@ -210,7 +210,7 @@ class StateRebuild:
         """From here on the second pass is the one in which the input of this line answers otherwise."""
         if self._other is not None:
             self._lost = Message(
-                ("line {position} depends on an input, and the state of this input is unknown."),
+                "line {position} depends on an input, and the state of this input is unknown.",
                 position=self._at,
             )
             return
@@ -246,10 +246,8 @@ class StateRebuild:
             (
                 walk.checkpoint.modal.mill,
                 Message(
-                    (
-                        "The program cannot resume at line {line}, because the plane command (~PLXC) or "
-                        "(~PLZC) is active there."
-                    ),
+                    "The program cannot resume at line {line}, because the plane command (~PLXC) or "
+                    "(~PLZC) is active there.",
                     line=line,
                 ),
             ),

@@ -24,7 +24,7 @@ def _turning(cycle: Cycle) -> list[Step]:
         raise cycle.refused(
             "speed-missing",
             Message("{call} needs S in rpm.", call=cycle.line.call),
-            ("Write G97 with S before this block."),
+            "Write G97 with S before this block.",
         )
     if modal.spindle == sign:
         return []
@@ -39,12 +39,12 @@ def lift_off(cycle: Cycle) -> Iterator[Block]:
     angle = cycle.number("POSS")
     if not 0.0 <= angle < 360.0:
         raise cycle.wrong(
-            "POSS", ("{name} must be an angle from 0 to less than 360 degrees"), "Correct the value."
+            "POSS", "{name} must be an angle from 0 to less than 360 degrees", "Correct the value."
         )
     aside, up = cycle.length("RPA"), cycle.length("RPAP")
     if up * hole.down > 0.0:
         raise cycle.wrong(
-            "RPAP", ("{name} would move the tool deeper into the hole"), "Correct the sign of RPAP."
+            "RPAP", "{name} would move the tool deeper into the hole", "Correct the sign of RPAP."
         )
     x = cycle.x
     steps = [

@@ -46,7 +46,7 @@ class Corner:
         return self.statement.refuse(
             self.word,
             code,
-            (Message("Corner {letter} is not possible: {why}.", letter=self.word.text, why=why)),
+            Message("Corner {letter} is not possible: {why}.", letter=self.word.text, why=why),
             hint,
         )
 
@@ -60,9 +60,9 @@ def corner_of(state: State, statement: Statement, block: Block) -> Corner | None
     corner = Corner(statement, word, size, _feed(state, statement))
     if block.kind not in _CUT - {Kind.RAPID} or not _moves(block):
         hint = "Use CHF, CHR and RND only with G1, G2 and G3."
-        raise corner.refuse("corner-next", ("the block is not a line or an arc"), hint)
+        raise corner.refuse("corner-next", "the block is not a line or an arc", hint)
     if state.plane != 18:
-        raise corner.refuse("corner-plane", "corners in X and Z need G18", ("Write G18 before this block."))
+        raise corner.refuse("corner-plane", "corners in X and Z need G18", "Write G18 before this block.")
     return corner
 
 
@@ -123,7 +123,7 @@ class Corners:
             yield from (held.block, *held.between)
         elif held is not None:
             raise held.corner.refuse(
-                "corner-next", "no move follows the corner", ("Program two consecutive moves for the corner.")
+                "corner-next", "no move follows the corner", "Program two consecutive moves for the corner."
             )
 
     def _cut(self, held: _Held, after: Block, corner: Corner | None) -> Iterator[Block]:
@@ -135,7 +135,7 @@ class Corners:
             why = Message(
                 "the next move, on line {line}, is not a line or an arc in X and Z", line=after.line
             )
-            raise held.corner.refuse("corner-next", why, ("Program two consecutive moves for the corner."))
+            raise held.corner.refuse("corner-next", why, "Program two consecutive moves for the corner.")
         block, (dx, dz) = held.block, _shift(held.block, after)
         first, last = element_of(block), element_of(_moved(after, dx, dz))
         try:
@@ -152,7 +152,7 @@ class Corners:
             )
             self._log.add(
                 held.corner.statement.warning(
-                    held.corner.word, "corner-straight", text, ("Remove this text from the program.")
+                    held.corner.word, "corner-straight", text, "Remove this text from the program."
                 )
             )
             yield from (block, *held.between)
@@ -185,7 +185,7 @@ class Corners:
             line=of.line,
             left=f"{left:.4f}",
         )
-        return held.corner.refuse("corner-too-large", why, ("Use a smaller chamfer or radius."))
+        return held.corner.refuse("corner-too-large", why, "Use a smaller chamfer or radius.")
 
 
 def _moves(block: Block) -> bool:

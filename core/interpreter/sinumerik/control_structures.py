@@ -61,7 +61,7 @@ def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
         elif jump.steering is Steering.ELSE or jump.steering in _ENDS:
             if not opened or opened[-1][1].steering is not _ENDS.get(jump.steering):
                 text = Message("{steering} has no matching start.", steering=jump.steering)
-                raise _refused(line, jump, NESTING, text, ("Check the start of the control structure."))
+                raise _refused(line, jump, NESTING, text, "Check the start of the control structure.")
             places = (*opened.pop()[2], at)
             found.update(dict.fromkeys(places, places))
     if opened:
@@ -71,7 +71,7 @@ def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
             jump,
             NESTING,
             Message("{steering} has no matching end.", steering=jump.steering),
-            ("Add the matching end statement."),
+            "Add the matching end statement.",
         )
     return found
 
@@ -93,7 +93,7 @@ def follow(line: Line, jump: Jump, state: State, program: Lines, at: int) -> int
     elif steering is Steering.ALARM and jump.condition is not None:
         number = _worth(line, jump, state, jump.condition)
         text = Message("the program itself triggers alarm {number}.", number=f"{number:g}")
-        raise _refused(line, jump, "program-alarm", text, ("Check the preceding blocks for the cause."))
+        raise _refused(line, jump, "program-alarm", text, "Check the preceding blocks for the cause.")
     elif (steering in _BEGINS or steering in _ENDS or steering is Steering.ELSE) and not jump.target:
         return _STEPS[steering](line, jump, state, program.partners()[at], program)
     return None
@@ -143,11 +143,9 @@ def _sizes(line: Line, jump: Jump, state: State, each: Defined) -> tuple[int, ..
             jump,
             FIRST_INDEX,
             told,
-            (
-                Message(
-                    "Correct the array sizes; at most {most_dimensions} dimensions are allowed.",
-                    most_dimensions=MOST_DIMENSIONS,
-                )
+            Message(
+                "Correct the array sizes; at most {most_dimensions} dimensions are allowed.",
+                most_dimensions=MOST_DIMENSIONS,
             ),
         )
     return sizes
@@ -239,7 +237,7 @@ def _set(line: Line, jump: Jump, state: State, value: float) -> None:
             jump,
             NOT_DEFINED,
             text,
-            (Message("Write DEF INT {jump} before this block.", jump=jump.name)),
+            Message("Write DEF INT {jump} before this block.", jump=jump.name),
         )
 
 
@@ -269,7 +267,7 @@ def _target(line: Line, jump: Jump, program: Lines, at: int) -> int:
             target=jump.target,
             steering=jump.steering,
         )
-        raise _refused(line, jump, NO_TARGET, text, ("Correct the label or the direction of the jump."))
+        raise _refused(line, jump, NO_TARGET, text, "Correct the label or the direction of the jump.")
     return place
 
 

@@ -66,7 +66,7 @@ def _contour(cycle: Cycle, flow: Flow) -> list[Element]:
             raise cycle.wrong(
                 "NPP",
                 Message("{name} refers to labels that do not exist: {named}", named=named, name="NPP"),
-                ("Correct the entries named in the message."),
+                "Correct the entries named in the message.",
                 14080,
             )
         hint = Message(

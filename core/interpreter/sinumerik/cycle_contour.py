@@ -78,9 +78,7 @@ class _Reader:
         for found in line.errors:
             raise ProgramError(found)
         if line.call or line.modal_call or (line.jump is not None and line.jump.steering not in _TAKEN):
-            raise _refused(
-                line, ("a contour can contain only moves, but this line contains a call or a jump")
-            )
+            raise _refused(line, "a contour can contain only moves, but this line contains a call or a jump")
         if line.jump is not None:
             return line.jump.steering is Steering.RETURN
         statement = statement_of(line)
@@ -121,6 +119,6 @@ def _refused(line: Line, why: str) -> ProgramError:
             WRONG_CONTOUR,
             line.block,
             Message("{what}.", what=why),
-            ("Remove this text from the program."),
+            "Remove this text from the program.",
         )
     )

@@ -32,7 +32,7 @@ def hole_of(cycle: Cycle) -> Hole:
             call=cycle.line.call,
             plane=cycle.state.plane,
         )
-        raise cycle.refused("cycle-plane", text, ("Write G17 before this block and G18 after it."))
+        raise cycle.refused("cycle-plane", text, "Write G17 before this block and G18 after it.")
     if cycle.number("_AXN", 3.0) not in {0.0, 3.0}:
         raise cycle.wrong(
             "_AXN",
@@ -44,11 +44,11 @@ def hole_of(cycle: Cycle) -> Hole:
     if cycle.given("DP") == cycle.given("DPR"):
         if not cycle.given("DP"):
             raise cycle.wrong(
-                "DP", "{name} is missing", ("Enter DP, or DPR measured from the reference plane.")
+                "DP", "{name} is missing", "Enter DP, or DPR measured from the reference plane."
             )
         bottom = cycle.length("DP")
         if cycle.length("DPR") and abs(abs(bottom - reference) - cycle.length("DPR")) > _SAME:
-            cycle.warn("cycle-depth-both", ("DP and DPR differ, so DP is used."), "Omit DP or DPR.")
+            cycle.warn("cycle-depth-both", "DP and DPR differ, so DP is used.", "Omit DP or DPR.")
     else:
         bottom = cycle.length("DP")
         if cycle.given("DPR"):
@@ -66,10 +66,7 @@ def hole_of(cycle: Cycle) -> Hole:
         raise cycle.wrong(
             name,
             text,
-            (
-                "Correct RTP, RFP and the depth so that they follow in this order along the drilling "
-                "direction."
-            ),
+            "Correct RTP, RFP and the depth so that they follow in this order along the drilling direction.",
             REFERENCE_PLANE,
         )
     return Hole(retract, reference, reference - down * cycle.size("SDIS"), bottom, down)
@@ -83,7 +80,7 @@ def seconds(cycle: Cycle, name: str) -> float:
     rpm = abs(cycle.state.rpm)
     if not rpm:
         raise cycle.wrong(
-            name, ("{name} is in revolutions, but the spindle is stopped"), ("Enter the dwell in seconds.")
+            name, "{name} is in revolutions, but the spindle is stopped", "Enter the dwell in seconds."
         )
     return -value / rpm * 60.0
 
@@ -123,7 +120,7 @@ def peck(cycle: Cycle) -> Iterator[Block]:
     hole, feed = hole_of(cycle), needed_feed(cycle)
     factor = cycle.number("FRF", 1.0) or 1.0
     if not 0.001 <= factor <= 1.0:
-        raise cycle.wrong("FRF", ("{name} must be a factor from 0.001 to 1"), "Correct the value.")
+        raise cycle.wrong("FRF", "{name} must be a factor from 0.001 to 1", "Correct the value.")
     clears = cycle.machining("VARI", range(2)) == 1
     at_start, at_bottom = seconds(cycle, "DTS"), seconds(cycle, "DTB")
     back = cycle.size("_VRT") or 1.0
@@ -159,7 +156,7 @@ def depths(cycle: Cycle, hole: Hole) -> list[float]:
     if less <= -1.0:
         raise cycle.wrong(
             "DAM",
-            ("{name} must be an amount, or a factor greater than -1 and not greater than 0"),
+            "{name} must be an amount, or a factor greater than -1 and not greater than 0",
             "Correct the value.",
         )
     smallest = max(least, 0.0)
@@ -169,7 +166,7 @@ def depths(cycle: Cycle, hole: Hole) -> list[float]:
         floor = smallest or (max(0.0, less))
         step = max(shorter, floor) if not halved else whole - reached
         if step < 1e-3 or len(found) > MOST_PASSES:
-            raise cycle.wrong("DAM", "{name} makes the pecks too small", ("Enter _MDEP, or reduce DAM."))
+            raise cycle.wrong("DAM", "{name} makes the pecks too small", "Enter _MDEP, or reduce DAM.")
         left = whole - reached
         if step < left - _SAME and left < 2.0 * step and not halved:
             step, halved = left / 2.0, True

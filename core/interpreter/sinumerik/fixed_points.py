@@ -56,7 +56,7 @@ def _named(state: State, statement: Statement, words: frozenset[str]) -> list[Wo
         raise statement.refuse(word, "own-block", text, Message("Write {word} X1=0 Z1=0.", word=word.text))
     if (code := state.modal.nose_comp) != 40:
         text = Message(
-            ("{word} moves the tool off the contour and cannot be used while G{code} is active."),
+            "{word} moves the tool off the contour and cannot be used while G{code} is active.",
             word=word.text,
             code=code,
         )
@@ -89,7 +89,7 @@ def _missing(statement: Statement, axis: str, number: int, known: int) -> Progra
             number=number,
         )
         return statement.refuse(
-            word, "fixed-point", text, (Message("Correct FP, or add the point to {key}.", key=key))
+            word, "fixed-point", text, Message("Correct FP, or add the point to {key}.", key=key)
         )
     text = Message(
         "{word}: the machine file does not define a fixed point for {axis}.", word=word.text, axis=axis

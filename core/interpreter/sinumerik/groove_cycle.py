@@ -53,7 +53,7 @@ def groove_of(cycle: Cycle) -> Groove:
         raise cycle.wrong(
             "VARI",
             Message(
-                ("{name} is {kind}, which specifies a face groove and is not supported"),
+                "{name} is {kind}, which specifies a face groove and is not supported",
                 kind=kind,
                 name="VARI",
             ),
@@ -70,7 +70,7 @@ def groove_of(cycle: Cycle) -> Groove:
     if x - out * depth < 0.0:
         raise cycle.wrong(
             "DIAG",
-            ("{name} makes the groove reach past the spindle centerline"),
+            "{name} makes the groove reach past the spindle centerline",
             "Correct SPD or DIAG.",
             WRONG_FORM,
         )
@@ -82,7 +82,7 @@ def _run(cycle: Cycle, name: str, depth: float) -> float:
     angle = cycle.number(name)
     if not 0.0 <= angle <= _STEEPEST:
         raise cycle.wrong(
-            name, ("{name} must be a flank angle from 0 to less than 90 degrees"), "Correct the value."
+            name, "{name} must be a flank angle from 0 to less than 90 degrees", "Correct the value."
         )
     return depth * tan(radians(angle))
 
@@ -118,7 +118,7 @@ def tool_width(cycle: Cycle, widest: float) -> tuple[float, bool]:
             name=name,
         )
         raise cycle.refused(
-            WRONG_WIDTH, text, (Message("Set {other} on the TOOL OFFSETS page (F8).", other=edge_name(other)))
+            WRONG_WIDTH, text, Message("Set {other} on the TOOL OFFSETS page (F8).", other=edge_name(other))
         )
     here, there = tools[key], tools[other]
     # A corner further to plus has the smaller machine position at part zero.
@@ -195,9 +195,9 @@ class _Plan:
             raise self._cycle.wrong(
                 "IDEP",
                 Message(
-                    ("{name} would need {count} steps, which is too many"), count=f"{count:,}", name="IDEP"
+                    "{name} would need {count} steps, which is too many", count=f"{count:,}", name="IDEP"
                 ),
-                ("Look for a missing decimal point."),
+                "Look for a missing decimal point.",
             )
         steps = [self._to(self._clear, place)]
         for k in range(1, count + 1):

@@ -31,12 +31,12 @@ def places(state: State, line: Line) -> Iterator[Block]:
     if plane is None or not plane.along_z:
         text = Message("{call} uses positions in X and Y, but this lathe has no Y axis.", call=line.call)
         raise cycle.refused(
-            "not-in-subset", text, ("Write TRANSMIT before this block, or program the positions after MCALL.")
+            "not-in-subset", text, "Write TRANSMIT before this block, or program the positions after MCALL."
         )
     number = cycle.whole("NUM", 0, 0, _MOST)
     if not number:
         raise cycle.wrong(
-            "NUM", ("{name} is the number of holes and must be greater than 0"), "Correct the value."
+            "NUM", "{name} is the number of holes and must be greater than 0", "Correct the value."
         )
     found = _row(cycle, number) if line.call == "HOLES1" else _circle(cycle, number)
     for k, (x, y) in enumerate(found, 1):
@@ -50,8 +50,8 @@ def _row(cycle: Cycle, number: int) -> list[tuple[float, float]]:
     if number > 1 and not apart:
         raise cycle.wrong(
             "DBH",
-            ("{name} is the distance between the holes and must be greater than 0"),
-            ("Correct the value."),
+            "{name} is the distance between the holes and must be greater than 0",
+            "Correct the value.",
         )
     ways = [first + apart * k for k in range(number)]
     return [(x + way * cos(angle), y + way * sin(angle)) for way in ways]

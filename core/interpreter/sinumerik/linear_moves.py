@@ -133,7 +133,7 @@ def _slide(state: State, statement: Statement, name: str, begun: float) -> float
             word,
             "distance-behind-tool",
             text,
-            (Message("Program a position of {name} before this block.", name=name)),
+            Message("Program a position of {name} before this block.", name=name),
         )
     return begun + value
 
@@ -146,7 +146,7 @@ def _polar(state: State, statement: Statement) -> tuple[float, float]:
         if name in statement.words:
             text: str = Message("{text} cannot be combined with RP and AP.", text=statement.words[name].text)
             raise statement.refuse(
-                statement.words[name], "polar-both", text, ("Remove this word, or remove RP and AP.")
+                statement.words[name], "polar-both", text, "Remove this word, or remove RP and AP."
             )
     if (radius is None or angle is None) and state.polar is None:
         text = "the first polar move needs RP and AP."
@@ -157,7 +157,7 @@ def _polar(state: State, statement: Statement) -> tuple[float, float]:
     turn += last[1] if angle is not None and angle.form is Form.IC else 0.0
     if far < 0.0:
         raise statement.refuse(
-            radius, "not-positive", ("The resulting RP is less than 0."), ("Correct the value.")
+            radius, "not-positive", "The resulting RP is less than 0.", "Correct the value."
         )
     state.polar = far, turn
     state.moved_by_tool.clear()
@@ -176,18 +176,15 @@ def _inclined(
         raise statement.refuse(
             word,
             "word-unused",
-            (Message("{word} can be used only in a straight move.", word=word.text)),
+            Message("{word} can be used only in a straight move.", word=word.text),
             "Write G1.",
         )
     if x is None and z is None:
         text = Message(
-            (
-                "{word} without X or Z begins a contour of two straight lines, which TurnDesk "
-                "does not support."
-            ),
+            "{word} without X or Z begins a contour of two straight lines, which TurnDesk does not support.",
             word=word.text,
         )
-        raise statement.refuse(word, "not-in-subset", text, ("Add X or Z of the end point to the block."))
+        raise statement.refuse(word, "not-in-subset", text, "Add X or Z of the end point to the block.")
     if x is not None and z is not None:
         text = Message(
             "{word} cannot be combined with both X and Z, which define the end point.", word=word.text
@@ -199,8 +196,8 @@ def _inclined(
             raise statement.refuse(
                 word,
                 "angle-none",
-                ("this straight line never reaches the programmed Z."),
-                ("Write X together with ANG."),
+                "this straight line never reaches the programmed Z.",
+                "Write X together with ANG.",
             )
         return begun[0] + (z - begun[1]) * tan(angle), z
     assert x is not None
@@ -208,8 +205,8 @@ def _inclined(
         raise statement.refuse(
             word,
             "angle-none",
-            ("this straight line never reaches the programmed X."),
-            ("Write Z together with ANG."),
+            "this straight line never reaches the programmed X.",
+            "Write Z together with ANG.",
         )
     return x, begun[1] + (x - begun[0]) / tan(angle)
 
@@ -272,7 +269,7 @@ def straight(state: State, statement: Statement) -> Block:
             motion=f"{state.motion:d}",
         )
         raise statement.refuse(
-            statement.words[name], "word-unused", text, ("Write G2 or G3, or remove the word.")
+            statement.words[name], "word-unused", text, "Write G2 or G3, or remove the word."
         )
     travel = travel_of(state, statement)
     if state.motion is Motion.RAPID:

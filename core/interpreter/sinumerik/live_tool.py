@@ -71,7 +71,7 @@ def _speed(state: State, statement: Statement, word: Word) -> None:
                 word,
                 "live-speed",
                 text,
-                (Message("Set the live tool to {value} rpm by hand.", value=f"{value:g}")),
+                Message("Set the live tool to {value} rpm by hand.", value=f"{value:g}"),
             )
         )
 

@@ -33,7 +33,7 @@ def check_m(state: State, statement: Statement, lacking: list[Need]) -> None:
                 statement,
                 word,
                 f"M{code}",
-                ("the machine file contains ignored = true for this M code"),
+                "the machine file contains ignored = true for this M code",
             )
         elif code in M_FUNCTIONS:
             tell_idle(state, statement, word, f"M{code}", _idle(state, code))
@@ -67,7 +67,7 @@ def _refused(state: State, statement: Statement, code: int, word: Word) -> Progr
             word, "m-disabled", text, Message("Set enabled = true for {code} under [m_codes].", code=code)
         )
     text = Message("M{code} belongs to the ISO dialect of this control.", code=code)
-    return statement.refuse(word, "m-unknown", text, ("Call a subprogram by its name, and end it with M17."))
+    return statement.refuse(word, "m-unknown", text, "Call a subprogram by its name, and end it with M17.")
 
 
 def _tell_unanswered(state: State, statement: Statement, code: int, word: Word) -> None:

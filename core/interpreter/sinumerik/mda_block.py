@@ -24,13 +24,13 @@ def needs_others(source: Source, third_axis: str = OWN) -> Diagnostic | None:
     if line.call or line.modal_call:
         return _refuse(
             line.call_column,
-            Message(("{call} calls another program and cannot be used in MDI"), call=line.call),
+            Message("{call} calls another program and cannot be used in MDI", call=line.call),
         )
     if line.jump is not None and line.jump.steering not in _ALONE:
         return _refuse(
             line.jump.column,
             Message(
-                ("{steering} jumps to another block and cannot be used in MDI"), steering=line.jump.steering
+                "{steering} jumps to another block and cannot be used in MDI", steering=line.jump.steering
             ),
         )
     return _words(line)

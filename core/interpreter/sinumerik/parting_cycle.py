@@ -27,13 +27,13 @@ def part_off(cycle: Cycle) -> Iterator[Block]:
     A speed _SV1 is one of the surface beside its limit _SV2, counted as G96 counts S, else rpm; behind the
     cycle the speed of before is in force again, or the last one where the spindle stood without a speed.
     """
-    cycle.zero_only("_RC", ("cut the chamfer or the radius with G1 before the cycle"))
-    cycle.zero_only("_VARI", ("the tool only retracts, because this machine has no parts catcher"))
+    cycle.zero_only("_RC", "cut the chamfer or the radius with G1 before the cycle")
+    cycle.zero_only("_VARI", "the tool only retracts, because this machine has no parts catcher")
     if cycle.whole("_AMODE", 0, 0, 10**8) % 100:
         hint = "Enter _DIAG1 and _DIAG2 as diameters, and omit _AMODE."
         raise cycle.wrong(
             "_AMODE",
-            ("{name} specifies depths measured from SPD, which is not supported"),
+            "{name} specifies depths measured from SPD, which is not supported",
             hint,
             "not-in-subset",
         )
@@ -46,7 +46,7 @@ def part_off(cycle: Cycle) -> Iterator[Block]:
         raise cycle.wrong(
             "_SS2",
             Message(
-                ("{name} is {value}, which is not a valid speed for this spindle"),
+                "{name} is {value}, which is not a valid speed for this spindle",
                 value=f"{rpm:g}",
                 name="_SS2",
             ),
@@ -71,7 +71,7 @@ def _depths(cycle: Cycle) -> tuple[float, float]:
             last=f"{last:g}",
             name="_DIAG1",
         )
-        raise cycle.wrong("_DIAG1", text, ("Enter diameters, with SPD as the largest."), WRONG_DEPTH)
+        raise cycle.wrong("_DIAG1", text, "Enter diameters, with SPD as the largest.", WRONG_DEPTH)
     return slow / 2.0, last / 2.0
 
 
@@ -100,7 +100,7 @@ def _speed(cycle: Cycle, before: Modal) -> Modal:
         raise cycle.wrong(
             "_SV1",
             Message(
-                ("{name} is {value}, which is not a valid speed for this spindle"),
+                "{name} is {value}, which is not a valid speed for this spindle",
                 value=f"{value:g}",
                 name="_SV1",
             ),
@@ -113,7 +113,7 @@ def _speed(cycle: Cycle, before: Modal) -> Modal:
         modal = modal._replace(css=False, rpm=value)
     if not modal.spindle or not (modal.surface_speed if modal.css else modal.rpm):
         text = "the spindle is stopped, and neither _SV1 with _SDAC nor S with M3 starts it."
-        raise cycle.refused(NO_DIRECTION, text, ("Write S and M3 before this block."))
+        raise cycle.refused(NO_DIRECTION, text, "Write S and M3 before this block.")
     return modal
 
 

@@ -26,14 +26,14 @@ def arc(state: State, statement: Statement) -> Block:
             statement.g.get("motion"),
             "arc-plane",
             "arcs in X and Z need G18.",
-            ("Write G18 before this block."),
+            "Write G18 before this block.",
         )
     _check_words(state, statement)
     travel = travel_of(state, statement)
     if not travel.frame.uniform:
         text = "SCALE uses different factors for X and Z, so an arc is not possible."
         raise statement.refuse(
-            statement.g.get("motion"), "arc-scaled", text, ("Use the same factor for both axes.")
+            statement.g.get("motion"), "arc-scaled", text, "Use the same factor for both axes."
         )
     clockwise, (centre, travel) = _found(state, statement, travel)
     offset = travel.offset_x
@@ -58,7 +58,7 @@ def _check_words(state: State, statement: Statement) -> None:
             word,
             "word-unused",
             Message("{word} cannot be used with {kind}.", word=word.text, kind=kind),
-            ("Remove this word, or program the type of arc that uses it."),
+            "Remove this word, or program the type of arc that uses it.",
         )
 
 
@@ -78,7 +78,7 @@ def _through(state: State, statement: Statement, travel: AxisTravel) -> tuple[bo
     begun, words = travel.begun, statement.words
     if not _OF_CIP & words.keys():
         text = "CIP needs I1 and K1 to define a point on the arc."
-        raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, ("Add I1 and K1."))
+        raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, "Add I1 and K1.")
     relative = state.modal.absolute is False
     x, z = begun
     if "I1" in words:
@@ -147,7 +147,7 @@ def _centre(
     if not by_centre:
         text = "the arc needs CR, AR, or I and K."
         raise statement.refuse(
-            statement.g.get("motion"), "arc-centre-missing", text, ("Add one of the missing values.")
+            statement.g.get("motion"), "arc-centre-missing", text, "Add one of the missing values."
         )
     centre = _by_words(state, statement, travel)
     _check_radii(statement, travel, centre)
@@ -198,7 +198,7 @@ def _by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise:
         raise statement.refuse(
             word,
             "arc-both",
-            ("the arc has AR, an end point and a center, but only two of them are allowed."),
+            "the arc has AR, an end point and a center, but only two of them are allowed.",
             "Keep only two of the three: AR, the end point and the center.",
         )
     # To the right of the chord for a clockwise arc; for more than half a turn the cotangent changes side.

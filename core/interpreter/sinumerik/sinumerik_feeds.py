@@ -32,7 +32,7 @@ def feed_words(state: State, statement: Statement) -> None:
                 word,
                 "not-positive",
                 Message("{word} is not between 1 and 200.", word=word.text),
-                ("Correct the value."),
+                "Correct the value.",
             )
     if word := statement.words.get("FRCM"):
         value = state.number(statement, word)
@@ -71,13 +71,13 @@ def check_feed(
     if modal.css and modal.spindle and not modal.surface_speed:
         text = "G96 is active, but no surface speed is programmed with S."
         raise statement.refuse(
-            statement.words.get("S"), "surface-speed-missing", text, ("Program S together with G96.")
+            statement.words.get("S"), "surface-speed-missing", text, "Program S together with G96."
         )
     by_tool = modal.per_rev and state.master != 1
     if by_tool and not state.live_rpm:
         text = "G95 needs the live tool speed because SETMS(2) is active, but the live tool is stopped."
         raise statement.refuse(
-            _mover(statement), "g95-spindle-stopped", text, ("Start the live tool with S and M3.")
+            _mover(statement), "g95-spindle-stopped", text, "Start the live tool with S and M3."
         )
     if modal.per_rev and not by_tool and not (state.rpm_at(x0) and state.rpm_at(x1)):
         text = "G95 needs a spindle speed, but the spindle is stopped."
@@ -85,7 +85,7 @@ def check_feed(
             _mover(statement),
             "g95-spindle-stopped",
             text,
-            ("Start the spindle with S and M3 or M4, or use G94."),
+            "Start the spindle with S and M3 or M4, or use G94.",
         )
     feed *= abs(state.live_rpm) / 60.0 if by_tool else 1.0
     return feed * state.override / (MM_PER_INCH if in_degrees and state.feed_in_inches else 1.0)

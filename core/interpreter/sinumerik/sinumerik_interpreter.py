@@ -272,7 +272,7 @@ class Interpreter(Interpretation):
                     "not-in-subset",
                     line.block,
                     text,
-                    ("Remove this text from the program."),
+                    "Remove this text from the program.",
                 )
             )
         if line.call not in self._state.told:
@@ -388,7 +388,7 @@ class Interpreter(Interpretation):
                 word,
                 "word-unused",
                 Message("{word} can be used only with {total}.", word=word.text, total=of),
-                ("Remove this text from the program."),
+                "Remove this text from the program.",
             )
         elif statement.moves or (ARC & statement.words.keys()):
             yield from self._move(statement)
@@ -484,7 +484,7 @@ def _no_place(state: State, statement: Statement, word: Word, name: str) -> Prog
         "the name {name} is not defined: it is neither a word nor a variable of this program.", name=name
     )
     return statement.refuse(
-        word, NOT_DEFINED, text, (Message("Write DEF REAL {word} before this block.", word=word.name))
+        word, NOT_DEFINED, text, Message("Write DEF REAL {word} before this block.", word=word.name)
     )
 
 

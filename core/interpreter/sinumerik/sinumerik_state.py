@@ -222,5 +222,5 @@ def positive(statement: Statement, word: Word, value: float, what: str) -> float
         word,
         "not-positive",
         Message("{word}: {what} must be greater than 0.", word=word.text, what=what),
-        ("Correct the value."),
+        "Correct the value.",
     )

@@ -138,7 +138,7 @@ def _sort_g(statement: Statement, word: Word, group: str | None) -> None:
                 word,
                 "not-in-subset",
                 Message("{word}: {problem}.", word=word.text, problem=why),
-                ("Remove this text from the program."),
+                "Remove this text from the program.",
             )
         if habit := iso_habit(statement.line.text.upper()):
             raise statement.refuse(word, "other-control", habit.text, habit.hint)
@@ -146,7 +146,7 @@ def _sort_g(statement: Statement, word: Word, group: str | None) -> None:
             word,
             UNKNOWN_G,
             Message("{word} is not a G function of this control.", word=word.text),
-            ("Remove this text from the program."),
+            "Remove this text from the program.",
         )
     before = statement.g.get(group)
     if before is not None:
@@ -176,7 +176,7 @@ def _check_m(statement: Statement) -> None:
                 "M{value} and M{value2} cannot be in the same block.", value=found[0], value2=found[1]
             )
             raise statement.refuse(
-                statement.m[found[1]], "m-conflict", text, ("Keep only one of the conflicting words.")
+                statement.m[found[1]], "m-conflict", text, "Keep only one of the conflicting words."
             )
 
 
@@ -213,7 +213,7 @@ def _check_corner(statement: Statement) -> None:
             "{corners} and {corners2} cannot be in the same block.", corners=corners[0], corners2=corners[1]
         )
         raise statement.refuse(
-            statement.words[corners[1]], "corner-both", text, ("Keep only one of the conflicting words.")
+            statement.words[corners[1]], "corner-both", text, "Keep only one of the conflicting words."
         )
     if corners and not (known.PLACES - {"C"}) & statement.words.keys():
         text = Message("{corners} is in a block without X or Z.", corners=corners[0])
@@ -221,5 +221,5 @@ def _check_corner(statement: Statement) -> None:
             statement.words[corners[0]],
             "corner-without-move",
             text,
-            ("Put this word in a block that contains a move."),
+            "Put this word in a block that contains a move.",
         )

@@ -53,7 +53,7 @@ def kind_of(cycle: Cycle) -> Kind:
         raise cycle.wrong(
             "VARI",
             told,
-            ("Enter 1 for roughing, 5 for finishing or 9 for both, for external machining along Z."),
+            "Enter 1 for roughing, 5 for finishing or 9 for both, for external machining along Z.",
             MACHINING_TYPE,
         )
     rest = (number - 1) % 4
@@ -67,7 +67,7 @@ def stock_removal(cycle: Cycle, contour: list[Element]) -> Iterator[Block]:
         raise cycle.wrong(
             "NPP",
             "{name} refers to a contour without lines or arcs",
-            ("Write the points of the contour."),
+            "Write the points of the contour.",
             WRONG_CONTOUR,
         )
     if len(contour) > _MOST_ELEMENTS:
@@ -79,7 +79,7 @@ def stock_removal(cycle: Cycle, contour: list[Element]) -> Iterator[Block]:
                 most_elements=f"{_MOST_ELEMENTS:,}",
                 name="NPP",
             ),
-            ("Split the contour into smaller parts."),
+            "Split the contour into smaller parts.",
         )
     plan = _Plan(cycle, kind, contour)
     steps = plan.approach()
@@ -147,7 +147,7 @@ class _Plan:
             hint = "Reduce FAL, or widen the narrow part of the contour."
             raise self._cycle.wrong(
                 "FAL",
-                ("with allowance {name}, no continuous path along the contour is possible"),
+                "with allowance {name}, no continuous path along the contour is possible",
                 hint,
                 61606,
             ) from None
@@ -170,7 +170,7 @@ class _Plan:
         infeed = cycle.size("MID")
         if not infeed:
             raise cycle.wrong(
-                "MID", ("{name} is missing, so the depth of a pass is not defined"), "Write MID.", NO_INFEED
+                "MID", "{name} is missing, so the depth of a pass is not defined", "Write MID.", NO_INFEED
             )
         contour, left = self._with_allowance()
         area, view = self._area(contour, left)
@@ -178,7 +178,7 @@ class _Plan:
             raise cycle.wrong(
                 "NPP",
                 "{name} specifies a contour with no material to cut",
-                ("Check the direction of the contour."),
+                "Check the direction of the contour.",
                 WRONG_CONTOUR,
             )
         count = ceil(area.deepest / infeed - _WHOLE)
@@ -186,16 +186,16 @@ class _Plan:
             raise cycle.wrong(
                 "MID",
                 Message(
-                    ("{name} would need {count} passes, which is too many"), count=f"{count:,}", name="MID"
+                    "{name} would need {count} passes, which is too many", count=f"{count:,}", name="MID"
                 ),
-                ("Look for a missing decimal point."),
+                "Look for a missing decimal point.",
             )
         rougher = Rougher(area, 1.0, self._off)
         for k in range(1, count + 1):
             rougher.cut(area.deepest * k / count)
         if rougher.plunged and not cycle.number("FF2") and cycle.state.modal.feed is None:
             raise cycle.wrong(
-                "FF2", ("{name} is missing, but the contour has a relief cut"), "Write FF2.", 61003
+                "FF2", "{name} is missing, but the contour has a relief cut", "Write FF2.", 61003
             )
         moves = self._run(rougher, view)
         return self._fed(moves, cycle.feed("FF1"), cycle.feed("FF2"), breaks=True)
@@ -212,7 +212,7 @@ class _Plan:
             hint = "End the contour at a point where the tool can leave it."
             raise self._cycle.wrong(
                 "NPP",
-                ("{name} specifies a contour that the tool cannot approach or leave with enough clearance"),
+                "{name} specifies a contour that the tool cannot approach or leave with enough clearance",
                 hint,
                 61607,
             ) from None
@@ -264,14 +264,12 @@ class _Plan:
         if count > MOST_PASSES:
             raise self._cycle.wrong(
                 "DAM",
-                (
-                    Message(
-                        ("{name} would interrupt a pass {count} times, which is too many"),
-                        count=f"{count:,}",
-                        name="DAM",
-                    )
+                Message(
+                    "{name} would interrupt a pass {count} times, which is too many",
+                    count=f"{count:,}",
+                    name="DAM",
                 ),
-                ("Correct the value."),
+                "Correct the value.",
             )
         for k in range(1, count + 1):
             share = min(k * length / abs(way), 1.0)
@@ -305,7 +303,7 @@ def _nose_of(cycle: Cycle) -> tuple[float, Point]:
             "the tool has no tip quadrant, so {call} ignores the nose radius on tapers and arcs.",
             call=cycle.line.call,
         )
-        cycle.warn("comp-no-quadrant", text, ("Enter the tip quadrant on the TOOL OFFSETS page (F8)."))
+        cycle.warn("comp-no-quadrant", text, "Enter the tip quadrant on the TOOL OFFSETS page (F8).")
         return 0.0, (0.0, 0.0)
     z, x = TIP_DIRECTIONS[edge.quadrant]
     return edge.nose_radius, (x * edge.nose_radius, z * edge.nose_radius)

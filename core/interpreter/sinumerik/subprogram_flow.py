@@ -283,10 +283,8 @@ class Flow:
             end = _end_label(call.routine, start, here)
         if end <= start or (start <= here < end):
             text = Message(
-                (
-                    "the program section to be repeated contains the {steering} block or does not "
-                    "end before that block."
-                ),
+                "the program section to be repeated contains the {steering} block or does not "
+                "end before that block.",
                 steering=jump.steering,
             )
             raise _steering_fault(
@@ -294,7 +292,7 @@ class Flow:
                 jump,
                 NESTING,
                 text,
-                ("Put the whole section to be repeated before or after this block."),
+                "Put the whole section to be repeated before or after this block.",
             )
         passes = 1
         if jump.passes is not None:
@@ -357,7 +355,7 @@ def _missing(line: Line) -> ProgramError:
             line,
             "not-in-subset",
             Message("{word}: {problem}.", word=line.call, problem=reason),
-            ("Remove this text from the program."),
+            "Remove this text from the program.",
         )
     text = Message("subprogram {call} does not exist.", call=line.call)
     hint = Message(

@@ -31,7 +31,7 @@ def lead_of_tap(cycle: Cycle) -> float:
     unit = cycle.whole("_PITA", 0, 0, 4)
     if unit == 4:
         raise cycle.wrong(
-            "_PITA", ("{name} is 4, which specifies the lead as a module"), "Enter PIT in mm.", WRONG_LEAD
+            "_PITA", "{name} is 4, which specifies the lead as a module", "Enter PIT in mm.", WRONG_LEAD
         )
     pit, size = cycle.number("PIT"), cycle.number("MPIT")
     if pit:
@@ -44,7 +44,7 @@ def lead_of_tap(cycle: Cycle) -> float:
         raise cycle.wrong(
             "MPIT",
             "{name} does not define a lead",
-            ("Enter PIT, or MPIT from 3 to 68 for M3 to M68."),
+            "Enter PIT, or MPIT from 3 to 68 for M3 to M68.",
             WRONG_LEAD,
         )
     return copysign(lead, size)
@@ -62,7 +62,7 @@ def rigid(cycle: Cycle) -> Iterator[Block]:
         raise cycle.wrong(
             "PIT",
             "{name} does not define a lead",
-            ("Enter PIT, or MPIT from 3 to 68 for M3 to M68."),
+            "Enter PIT, or MPIT from 3 to 68 for M3 to M68.",
             WRONG_LEAD,
         )
     into = _speed(cycle, "SST", state.modal.rpm)
@@ -70,12 +70,12 @@ def rigid(cycle: Cycle) -> Iterator[Block]:
     rest = cycle.whole("SDAC", 5, 3, 5)
     if rest != 5 and not state.modal.rpm:
         raise cycle.wrong(
-            "SDAC", ("{name} starts the spindle, but no S is programmed"), ("Write S before this block.")
+            "SDAC", "{name} starts the spindle, but no S is programmed", "Write S before this block."
         )
     wanted = cycle.number("POSS")
     if not 0.0 <= wanted < 360.0:
         raise cycle.wrong(
-            "POSS", ("{name} must be an angle from 0 to less than 360 degrees"), "Correct the value."
+            "POSS", "{name} must be an angle from 0 to less than 360 degrees", "Correct the value."
         )
     lock = [Step(0.0, 0.0, action=SpindleLock(orient=False), spindle=0)]
     steps = [*approach(cycle, hole), *lock]
@@ -95,7 +95,7 @@ def _speed(cycle: Cycle, name: str, default: float) -> float:
     most = cycle.state.setup.limits.c_max_rpm
     if value <= 0.0:
         raise cycle.wrong(
-            name, "{name} does not define a speed", ("Enter a speed, or program S before the cycle.")
+            name, "{name} does not define a speed", "Enter a speed, or program S before the cycle."
         )
     if value > most:
         text = Message(
@@ -119,7 +119,7 @@ def _ways(cycle: Cycle, hole: Hole, lead: float, speeds: tuple[float, float]) ->
         raise cycle.wrong(
             "_DAM",
             Message("{name} would need {count} steps, which is too many", count=f"{count:,}", name="_DAM"),
-            ("Look for a missing decimal point."),
+            "Look for a missing decimal point.",
         )
     back, at, steps = cycle.size("_VRT") or 1.0, hole.clear, list[Step]()
 
@@ -150,21 +150,21 @@ def compensating(cycle: Cycle) -> Iterator[Block]:
     modal, sign = state.modal, state.modal.spindle
     if not sign or not modal.rpm or modal.css:
         text = Message("{call} needs the spindle to turn at a speed in rpm.", call=cycle.line.call)
-        raise cycle.refused(NO_DIRECTION, text, ("Write G97 with S and M3 or M4 before this block."))
+        raise cycle.refused(NO_DIRECTION, text, "Write G97 with S and M3 or M4 before this block.")
     by_feed = _by_feed(cycle)
     back, rest = cycle.whole("SDR", 0, 0, 5), cycle.whole("SDAC", 3 if sign > 0 else 4, 3, 5)
     if back not in {0, 3, 4} or (back and (back == 3) is (sign > 0)):
         raise cycle.wrong(
             "SDR",
-            ("{name} does not reverse the spindle for the tap"),
-            ("Enter 0, or the reverse direction: 4 after M3, or 3 after M4."),
+            "{name} does not reverse the spindle for the tap",
+            "Enter 0, or the reverse direction: 4 after M3, or 3 after M4.",
         )
     lead = abs(lead_of_tap(cycle))
     if not lead and not by_feed:
         raise cycle.wrong(
             "PIT",
             "{name} does not define a lead",
-            ("Enter PIT or MPIT, or ENC 1 to use the active feed rate."),
+            "Enter PIT or MPIT, or ENC 1 to use the active feed rate.",
             WRONG_LEAD,
         )
     feed = needed_feed(cycle) if by_feed else lead if modal.per_rev else lead * modal.rpm / 60.0
@@ -186,7 +186,7 @@ def _by_feed(cycle: Cycle) -> bool:
     if value not in {0, 1, 11, 20}:
         raise cycle.wrong(
             "ENC",
-            Message(("{name} is {value} but must be 0, 1, 11 or 20"), value=value, name="ENC"),
+            Message("{name} is {value} but must be 0, 1, 11 or 20", value=value, name="ENC"),
             "Correct the value.",
         )
     return value == 1
@@ -204,7 +204,7 @@ def tap(state: State, statement: Statement) -> Block:
         text = Message(
             "{code} turns the spindle as the C axis, but the spindle is not locked as C.", code=code
         )
-        raise statement.refuse(word, "spindle-position", text, ("Write SPOS=0 before this block."))
+        raise statement.refuse(word, "spindle-position", text, "Write SPOS=0 before this block.")
     for name in ("X", "C", "I", "CR", "AR"):
         if other := statement.words.get(name):
             text = Message("{other}: {code} can tap only along Z.", other=other.text, code=code)
@@ -223,7 +223,7 @@ def tap(state: State, statement: Statement) -> Block:
             word,
             "thread-length",
             Message("{code} does not move along Z.", code=code),
-            ("Enter Z of the end point."),
+            "Enter Z of the end point.",
         )
     rpm = state.modal.rpm
     if not rpm:

@@ -50,14 +50,10 @@ def modulo_travel(form: Form, value: float, position: float) -> float:
     if not 0.0 <= value < TURN:
         raise TargetError(
             WRONG_MODULO,
-            (
-                Message(
-                    (
-                        "{value} is not a valid position of a modulo axis; valid positions are from 0 "
-                        "to less than 360"
-                    ),
-                    value=f"{value:.9g}",
-                )
+            Message(
+                "{value} is not a valid position of a modulo axis; valid positions are from 0 "
+                "to less than 360",
+                value=f"{value:.9g}",
             ),
         )
     at = wrapped(position)

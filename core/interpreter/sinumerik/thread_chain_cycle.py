@@ -24,7 +24,7 @@ def thread_chain(cycle: Cycle) -> Iterator[Block]:
         if along * (b[1] - a[1]) < _SAME:
             raise cycle.wrong(
                 f"PO{k}",
-                ("{name} does not continue the thread in the same Z direction"),
+                "{name} does not continue the thread in the same Z direction",
                 "PO1 to PO4 must follow each other in the same Z direction.",
             )
     depths = depths_of(cycle, equal_chip=kind in {3, 4})

@@ -48,12 +48,12 @@ def lead_of(cycle: Cycle) -> float:
     """PIT, or what MPIT stands for. Raises ProgramError."""
     for name in ("_PIT1", "_GST", "_MID", "_FDEP"):
         if cycle.line.call == "CYCLE99":
-            cycle.zero_only(name, ("CYCLE99 supports only the functions of CYCLE97"))
+            cycle.zero_only(name, "CYCLE99 supports only the functions of CYCLE97")
     pit, size = cycle.length("PIT"), cycle.number("MPIT")
     if cycle.given("PIT") and pit:
         if pit < 0.0:
             raise cycle.wrong(
-                "PIT", ("{name} is a lead and must be greater than 0"), "Correct the value.", WRONG_LEAD
+                "PIT", "{name} is a lead and must be greater than 0", "Correct the value.", WRONG_LEAD
             )
         if size and abs(COARSE_LEADS.get(round(size), 0.0) - pit) > 1e-6:
             raise cycle.wrong(
@@ -69,7 +69,7 @@ def lead_of(cycle: Cycle) -> float:
         raise cycle.wrong(
             name,
             "{name} does not define a lead",
-            ("Enter PIT, or MPIT from 3 to 68 for M3 to M68."),
+            "Enter PIT, or MPIT from 3 to 68 for M3 to M68.",
             WRONG_LEAD,
         )
     return lead
@@ -83,7 +83,7 @@ def read_thread(cycle: Cycle) -> Thread:
     z0, z1 = cycle.needed("SPL"), cycle.needed("FPL")
     if abs(z1 - z0) < 1e-6:
         raise cycle.wrong(
-            "FPL", ("{name} is the same position as the start of the thread"), "Correct SPL or FPL."
+            "FPL", "{name} is the same position as the start of the thread", "Correct SPL or FPL."
         )
     along = 1.0 if z1 > z0 else -1.0
     x0 = cycle.over_zero("DM1") / 2.0
@@ -105,7 +105,7 @@ def depths_of(cycle: Cycle, *, equal_chip: bool) -> tuple[float, ...]:
     count, idle = cycle.whole("NRC", 1, 0, MOST_PASSES), cycle.whole("NID", 0, 0, MOST_PASSES)
     if left >= depth:
         raise cycle.wrong(
-            "FAL", ("{name} is not less than TDEP, so no depth remains for roughing"), "Reduce FAL."
+            "FAL", "{name} is not less than TDEP, so no depth remains for roughing", "Reduce FAL."
         )
     if not count and not left:
         raise cycle.wrong("NRC", "{name} is 0, so nothing would be cut", "Enter the number of passes.")
@@ -120,7 +120,7 @@ def shifts_of(cycle: Cycle, depths: tuple[float, ...]) -> tuple[float, ...]:
         angle = -abs(angle)
     if not -60.0 < angle < 60.0:
         raise cycle.wrong(
-            "IANG", ("{name} must be a flank angle of less than 60 degrees"), ("Enter half the thread angle.")
+            "IANG", "{name} must be a flank angle of less than 60 degrees", "Enter half the thread angle."
         )
     slope = tan(radians(abs(angle)))
     turn = -1.0 if angle < 0.0 else 1.0
@@ -137,14 +137,12 @@ def kind_of(cycle: Cycle) -> int:
     value = cycle.whole("VARI", 0, 0, 9_999_999)
     if value % 10 not in {1, 2, 3, 4} or value // 100_000 % 10 not in {0, 3}:
         text = Message(
-            (
-                "{name} is {value}: the last digit must be 1 to 4, and the sixth digit must be "
-                "3 (roughing and finishing together)"
-            ),
+            "{name} is {value}: the last digit must be 1 to 4, and the sixth digit must be "
+            "3 (roughing and finishing together)",
             value=value,
             name="VARI",
         )
-        raise cycle.wrong("VARI", text, ("Enter a value from 300101 to 300104."), MACHINING_TYPE)
+        raise cycle.wrong("VARI", text, "Enter a value from 300101 to 300104.", MACHINING_TYPE)
     return value % 10
 
 
@@ -154,7 +152,7 @@ def starts_of(cycle: Cycle) -> tuple[float, int]:
     first = cycle.number("NSP")
     if not 0.0 <= first < 360.0:
         raise cycle.wrong(
-            "NSP", ("{name} must be a start angle from 0 to less than 360 degrees"), "Correct the value."
+            "NSP", "{name} must be a start angle from 0 to less than 360 degrees", "Correct the value."
         )
     return first, starts
 

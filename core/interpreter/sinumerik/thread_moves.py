@@ -68,7 +68,7 @@ def _growth(state: State, statement: Statement) -> float:
     if not state.lead_change:
         text = Message("G{motion} needs F, the lead change per revolution.", motion=int(state.motion))
         raise _refused(
-            statement, "thread-lead-missing", text, ("Enter F as the lead change per revolution, in mm/rev.")
+            statement, "thread-lead-missing", text, "Enter F as the lead change per revolution, in mm/rev."
         )
     return state.lead_change if state.motion is Motion.GROWING else -state.lead_change
 
@@ -104,7 +104,7 @@ def _start_angle(
     if state.threads:
         text = Message("{word} is allowed only in the first block of a thread chain.", word=word.text)
         raise statement.refuse(
-            word, "word-unused", text, ("Write this word in the first block of the thread chain.")
+            word, "word-unused", text, "Write this word in the first block of the thread chain."
         )
     state.start_turns = turns = angle / 360.0
     far = (lead - 0.5 * growth * turns) * turns
@@ -131,7 +131,7 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
     if along is not None and across is not None:
         text = "the thread has both a lead along X and a lead along Z."
         raise statement.refuse(
-            across, "thread-lead-both", text, ("Write K for angles up to 45 degrees and I for larger angles.")
+            across, "thread-lead-both", text, "Write K for angles up to 45 degrees and I for larger angles."
         )
     word = along or across
     assert word is not None
@@ -141,7 +141,7 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
             word,
             "not-positive",
             Message("{word}: a lead must be greater than 0.", word=word.text),
-            ("Correct the value."),
+            "Correct the value.",
         )
     if along is not None:
         return value
@@ -157,7 +157,7 @@ def check_spindle(state: State, statement: Statement, lead: float) -> None:
     modal = state.modal
     if not modal.spindle or not state.rpm:
         text = "a thread needs the spindle running, but the spindle is stopped."
-        raise _refused(statement, "g95-spindle-stopped", text, ("Start the spindle with S and M3 or M4."))
+        raise _refused(statement, "g95-spindle-stopped", text, "Start the spindle with S and M3 or M4.")
     if modal.css:
         text = "G96 is active, but a thread needs the same spindle speed from the first pass to the last."
         word = statement.g.get(FEED_AND_SPEED) or statement.g.get(MOTION)

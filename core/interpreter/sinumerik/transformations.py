@@ -27,12 +27,12 @@ def transform(state: State, log: Log, statement: Statement) -> Iterator[Block]:
     word = statement.g[TRANSFORMATION]
     if (PLACES & statement.words.keys()) or statement.sets or statement.m:
         text: str = Message("{word} must be in a separate block.", word=word.text)
-        raise statement.refuse(word, "own-block", text, ("Split the block into two or more blocks."))
+        raise statement.refuse(word, "own-block", text, "Split the block into two or more blocks.")
     if state.modal.nose_comp != 40:
         text = Message(
             "{what} is not allowed while G{state} is active.", what=word.text, state=state.modal.nose_comp
         )
-        raise statement.refuse(word, COMPENSATED, text, ("Write G40 and a move before this block."))
+        raise statement.refuse(word, COMPENSATED, text, "Write G40 and a move before this block.")
     if word.name == "TRAFOOF":
         _leave(state)
         return
@@ -45,7 +45,7 @@ def transform(state: State, log: Log, statement: Statement) -> Iterator[Block]:
     if state.modal.diameter and word.name == "TRANSMIT" and "DIAMON" not in state.told:
         state.told.add("DIAMON")
         text = "DIAMON is active: in TRANSMIT, X is a diameter, but Y is not."
-        log.add(statement.warning(word, "transmit-diameter", text, ("Write DIAMOF before this block.")))
+        log.add(statement.warning(word, "transmit-diameter", text, "Write DIAMOF before this block."))
     state.transformation = Transformation(state, log, frame)
 
 
@@ -66,18 +66,18 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
             "{word} creates a Y axis from X and the spindle, but the third axis of this machine is Y.",
             word=word.text,
         )
-        raise statement.refuse(word, NOT_THERE, text, ("Program the part with the Y axis of this machine."))
+        raise statement.refuse(word, NOT_THERE, text, "Program the part with the Y axis of this machine.")
     if not limits.c_enabled:
         text = Message("{word} rotates the part with C, but this machine has no third axis.", word=word.text)
-        raise statement.refuse(word, NOT_THERE, text, ("Select a machine file that has a C axis."))
+        raise statement.refuse(word, NOT_THERE, text, "Select a machine file that has a C axis.")
     if limits.c_linear:
         text = Message(
             "{word} rotates the part with C, but the third axis of this machine is linear.", word=word.text
         )
-        raise statement.refuse(word, NOT_THERE, text, ("Select a machine file that has a C axis."))
+        raise statement.refuse(word, NOT_THERE, text, "Select a machine file that has a C axis.")
     if modal.spindle:
         text = Message("{word}: the spindle is turning, but it must be locked as the C axis.", word=word.text)
-        raise statement.refuse(word, "transformation", text, ("Write M5 or SPOS=0 before this block."))
+        raise statement.refuse(word, "transformation", text, "Write M5 or SPOS=0 before this block.")
     if modal.settable_x:
         text = Message(
             "{word}: G{settable} shifts X, but the part rotates about X0.",
@@ -103,22 +103,18 @@ def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
     sets = values[1:] if word.name == "TRACYL" else values
     if any(value not in {0.0, 1.0} for value in sets[:1]) or any(sets[1:]):
         text: str = Message(
-            (
-                "{word} selects groove walls or a data set other than the first, but only one data "
-                "set, without groove walls, is available."
-            ),
+            "{word} selects groove walls or a data set other than the first, but only one data "
+            "set, without groove walls, is available.",
             word=word.text,
         )
         raise statement.refuse(
             word,
             NOT_THERE,
             text,
-            (
-                Message(
-                    "Write {word} without a data set number or groove walls, and program the groove "
-                    "walls as contours.",
-                    word=word.name,
-                )
+            Message(
+                "Write {word} without a data set number or groove walls, and program the groove "
+                "walls as contours.",
+                word=word.name,
             ),
         )
     far = state.x - state.modal.base_x > -_SAME
@@ -127,5 +123,5 @@ def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
     diameter = values[0] * (1.0 if state.modal.metric else 25.4) if values else 0.0
     if diameter <= 0.0:
         text = "TRACYL needs the diameter on which Y is measured."
-        raise statement.refuse(word, NOT_THERE, text, ("Write the diameter, as in TRACYL(40)."))
+        raise statement.refuse(word, NOT_THERE, text, "Write the diameter, as in TRACYL(40).")
     return Side(0.0, 0.0, diameter, far=far)

@@ -131,7 +131,7 @@ class Transformation:
                 text = Message("{word}: {word2} already controls C.", word=word.text, word2=names.word)
                 if name != "C":
                     text = Message("{word} has no meaning in {word2}.", word=word.text, word2=names.word)
-                raise statement.refuse(word, "transformation", text, ("Write TRAFOOF before this block."))
+                raise statement.refuse(word, "transformation", text, "Write TRAFOOF before this block.")
             if name in names.places:
                 made = self._resolved(statement, word)
                 words[names.places[name]] = made._replace(name=names.places[name])
@@ -142,9 +142,7 @@ class Transformation:
                 text = Message(
                     "{word} is not an arc center word in G{plane}.", word=word.text, plane=names.plane
                 )
-                raise statement.refuse(
-                    word, "word-unused", text, ("Use the arc center words for this plane.")
-                )
+                raise statement.refuse(word, "word-unused", text, "Use the arc center words for this plane.")
             else:
                 words[name] = word
         return replace(statement, words=words)
@@ -273,7 +271,7 @@ class Transformation:
                     word=word.text,
                 )
             raise statement.refuse(
-                word, "not-in-subset", text, ("Program the groove walls as contours after G40.")
+                word, "not-in-subset", text, "Program the groove walls as contours after G40."
             )
         self.offn = value
 
@@ -283,17 +281,17 @@ class Transformation:
         if self.holds and self._offset != (state.modal.base_x, state.modal.base_z):
             text = "the tool or the zero point changes between two moves of a corner or a contour."
             raise statement.refuse(
-                None, "comp-with", text, ("Change the tool or the zero point before the corner or after G40.")
+                None, "comp-with", text, "Change the tool or the zero point before the corner or after G40."
             )
         if (code := statement.code(BLOCKWISE)) in {25, 26, 74, 75} or SUPPRESSION in statement.g:
             word = statement.g.get(SUPPRESSION) or statement.g[BLOCKWISE]
             if code not in {25, 26} or {"X", "Y", "Z"} & statement.words.keys():
                 text = Message(
-                    ("{word} moves the machine axes and cannot be used while {word2} is active."),
+                    "{word} moves the machine axes and cannot be used while {word2} is active.",
                     word=word.text,
                     word2=names.word,
                 )
-                raise statement.refuse(word, "transformation", text, ("Write TRAFOOF before this block."))
+                raise statement.refuse(word, "transformation", text, "Write TRAFOOF before this block.")
         if not PLACES & statement.words.keys():
             return
         word = statement.g.get(MOTION) or next(iter(statement.words.values()))
@@ -302,7 +300,7 @@ class Transformation:
                 "a thread along Z needs the spindle running, but {word} uses the spindle as C.",
                 word=names.word,
             )
-            raise statement.refuse(word, "transformation", text, ("Write TRAFOOF before this block."))
+            raise statement.refuse(word, "transformation", text, "Write TRAFOOF before this block.")
         needs = (
             state.motion in ARCS
             or state.modal.nose_comp != 40
@@ -316,7 +314,7 @@ class Transformation:
                 plane=names.plane,
             )
             raise statement.refuse(
-                word, "arc-plane", text, (Message("Write G{plane} before this block.", plane=names.plane))
+                word, "arc-plane", text, Message("Write G{plane} before this block.", plane=names.plane)
             )
 
     def _depth_of(self, taken: Statement) -> float:

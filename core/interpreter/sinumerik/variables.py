@@ -56,7 +56,7 @@ class Variables:
             text = Message(
                 "{letters} is a system variable, which TurnDesk cannot read.", letters=asked.letters
             )
-            raise refuse("system-variable", text, ("Write the value, or an R parameter that contains it."))
+            raise refuse("system-variable", text, "Write the value, or an R parameter that contains it.")
         name = place_name(asked.letters, asked.number, worth, refuse)
         if asked.letters == "R" and name[1:].isdigit():
             found = self.r.get(int(name[1:]))
@@ -123,7 +123,7 @@ class Variables:
                     )
                 ),
                 Message(
-                    ("Write {name}=… before this block, or set the value in R PARAMETERS (F10)."), name=name
+                    "Write {name}=… before this block, or set the value in R PARAMETERS (F10).", name=name
                 ),
             )
         text = Message("the name {jump} is not defined with DEF.", jump=name)

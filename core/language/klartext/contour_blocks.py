@@ -23,7 +23,7 @@ def definition(cursor: Cursor, column: int) -> ContourDef:
         if match is None:
             if cursor.keyword("VOID") or cursor.take(_DEPTH):
                 raise unsupported(
-                    cursor.line, cursor.column, ("CONTOUR DEF with a separate depth for one contour")
+                    cursor.line, cursor.column, "CONTOUR DEF with a separate depth for one contour"
                 )
             raise cursor.expected(
                 "CONTOUR DEF accepts only pockets (P) and islands (I)",

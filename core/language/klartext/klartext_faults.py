@@ -55,7 +55,7 @@ class MissingValueError(ProgramError):
             column,
             Q_UNDEFINED,
             Message("{name} has no value yet.", name=name),
-            (Message("Write {name} = … in an earlier block.", name=name)),
+            Message("Write {name} = … in an earlier block.", name=name),
         )
         super().__init__(made.diagnostic)
         self.parameter = parameter

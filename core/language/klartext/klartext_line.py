@@ -101,7 +101,7 @@ def read_line(number: int, text: str) -> KlartextLine:
             number,
             1,
             Message("The line is too long ({text_count} characters).", text_count=len(text)),
-            ("Split the line into shorter lines."),
+            "Split the line into shorter lines.",
         )
         return KlartextLine(number, error=problem.diagnostic)
     end = comment_start(text)

@@ -165,7 +165,7 @@ class Cursor:
         if instead is not None:
             return instead[1]
         return (
-            Message(("{hint} A comment begins with a semicolon (;)."), hint=hint).lstrip()
+            Message("{hint} A comment begins with a semicolon (;).", hint=hint).lstrip()
             if _TEXT.match(word)
             else hint
         )

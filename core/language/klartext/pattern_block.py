@@ -35,7 +35,7 @@ def pattern(cursor: Cursor, column: int) -> PatternDef:
         parts.append(PatternPart(match.group(1), _words(cursor, match.group(1)), at))
     if not parts:
         raise cursor.expected(
-            "PATTERN DEF has no points", ("After PATTERN DEF, write, for example, POS1 (X+0 Y+0 Z+0).")
+            "PATTERN DEF has no points", "After PATTERN DEF, write, for example, POS1 (X+0 Y+0 Z+0)."
         )
     return PatternDef(tuple(parts), column)
 

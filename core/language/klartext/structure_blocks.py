@@ -80,7 +80,7 @@ def _round_blank(cursor: Cursor) -> RoundBlank:
         at, match = cursor.column, cursor.take(_ROUND_WORD)
         if match is None:
             raise cursor.expected(
-                "Unexpected word in BLK FORM CYLINDER", ("Use only R (or D), L, DIST and RI (or DI).")
+                "Unexpected word in BLK FORM CYLINDER", "Use only R (or D), L, DIST and RI (or DI)."
             )
         if match.group(1) in words:
             raise doubled(cursor, at, match.group(1))
@@ -118,7 +118,7 @@ def _demand_all(cursor: Cursor, corner: tuple[AxisWord, ...]) -> None:
     if missing:
         raise cursor.expected(
             Message("{missing} is missing", missing=", ".join(missing)),
-            ("Write the X, Y and Z coordinates of the corner."),
+            "Write the X, Y and Z coordinates of the corner.",
         )
     if not cursor.done:
         raise cursor.expected("Unexpected word in BLK FORM")
@@ -149,7 +149,7 @@ def tool_call(cursor: Cursor) -> ToolCall:
         match = cursor.take(_TOOL_WORD)
         if match is None or (match.group(2) and match.group(1) != "F"):
             raise cursor.expected(
-                "Unexpected word in TOOL CALL", ("Use only a tool, its axis, S, F, DL, DR and DR2.")
+                "Unexpected word in TOOL CALL", "Use only a tool, its axis, S, F, DL, DR and DR2."
             )
         name, per = match.group(1), match.group(2) or per
         if name in words:
@@ -346,11 +346,11 @@ def function(cursor: Cursor, column: int) -> TipControl | Unheeded | CycleLine:
                 raise unsupported(cursor.line, column, "FUNCTION TCPM with AXIS SPAT or PATHCTRL VECTOR")
             if cursor.keyword("REFPNT TIP-CENTER", "REFPNT CENTER-CENTER"):
                 raise unsupported(
-                    cursor.line, column, ("FUNCTION TCPM with the ball center as reference point (REFPNT)")
+                    cursor.line, column, "FUNCTION TCPM with the ball center as reference point (REFPNT)"
                 )
             if not cursor.keyword("F TCP", "F CONT", "AXIS POS", "PATHCTRL AXIS", "REFPNT TIP-TIP"):
                 raise cursor.expected(
-                    "Unexpected word in FUNCTION TCPM", ("Use F TCP, AXIS POS or PATHCTRL AXIS.")
+                    "Unexpected word in FUNCTION TCPM", "Use F TCP, AXIS POS or PATHCTRL AXIS."
                 )
         return TipControl(on=True, column=column)
     if cursor.keyword("RESET TCPM"):

@@ -59,10 +59,8 @@ _THREAD = "Write G33XnZnInKn."
 _PATTERNS = (
     _Pattern(
         re.compile(r"^(?=O(?:<|[0-9]+(?:SUB|CALL|IF|WHILE|REPEAT|ENDSUB|ENDIF|ENDWHILE|ENDREPEAT|RETURN)))"),
-        (
-            "LinuxCNC O words are not supported. On this control, write a subroutine as }n … M99 "
-            "and call it with M98Pn."
-        ),
+        "LinuxCNC O words are not supported. On this control, write a subroutine as }n … M99 "
+        "and call it with M98Pn.",
         _always("Write the subroutine as }n … M99 and call it with M98Pn."),
     ),
     _Pattern(
@@ -72,10 +70,8 @@ _PATTERNS = (
     ),
     _Pattern(
         re.compile(r"(?=G[78](?![0-9]))"),
-        (
-            "On this control, G72 (diameter programming) and G73 (radius programming) "
-            "replace the LinuxCNC codes G7 and G8."
-        ),
+        "On this control, G72 (diameter programming) and G73 (radius programming) "
+        "replace the LinuxCNC codes G7 and G8.",
         lambda match: Message("Write {name}.", name="G72" if match.string[match.end() + 1] == "7" else "G73"),
     ),
     _Pattern(
@@ -125,10 +121,8 @@ _PATTERNS = (
     ),
     _Pattern(
         re.compile(r"(?<=G92)(?=S[0-9.]+$)"),
-        (
-            "On this control, G92 presets the position; use G77 to set the maximum rpm for "
-            "constant surface speed."
-        ),
+        "On this control, G92 presets the position; use G77 to set the maximum rpm for "
+        "constant surface speed.",
         lambda match: Message("Write G77{string}.", string=match.string[match.end() :]),
     ),
     _Pattern(
@@ -154,7 +148,7 @@ def intent_of(code: str) -> Intent | None:
         habit = other_controls.meaning_here(found[0])
         if habit is not None:
             message = Message(
-                ("{word} is not a valid code on this control. {habit}"), word=found[0], habit=habit[0]
+                "{word} is not a valid code on this control. {habit}", word=found[0], habit=habit[0]
             )
             return Intent(found.start(), "g-unknown", message, habit[1])
     return None

@@ -75,7 +75,7 @@ def lex_plane(number: int, text: str) -> PlaneLine:
         if word_match is None:
             shown = inside[at : at + 8].strip()
             message = Message(
-                ("'{value}' is not allowed in a statement between (~PLXC) or (~PLZC) and (END)."), value=shown
+                "'{value}' is not allowed in a statement between (~PLXC) or (~PLZC) and (END).", value=shown
             )
             raise program_error(number, base + at, "plane-word", message, _HINT)
         word = _word(number, base + at, word_match)
@@ -101,7 +101,7 @@ def _word(number: int, column: int, match: re.Match[str]) -> Word:
     value = word.value or 0.0
     if letter == "G" and digits not in {"02", "03"}:
         message = Message(
-            ("{word}: between (~PLXC) or (~PLZC) and (END), the only G codes allowed are G02 and G03."),
+            "{word}: between (~PLXC) or (~PLZC) and (END), the only G codes allowed are G02 and G03.",
             word=word.text,
         )
         raise program_error(number, column, "plane-word", message, _HINT)
@@ -111,7 +111,7 @@ def _word(number: int, column: int, match: re.Match[str]) -> Word:
             column,
             "out-of-range",
             Message("{word} is out of range.", word=word.text),
-            ("Look for a missing decimal point."),
+            "Look for a missing decimal point.",
         )
     return word
 
@@ -127,7 +127,7 @@ def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
                 words[letter].column,
                 "not-alone",
                 message,
-                (Message("Write ({letter}n) alone on a line.", letter=letter)),
+                Message("Write ({letter}n) alone on a line.", letter=letter),
             )
     code = words.get("G")
     for letter in ("I", "J"):
@@ -140,7 +140,7 @@ def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
                 words[letter].column,
                 "word-unused",
                 message,
-                ("Write G02 or G03 on the line; both are one-shot codes."),
+                "Write G02 or G03 on the line; both are one-shot codes.",
             )
         if code is not None and letter not in words:
             message = Message(
@@ -156,6 +156,6 @@ def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
     if code is not None and "Z" in words:
         message = "Between (~PLXC) or (~PLZC) and (END), an arc can move only X and Y."
         raise program_error(
-            number, words["Z"].column, "word-unused", message, ("Write the Z move on another line.")
+            number, words["Z"].column, "word-unused", message, "Write the Z move on another line."
         )
     return PlaneLine("", words, int(code.value or 0) if code else 0)

@@ -52,7 +52,7 @@ def too_long(line: int, length: int) -> Diagnostic:
         0,
         "line-too-long",
         Message("The line is too long ({text_count} characters).", text_count=length),
-        ("Split the line into shorter lines."),
+        "Split the line into shorter lines.",
     )
 
 
@@ -84,7 +84,7 @@ def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
             column,
             "lone-sign",
             Message("{letter} has a sign but no number.", letter=letter),
-            ("Write a number after the sign."),
+            "Write a number after the sign.",
         )
     if follower == ".":
         return refusal(
@@ -92,7 +92,7 @@ def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
             column,
             "lone-point",
             Message("{letter} has a decimal point but no digits.", letter=letter),
-            ("Write the digits of the number."),
+            "Write the digits of the number.",
         )
     if letter not in RANGES and letter not in {"LF", "RF", "O"}:
         return _unknown_letter(line, column, letter)
@@ -101,7 +101,7 @@ def no_number(line: int, column: int, letter: str, follower: str) -> Diagnostic:
         column,
         "number-missing",
         Message("{letter} has no number.", letter=letter),
-        (Message("Write a number after {letter}.", letter=letter)),
+        Message("Write a number after {letter}.", letter=letter),
     )
 
 
@@ -116,7 +116,7 @@ def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnos
             column,
             "letter-missing",
             "A number has no letter in front of it.",
-            ("Write a letter before the number."),
+            "Write a letter before the number.",
         )
     shown = sign if sign.isprintable() else f"U+{ord(sign):04X}"
     habit = other_controls.sign(sign)
@@ -130,7 +130,7 @@ def of_sign(line: int, column: int, sign: str, *, after_number: bool) -> Diagnos
         column,
         "character",
         Message("'{value}' is not valid in a program for this control.", value=shown),
-        ("Put comments in parentheses."),
+        "Put comments in parentheses.",
     )
 
 
@@ -149,7 +149,7 @@ def of_word(line: int, word: Word, digits: str | None) -> Diagnostic | None:
             column,
             "number-unwanted",
             Message("{letter} does not accept a number.", letter=letter),
-            ("Remove this text from the program."),
+            "Remove this text from the program.",
         )
     if sum(sign.isdigit() for sign in digits) > _MOST_DIGITS:
         return refusal(
@@ -216,7 +216,7 @@ def _size(line: int, word: Word, digits: str) -> Diagnostic | None:
             column,
             "whole-number",
             Message("{text} must be a whole number without a sign.", text=text),
-            ("Round the number and remove any sign."),
+            "Round the number and remove any sign.",
         )
     if value is None or least <= value <= most:
         return None
@@ -260,7 +260,7 @@ def _two_digits(line: int, word: Word, digits: str) -> Diagnostic | None:
         line,
         word.column,
         code,
-        (Message("{word}: {letter} must have exactly two digits.", word=word.text, letter=word.letter)),
+        Message("{word}: {letter} must have exactly two digits.", word=word.text, letter=word.letter),
         hint,
     )
 
@@ -272,7 +272,7 @@ def _unknown_letter(line: int, column: int, letter: str) -> Diagnostic:
             column,
             "n-word",
             "This control does not use line numbers: N is not allowed.",
-            ("Remove the N word."),
+            "Remove the N word.",
         )
     habit = other_controls.meaning_here(letter)
     if habit is not None:

@@ -41,7 +41,7 @@ def read_values(text: str, at: int, *, bare: bool) -> tuple[Values, int] | None:
             raise FormulaError(
                 at,
                 "The closing parenthesis of the list of values is missing",
-                ("Write ) after the last value."),
+                "Write ) after the last value.",
             )
         at = sign.end()
         if sign[1] == ")":

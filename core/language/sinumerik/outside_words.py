@@ -102,7 +102,7 @@ OUTSIDE: Mapping[str, str] = {
     "SPITOAX": "the axis of a spindle is defined in the machine file",
     "MMC": "program dialogs are not supported; write MSG",
     **dict.fromkeys(
-        ("DEFINE", "DEFAULT", "ENDPROC"), ("macros are not supported; write out the words of the macro")
+        ("DEFINE", "DEFAULT", "ENDPROC"), "macros are not supported; write out the words of the macro"
     ),
     **{word: why for why, words in _BY_REASON.items() for word in words.split()},
     "CYCLE": "the cycle number is missing; write, for example, CYCLE95",

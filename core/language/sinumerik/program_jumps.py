@@ -171,7 +171,7 @@ class _Reader:
             raise FormulaError(
                 at,
                 Message("Unexpected text after {steering}", steering=self._steering),
-                ("Put the extra text in a separate block."),
+                "Put the extra text in a separate block.",
             )
 
     def _if(self) -> Jump:
@@ -331,7 +331,7 @@ class _Reader:
         rest = self._text[self._at :].lstrip()
         closing = self._text.rstrip()
         if not rest.startswith("(") or not closing.endswith(")"):
-            raise FormulaError(self._at, ("MSG needs its text in parentheses"), 'Write MSG("TEXT").')
+            raise FormulaError(self._at, "MSG needs its text in parentheses", 'Write MSG("TEXT").')
         self._at, end = len(self._text) - len(rest) + 1, len(closing) - 1
         pieces: list[str | Formula] = []
         while self._text[self._at : end].strip():
@@ -349,7 +349,7 @@ class _Reader:
         rest = self._text[self._at :]
         if not rest.lstrip().startswith("("):
             raise FormulaError(
-                self._at, ("SETAL needs a number in parentheses"), "Write, for example, SETAL(65000)."
+                self._at, "SETAL needs a number in parentheses", "Write, for example, SETAL(65000)."
             )
         self._at += len(rest) - len(rest.lstrip()) + 1
         number = self._formula()
@@ -361,7 +361,7 @@ class _Reader:
             self._at += 1
         match = _TARGET.match(self._text, self._at)
         if match is None:
-            raise FormulaError(self._at, "A jump needs a label", ("Write a label, or N with a block number."))
+            raise FormulaError(self._at, "A jump needs a label", "Write a label, or N with a block number.")
         self._at = match.end()
         return match.group().strip()
 

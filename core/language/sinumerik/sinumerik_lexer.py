@@ -57,7 +57,7 @@ def _demand_parameters(formula: Formula, at: int) -> None:
             raise FormulaError(
                 column - 1,
                 Message("R{number} is not a valid parameter", number=number),
-                (Message("Use a parameter from R0 to R{most_r}.", most_r=known.MOST_R)),
+                Message("Use a parameter from R0 to R{most_r}.", most_r=known.MOST_R),
             )
         case Operation(_, operands):
             for each in operands:
@@ -141,11 +141,7 @@ def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
         scanner.refuse(
             1,
             Message("the block is too long ({text_count} characters)", text_count=len(text)),
-            (
-                Message(
-                    "Split the block; the maximum is {longest_line} characters.", longest_line=LONGEST_LINE
-                )
-            ),
+            Message("Split the block; the maximum is {longest_line} characters.", longest_line=LONGEST_LINE),
         )
     elif steering := steering_word(upper, head.end()):
         scanner.steer(head.end(), steering)
@@ -216,7 +212,7 @@ class _Scanner:
                 at = self._element(match)
             elif match := _SYSTEM.match(text, at):
                 at = self._outside(
-                    at, match.end(), match[0], ("system variables cannot be assigned on this control")
+                    at, match.end(), match[0], "system variables cannot be assigned on this control"
                 )
             elif match := _NAME.match(text, at):
                 at = self._named(match)
@@ -285,7 +281,7 @@ class _Scanner:
             return self._skip(
                 at,
                 "the block number is not at the start of the block",
-                ("Write the block number at the start."),
+                "Write the block number at the start.",
             )
         if letter not in known.LETTERS:
             why = known.LETTERS_OUTSIDE.get(letter, "this word does not exist on this control")
@@ -326,7 +322,7 @@ class _Scanner:
             return self._skip(
                 at,
                 Message("{name} is not allowed after other words", name=name),
-                ("Put the call in a separate block."),
+                "Put the call in a separate block.",
             )
         hint = "Begin a comment with a semicolon (;). Put a subprogram name alone in its block."
         return self._skip(at, Message("{name} is not a valid word", name=name), hint)

@@ -56,9 +56,7 @@ def mesa_servo_lathe(lathe: Lathe) -> HalFile:
     if spindle.full_speed:
         _speed(file)
     if turns:
-        spindle_encoder(
-            file, _CARD, (f"encoder {spindle.encoder} (signal A at {_ENCODERS[spindle.encoder]})")
-        )
+        spindle_encoder(file, _CARD, f"encoder {spindle.encoder} (signal A at {_ENCODERS[spindle.encoder]})")
     file.rest()
     file.last.append(f"{_CARD}.write")
     return file

@@ -69,7 +69,7 @@ def _field(file: HalFile) -> None:
     file.setp(
         "field-lost.max",
         _FIELD_ERRORS,
-        ("error counter: each failed transfer adds 10, each good transfer subtracts 1"),
+        "error counter: each failed transfer adds 10, each good transfer subtracts 1",
     )
 
 

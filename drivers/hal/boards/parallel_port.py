@@ -57,7 +57,7 @@ def _load(file: HalFile, *, encoder: bool) -> None:
     file.load(f"loadrt threads {threads} name2={lathe.thread} period2={lathe.period * 1e9:.0f}")
     file.load(
         f'loadrt hal_parport cfg="{lathe.board.address or "0x378"} out"',
-        ("parallel port pins 2 to 9 are outputs"),
+        "parallel port pins 2 to 9 are outputs",
     )
     kinds = ["v" if axis is lathe.c else "p" for axis in axes]
     file.load(f"loadrt stepgen step_type={','.join('0' * len(axes))} ctrl_type={','.join(kinds)}")
@@ -96,7 +96,7 @@ def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
     file.setp(
         f"{pin}.steplen",
         1,
-        ("step pulse length in ns, rounded up to one base period; parport.reset ends the step pulse"),
+        "step pulse length in ns, rounded up to one base period; parport.reset ends the step pulse",
     )
     file.setp(f"{pin}.stepspace", 0)
     file.setp(f"{pin}.dirsetup", board.setup_ns)

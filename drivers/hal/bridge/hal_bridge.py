@@ -281,7 +281,7 @@ class Bridge:
         if any(abs(v) > _STILL for v in self.player.state(self.rows.played_t)[1]):
             self.player.rest_at(self._target())
             self._trip(
-                (f"HAL had no setpoints for {self._dry} periods because this computer was late"), "queue-dry"
+                f"HAL had no setpoints for {self._dry} periods because this computer was late", "queue-dry"
             )
 
     def _target(self) -> tuple[float, ...]:
