@@ -107,7 +107,7 @@ def test_every_folder_of_a_driver_is_in_its_contracts() -> None:
     text = (house / "setup.cfg").read_text(encoding="utf-8")
     folders = sorted(path.parent.name for path in (house / "drivers").glob("*/__init__.py"))
     assert len(folders) > 5
-    for contract, apart in (("lookalikes", {"lookalikes", "simulated"}), ("drivers-apart", {"lookalikes"})):
+    for contract, apart in (("simulators", {"simulators", "simulated"}), ("drivers-apart", {"simulators"})):
         held = text.partition(f"[importlinter:contract:{contract}]")[2].partition("\n[importlinter:")[0]
         assert [name for name in folders if f"drivers.{name}\n" not in held and name not in apart] == []
 

@@ -30,7 +30,7 @@ from drivers.operator_station import PanelStation
 if TYPE_CHECKING:
     from drivers.canopen.canopen_machine import CanopenMachine
     from drivers.canopen.canopen_survey import Answer
-    from drivers.lookalikes.canopen_devices import CanopenDevices
+    from drivers.simulators.canopen_devices import CanopenDevices
 
 _LIBRARIES = frozenset(("can", "canopen", "msgpack"))
 
@@ -49,7 +49,7 @@ def canopen_peers(machine: Machine, clock: Clock) -> CanopenDevices:
     from app.compose.simulated_backend import sim_config
 
     try:
-        from drivers.lookalikes.canopen_devices import CanopenDevices
+        from drivers.simulators.canopen_devices import CanopenDevices
     except ImportError as error:
         raise DriverError(lacking(error)) from error
     return CanopenDevices(canopen_config(machine), sim_config(machine), clock)

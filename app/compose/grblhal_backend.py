@@ -15,8 +15,8 @@ from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_table import GrblhalTable
 from drivers.grblhal.grblhal_wire import tcp_address
 from drivers.inverter.inverter_spindle import InverterSpindle
-from drivers.lookalikes.grblhal_far_end import PtyEnd, TcpEnd, serve
-from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.simulators.grblhal_far_end import PtyEnd, TcpEnd, serve
+from drivers.simulators.grblhal_firmware import Firmware
 
 _WIRED = frozenset(("X", "Z"))
 _HERE = frozenset((35, 37))  # homing methods of CiA 402 that take the present place
@@ -65,7 +65,7 @@ def _play(
     say: Callable[[str], None],
     _typed: Callable[[], Iterable[str]],
 ) -> None:
-    """A look-alike of the controller, on the TCP port of the machine file or on a new pseudo terminal."""
+    """A simulator of the controller, on the TCP port of the machine file or on a new pseudo terminal."""
     address = tcp_address(grblhal_config(machine).port)
     end: TcpEnd | PtyEnd = PtyEnd() if address is None else TcpEnd(*address)
     say(

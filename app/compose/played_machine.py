@@ -18,8 +18,8 @@ from drivers.clocks import StepClock
 from drivers.feeder.feeder_loop import PRIORITY, keep_memory, real_time
 
 if TYPE_CHECKING:
-    from drivers.lookalikes.canopen_devices import CanopenDevices
-    from drivers.lookalikes.plant_hands import PlantHands
+    from drivers.simulators.canopen_devices import CanopenDevices
+    from drivers.simulators.plant_hands import PlantHands
 
 # --- Hands at a simulated machine that runs in another process: words typed where it plays.
 

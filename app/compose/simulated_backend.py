@@ -8,7 +8,9 @@ from app.compose.backend_entry import Backend, Connected, axis_figures, has_inve
 from core.machine.machine_model import Axis, Machine
 from core.machine.setter_table import SetterModel
 from core.ports import Clock
-from drivers.lookalikes.plant_config import (
+from drivers.simulated.simulated_machine import Simulation, build_simulation
+from drivers.simulated.simulated_table import SimulatedTable
+from drivers.simulators.plant_config import (
     SimAxis,
     SimCollet,
     SimConfig,
@@ -16,8 +18,6 @@ from drivers.lookalikes.plant_config import (
     SimSetter,
     SimSpindle,
 )
-from drivers.simulated.simulated_machine import Simulation, build_simulation
-from drivers.simulated.simulated_table import SimulatedTable
 
 if TYPE_CHECKING:
     from drivers.feeder.feeder_server import Driven

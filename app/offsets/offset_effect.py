@@ -220,7 +220,12 @@ class EffectDisplay:
     def _words_of_part(self, effect: Effect) -> str:
         part = self.part
         if effect.trouble:
-            return tr(Message("PART CANNOT BE COMPARED: {why}. F6: SHOW TABLE", why=effect.trouble))
+            return tr(
+                Message(
+                    "PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}. F6: SHOW TABLE",
+                    why=effect.trouble,
+                )
+            )
         if part is None:
             return tr("SIMULATING THE PART WITH OLD AND NEW OFFSETS")
         if not part.differing:

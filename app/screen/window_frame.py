@@ -375,11 +375,7 @@ class Frame(QWidget):
             rows.append(offered_job)
         if desk.not_kept():
             held = desk.waiting()
-            waits = (
-                tr(Message("IN MEMORY ONLY; WILL BE LOST IF TURNDESK EXITS NOW: {what}", what=held))
-                if held
-                else ""
-            )
+            waits = tr(Message("NOT SAVED YET: {what}. DO NOT EXIT TURNDESK NOW", what=held)) if held else ""
             rows.append(NoticeRow(tr(Message("NOT SAVED: {why}", why=desk.not_kept())), waits))
         return tuple(rows)
 

@@ -203,7 +203,7 @@ class SearchtoModel:
         self._forget()
         self.clear()
         if not self._has_text:
-            self.say(tr('TYPE SEARCH TEXT FIRST. TO FIND A NUMBER, TYPE " BEFORE IT'))
+            self.say(tr('TYPE SEARCH TEXT FIRST. BEFORE A NUMBER, TYPE A " (QUOTE)'))
         elif not self.cursor.find(way):
             self.say(tr(Message("{text} NOT FOUND IN ANY LINE", text=self.cursor.wanted)))
 

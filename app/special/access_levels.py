@@ -309,6 +309,6 @@ class AccessLevels(SpecialFunction):
 
         def done(_none: None) -> None:
             self.access.lift()
-            self.desk.done(tr("ALL PINS REMOVED: ACCESS LEVELS ARE OFF"))
+            self.desk.done(tr("ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED"))
 
         self.access.worker.queue(remove, done, self.desk.refuse)

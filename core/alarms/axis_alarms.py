@@ -99,7 +99,8 @@ AXES: Entries = {
             "a bus node number is wrong",
             "a fault in the bus cable or in the drive's power supply",
         ),
-        "Run 'turndesk machine check' with the machine file to find the rejected setting",
+        "In a terminal, run 'turndesk machine check' with the machine file to find the "
+        "rejected setting. Correct the setting, then press Reset and Drives On",
         tells=True,
     ),
     "drive-keeps-fault": off(
@@ -120,8 +121,8 @@ AXES: Entries = {
             "the axis travel in the machine file is too long",
             "a fault in the switch or its cable",
         ),
-        "Press Reset, then Drives On, and home the axis. If the axis is still on its limit "
-        "switch, first move the axis off the switch by hand",
+        "If the axis is still on its limit switch, first turn the axis by hand until it is "
+        "off the switch. Press Reset, then Drives On, and home the axis",
         tells=True,
     ),
     "homing": off(

@@ -49,7 +49,10 @@ WIRES: Entries = {
         511,
         "driver host has ended",
         (
-            "the driver host was stopped or has failed; the axes, spindle and outputs are off",
+            (
+                "the driver host (the process that operates the drives) was stopped or has failed; "
+                "the drives switch off by themselves"
+            ),
             "the computer ran out of memory",
         ),
         "PRESS E-STOP: the spindle may be turning. Check the tool, then press Reset to start "
@@ -101,8 +104,9 @@ WIRES: Entries = {
     "controller-alarm": off(
         525,
         "controller alarm",
-        ("the controller's alarm number indicates the cause",),
-        "Correct the cause shown, then press Reset and Drives On. Home any axis shown as not homed",
+        ("the motion controller reported an alarm, whose number this alarm shows",),
+        "Look up the controller's alarm number in its manual and correct the cause. Press "
+        "Reset, then Drives On. Home any axis shown as not homed",
         tells=True,
     ),
     "controller-modes": off(
@@ -160,7 +164,10 @@ WIRES: Entries = {
         533,
         "HAL real-time thread stopped",
         (
-            "the rtapi_app process has ended; only the boards' watchdogs now control the axes",
+            (
+                "LinuxCNC's real-time process (rtapi_app) has ended; only the watchdogs of the "
+                "boards now stop the axes"
+            ),
             "an interface board does not respond to its driver because of a cable or power fault",
         ),
         "PRESS E-STOP: the spindle may be turning. Check power and cables of the "
@@ -183,11 +190,11 @@ WIRES: Entries = {
         534,
         "HAL does not start",
         (
-            "a HAL pin named in the machine file does not exist or has the wrong type",
+            ("a pin of LinuxCNC's HAL that the machine file names does not exist or has the wrong type"),
             "a board or component does not load, or another LinuxCNC session is running",
         ),
-        "Run 'turndesk machine check' with the machine file to list every pin. Correct the "
-        "fault, then press Reset",
+        "In a terminal, run 'turndesk machine check' with the machine file to list every "
+        "pin. Correct the fault, then press Reset",
         tells=True,
     ),
 }

@@ -16,7 +16,7 @@ CONTROL: Entries = {
         "planned path is not continuous",
         ("an internal error in TurnDesk; the axes did not move along the faulty part of the path",),
         "Press Reset, then Drives On. Save the program and the log (F10), then restart the "
-        "program at another line",
+        "program after the faulty line (F6)",
     ),
     "not-safe": off(
         905,
@@ -58,7 +58,7 @@ CONTROL: Entries = {
             "the screen was locked or the computer was in sleep mode",
         ),
         "Check the tool. Read on the screen which functions will restart, then press Cycle "
-        "Start. Measure this part, because it is not counted automatically",
+        "Start. Measure this part: it is not counted until you add it (F10, 2, F2)",
         tells=True,
     ),
     "switched-off": hold(

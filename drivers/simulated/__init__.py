@@ -1,1 +1,1 @@
-"""The simulated machine as a backend: the plant of the look-alikes behind ``core.ports``."""
+"""The simulated machine as a backend: the plant of the simulators behind ``core.ports``."""

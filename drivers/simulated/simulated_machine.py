@@ -20,10 +20,10 @@ from core.ports import (
     StationState,
     Stop,
 )
-from drivers.lookalikes.plant import Plant
-from drivers.lookalikes.plant_config import SimConfig
-from drivers.lookalikes.plant_hands import PlantHands, Schedule
 from drivers.sample_log import KEPT, SampleLog
+from drivers.simulators.plant import Plant
+from drivers.simulators.plant_config import SimConfig
+from drivers.simulators.plant_hands import PlantHands, Schedule
 
 
 class _OnPlant:

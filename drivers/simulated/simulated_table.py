@@ -21,7 +21,7 @@ from core.table_schema import (
 )
 
 if TYPE_CHECKING:
-    from drivers.lookalikes.plant_config import PlannedFault
+    from drivers.simulators.plant_config import PlannedFault
 
 FAULTS = (
     "jam",
@@ -176,7 +176,7 @@ def _table(file: FileReading) -> SimulatedTable:
 
 def _faults(file: FileReading) -> Iterator[PlannedFault]:
     for path in _paths(file):
-        from drivers.lookalikes.plant_config import PlannedFault  # noqa: PLC0415  few files plan any
+        from drivers.simulators.plant_config import PlannedFault  # noqa: PLC0415  few files plan any
 
         yield file.values.model(PlannedFault, path)
 

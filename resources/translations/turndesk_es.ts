@@ -8455,8 +8455,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
-      <source>PART CANNOT BE COMPARED: {why}. F6: SHOW TABLE</source>
-      <translation>LA PIEZA NO SE PUEDE COMPARAR: {why}. F6: VER TABLA</translation>
+      <source>PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}. F6: SHOW TABLE</source>
+      <translation>NO SE PUEDEN COMPARAR LAS PIEZAS CON LOS CORRECTORES ANTERIORES Y NUEVOS: {why}. F6: MOSTRAR TABLA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_effect.py" />
@@ -12560,11 +12560,6 @@
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
-      <source>IN MEMORY ONLY; WILL BE LOST IF TURNDESK EXITS NOW: {what}</source>
-      <translation>SOLO EN MEMORIA; SE PERDERÁ SI TURNDESK TERMINA AHORA: {what}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window_frame.py" />
       <source>LAST</source>
       <translation>ÚLTIMO</translation>
     </message>
@@ -12582,6 +12577,11 @@
       <location filename="app/screen/window_frame.py" />
       <source>NOT SAVED</source>
       <translation>SIN GUARDAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_frame.py" />
+      <source>NOT SAVED YET: {what}. DO NOT EXIT TURNDESK NOW</source>
+      <translation>AÚN SIN GUARDAR: {what}. NO SALGA DE TURNDESK AHORA</translation>
     </message>
     <message>
       <location filename="app/screen/window_frame.py" />
@@ -12680,8 +12680,8 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
-      <source>TYPE SEARCH TEXT FIRST. TO FIND A NUMBER, TYPE " BEFORE IT</source>
-      <translation>ESCRIBA PRIMERO EL TEXTO A BUSCAR. PARA BUSCAR UN NÚMERO, ANTEPONGA "</translation>
+      <source>TYPE SEARCH TEXT FIRST. BEFORE A NUMBER, TYPE A " (QUOTE)</source>
+      <translation>ESCRIBA PRIMERO EL TEXTO. ANTES DE UN NÚMERO ESCRIBA " (COMILLAS)</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_model.py" />
@@ -13505,8 +13505,8 @@
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
-      <source>ALL PINS REMOVED: ACCESS LEVELS ARE OFF</source>
-      <translation>TODOS LOS PIN BORRADOS: NIVELES DE ACCESO DESACTIVADOS</translation>
+      <source>ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED</source>
+      <translation>TODOS LOS PIN QUITADOS. NIVELES DE ACCESO DESACTIVADOS: TODO PERMITIDO</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
@@ -15190,13 +15190,18 @@
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
-      <source>Keep clear of the axis: the axis may jump when freed. Find what is holding the axis, then press Reset and Drives On</source>
-      <translation>Aléjese del eje: el eje puede saltar al soltarse. Busque qué detiene el eje, luego pulse Reset y encienda los servos</translation>
+      <source>If the axis is still on its limit switch, first turn the axis by hand until it is off the switch. Press Reset, then Drives On, and home the axis</source>
+      <translation>Si el eje todavía está sobre su final de carrera, gírelo antes a mano hasta que salga de él. Pulse Reset, encienda los servos y referencie el eje</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
-      <source>Press Reset, then Drives On, and home the axis. If the axis is still on its limit switch, first move the axis off the switch by hand</source>
-      <translation>Pulse Reset, encienda los servos y referencie el eje. Si el eje todavía está sobre su final de carrera, sáquelo antes a mano</translation>
+      <source>In a terminal, run 'turndesk machine check' with the machine file to find the rejected setting. Correct the setting, then press Reset and Drives On</source>
+      <translation>En una terminal, ejecute 'turndesk machine check' con el archivo de máquina para hallar el ajuste rechazado. Corrija el ajuste, luego pulse Reset y encienda los servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/axis_alarms.py" />
+      <source>Keep clear of the axis: the axis may jump when freed. Find what is holding the axis, then press Reset and Drives On</source>
+      <translation>Aléjese del eje: el eje puede saltar al soltarse. Busque qué detiene el eje, luego pulse Reset y encienda los servos</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
@@ -15232,11 +15237,6 @@
       <location filename="core/alarms/axis_alarms.py" />
       <source>Release the E-stop and switch on the drives' power. Press Reset, then Drives On</source>
       <translation>Suelte el paro de emergencia y encienda la alimentación de los servos. Pulse Reset y encienda los servos</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/axis_alarms.py" />
-      <source>Run 'turndesk machine check' with the machine file to find the rejected setting</source>
-      <translation>Corra 'turndesk machine check' con el archivo de máquina para hallar el ajuste rechazado</translation>
     </message>
     <message>
       <location filename="core/alarms/axis_alarms.py" />
@@ -15565,11 +15565,6 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>Correct the cause shown, then press Reset and Drives On. Home any axis shown as not homed</source>
-      <translation>Corrija la causa indicada, luego pulse Reset y encienda los servos. Referencie los ejes que aparezcan sin referencia</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
       <source>HAL bridge process has ended</source>
       <translation>el proceso puente a HAL terminó</translation>
     </message>
@@ -15582,6 +15577,21 @@
       <location filename="core/alarms/bus_alarms.py" />
       <source>HAL real-time thread stopped</source>
       <translation>el hilo de tiempo real de HAL está parado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>In a terminal, run 'turndesk machine check' with the machine file to list every pin. Correct the fault, then press Reset</source>
+      <translation>En una terminal, ejecute 'turndesk machine check' con el archivo de máquina para listar todos los pines. Corrija la falla y pulse Reset</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>LinuxCNC's real-time process (rtapi_app) has ended; only the watchdogs of the boards now stop the axes</source>
+      <translation>el proceso de tiempo real de LinuxCNC (rtapi_app) ha terminado; ahora solo los watchdogs de las tarjetas detienen los ejes</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>Look up the controller's alarm number in its manual and correct the cause. Press Reset, then Drives On. Home any axis shown as not homed</source>
+      <translation>Busque el número de alarma del controlador en su manual y corrija la causa. Pulse Reset y encienda los servos. Referencie los ejes que aparezcan sin referencia</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -15635,11 +15645,6 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>Run 'turndesk machine check' with the machine file to list every pin. Correct the fault, then press Reset</source>
-      <translation>Ejecute 'turndesk machine check' con el archivo de máquina para listar todos los pines. Corrija la falla y pulse Reset</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
       <source>The program was canceled. Check where the tool is. Press Reset, then Drives On, and home the axes</source>
       <translation>El programa se canceló. Vea dónde está la herramienta. Pulse Reset, encienda los servos y referencie los ejes</translation>
     </message>
@@ -15647,11 +15652,6 @@
       <location filename="core/alarms/bus_alarms.py" />
       <source>The spindle and coolant are off. Close the door, then press Reset and Drives On</source>
       <translation>El husillo y el refrigerante están apagados. Cierre la puerta, luego pulse Reset y encienda los servos</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
-      <source>a HAL pin named in the machine file does not exist or has the wrong type</source>
-      <translation>un pin de HAL nombrado en el archivo de máquina no existe o es del tipo equivocado</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -15677,6 +15677,11 @@
       <location filename="core/alarms/bus_alarms.py" />
       <source>a fault in the module's bus cable or power supply</source>
       <translation>una falla en el cable de bus o en la alimentación del módulo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
+      <source>a pin of LinuxCNC's HAL that the machine file names does not exist or has the wrong type</source>
+      <translation>un pin del HAL de LinuxCNC nombrado en el archivo de máquina no existe o es del tipo equivocado</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -15830,11 +15835,6 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>the controller's alarm number indicates the cause</source>
-      <translation>el número de alarma del controlador indica la causa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
       <source>the controller's power is off</source>
       <translation>el controlador no tiene alimentación</translation>
     </message>
@@ -15865,18 +15865,23 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
+      <source>the driver host (the process that operates the drives) was stopped or has failed; the drives switch off by themselves</source>
+      <translation>el proceso de drivers (el que maneja los servos) fue detenido o falló; los servos se apagan por sí mismos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/bus_alarms.py" />
       <source>the driver host has failed</source>
       <translation>el proceso de drivers falló</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>the driver host was stopped or has failed; the axes, spindle and outputs are off</source>
-      <translation>el proceso de drivers fue detenido o falló; los ejes, el husillo y las salidas están apagados</translation>
+      <source>the module restarted and its outputs dropped out</source>
+      <translation>el módulo se reinició y sus salidas cayeron</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>the module restarted and its outputs dropped out</source>
-      <translation>el módulo se reinició y sus salidas cayeron</translation>
+      <source>the motion controller reported an alarm, whose number this alarm shows</source>
+      <translation>el controlador de movimiento informó de una alarma, cuyo número muestra esta alarma</translation>
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
@@ -15895,11 +15900,6 @@
     </message>
     <message>
       <location filename="core/alarms/bus_alarms.py" />
-      <source>the rtapi_app process has ended; only the boards' watchdogs now control the axes</source>
-      <translation>el proceso rtapi_app ha terminado; ahora sólo los watchdogs de las tarjetas controlan los ejes</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/bus_alarms.py" />
       <source>the safety door is open</source>
       <translation>la puerta de seguridad está abierta</translation>
     </message>
@@ -15910,8 +15910,8 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>Check the tool. Read on the screen which functions will restart, then press Cycle Start. Measure this part, because it is not counted automatically</source>
-      <translation>Revise la herramienta. Lea en la pantalla qué funciones van a arrancar, luego pulse arranque de ciclo. Mida esta pieza, porque no se cuenta automáticamente</translation>
+      <source>Check the tool. Read on the screen which functions will restart, then press Cycle Start. Measure this part: it is not counted until you add it (F10, 2, F2)</source>
+      <translation>Revise la herramienta. Lea en la pantalla qué funciones van a arrancar, luego pulse arranque de ciclo. Mida esta pieza: no se cuenta hasta que usted la añade (F10, 2, F2)</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -15945,8 +15945,8 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>Press Reset, then Drives On. Save the program and the log (F10), then restart the program at another line</source>
-      <translation>Pulse Reset y encienda los servos. Guarde el programa y la bitácora (F10), luego reinicie el programa en otra línea</translation>
+      <source>Press Reset, then Drives On. Save the program and the log (F10), then restart the program after the faulty line (F6)</source>
+      <translation>Pulse Reset y encienda los servos. Guarde el programa y la bitácora (F10), luego reinicie el programa después de la línea defectuosa (F6)</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />

@@ -46,7 +46,7 @@ _TICKS = os.sysconf("SC_CLK_TCK")
 def desk(words: list[str]) -> int:
     """The screen as it is; its threads are named for whoever looks from outside, and setpoints are told."""
     from app.cli.main import console  # noqa: PLC0415  the parent needs none of it
-    from drivers.lookalikes.plant import Plant  # noqa: PLC0415
+    from drivers.simulators.plant import Plant  # noqa: PLC0415
 
     begin, splice = threading.Thread.run, Plant.splice
 

@@ -28,7 +28,7 @@ from core.executor.job import Proof, make_job
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.store.store_file import FILE_NAME
-from drivers.lookalikes.plant_hands import PlantHands
+from drivers.simulators.plant_hands import PlantHands
 
 SHOWN = 0.01  # s between two lines of the child
 STALLS = (0.1, 0.3, 0.5, 1.0, 5.0)

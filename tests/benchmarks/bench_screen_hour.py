@@ -45,7 +45,7 @@ def desk(words: list[str]) -> int:
     at every millisecond, however late its control is.
     """
     from app.cli.main import console  # noqa: PLC0415  the parent needs none of it
-    from drivers.lookalikes.plant import Plant  # noqa: PLC0415
+    from drivers.simulators.plant import Plant  # noqa: PLC0415
 
     follow, middle = Plant._servos_follow, TOOLS[3][0] * INCH
     pins, behind = 0, False

@@ -25,7 +25,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.store.store import Store
 from drivers.clocks import StepClock
-from drivers.lookalikes.plant_hands import PlantHands
+from drivers.simulators.plant_hands import PlantHands
 
 INCH = 25.4
 NAME = "night.nc"

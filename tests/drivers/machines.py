@@ -9,9 +9,9 @@ import numpy as np
 
 from core.ports import FloatArray, Segments
 from drivers.clocks import StepClock
-from drivers.lookalikes.plant_config import SimAxis, SimConfig, SimOutput, SimSpindle
-from drivers.lookalikes.plant_hands import PlantHands
 from drivers.simulated.simulated_machine import Simulation, build_simulation
+from drivers.simulators.plant_config import SimAxis, SimConfig, SimOutput, SimSpindle
+from drivers.simulators.plant_hands import PlantHands
 
 SLIDE = SimAxis(
     name="X",

@@ -262,7 +262,7 @@ def test_c_is_not_positioned_by_a_spindle_that_turns() -> None:
     turn = turn._replace(p=turn.p[:, [1, 2, 0]], v=turn.v[:, [1, 2, 0]], a=turn.a[:, [1, 2, 0]])
     sim.ports.spindle.run(500.0)
     play(sim, clock, 1.0)
-    with raises_code(DriverError, "drive-limits", "C: ", "500 rpm"):
+    with raises_code(DriverError, "drive-limits", "C axis", "500 rpm"):
         sim.ports.axes.splice(turn._replace(t=turn.t + 1.0))
     sim.ports.spindle.run(0.0)
     play(sim, clock, 1.0)

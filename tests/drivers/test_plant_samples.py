@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from core.ports import FloatArray, Segments, Stop
-from drivers.lookalikes import plant
 from drivers.sample_log import SampleLog
 from drivers.simulated.simulated_machine import Simulation
+from drivers.simulators import plant
 from tests.drivers.machines import play, ramp, simulation
 
 ZERO = (0.0, 0.0, 0.0)

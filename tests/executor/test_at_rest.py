@@ -15,8 +15,8 @@ from core.executor.rest import RESTS
 from core.executor.snapshot import State
 from core.ports import DriverError, Stop
 from drivers.clocks import StepClock
-from drivers.lookalikes.plant_config import PlannedFault
 from drivers.simulated.simulated_machine import build_simulation
+from drivers.simulators.plant_config import PlannedFault
 from tests.executor.rig import FINE, Rig
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from core.store.store import Store
 from drivers.clocks import RealClock
-from drivers.lookalikes.canopen_devices import CanopenDevices
+from drivers.simulators.canopen_devices import CanopenDevices
 from tests.drivers.feeder.bus import SteadyClock, bus_file, peers_on
 from tests.killed.bench import Process, process
 

@@ -14,8 +14,8 @@ from drivers.canopen.canopen_nodes import CanTerminal, can_terminal
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.grblhal.grblhal_table import GrblhalTable
 from drivers.inverter.inverter_table import InverterTable
-from drivers.lookalikes.plant_config import PlannedFault
 from drivers.simulated.simulated_table import SimulatedTable
+from drivers.simulators.plant_config import PlannedFault
 from tests.texts import text as wording
 
 CAN = resources.machine_file("gt75-canopen.toml")

@@ -29,7 +29,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
 from drivers.clocks import StepClock
-from drivers.lookalikes.plant_hands import PlantHands
+from drivers.simulators.plant_hands import PlantHands
 
 Key = Qt.Key
 NONE, SHIFT = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier

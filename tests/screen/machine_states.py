@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Home, Jog, SetSwitch
 from core.executor.snapshot import State
-from drivers.lookalikes.plant_hands import PlantHands
+from drivers.simulators.plant_hands import PlantHands
 from tests.screen.day import Day
 
 

@@ -18,8 +18,8 @@ from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
 from core.executor.snapshot import State
 from drivers.clocks import RealClock
-from drivers.lookalikes.grblhal_far_end import TcpEnd, serve
-from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.simulators.grblhal_far_end import TcpEnd, serve
+from drivers.simulators.grblhal_firmware import Firmware
 from tests.screen.hands import Key
 from tests.screen.yes import yes
 from tests.texts import text as wording
@@ -29,7 +29,7 @@ PROGRAM = "G90G94\nM03S600\nM08\nG01X.4Z-.4F30\nX0.Z0.\nM30\n"
 
 
 class Controller:
-    """The look-alike in a thread; ``pull`` takes the cable out."""
+    """The simulator in a thread; ``pull`` takes the cable out."""
 
     def __init__(self) -> None:
         self.end = TcpEnd("127.0.0.1", 0)

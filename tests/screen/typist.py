@@ -38,7 +38,7 @@ from core.executor.commands import (
 from core.executor.executor import Executor
 from core.executor.snapshot import State
 from core.store.store import Store
-from drivers.lookalikes.plant_hands import PlantHands
+from drivers.simulators.plant_hands import PlantHands
 from tests.screen.day import Day
 
 NONE, SHIFT, CTRL = (

@@ -26,7 +26,7 @@ from app.desk.desk import Desk
 from app.screen.keyboard import Keyboard
 from app.screen.main_window import MainWindow
 from app.screen.panel import FingerPanel, Panel
-from drivers.lookalikes.plant_hands import PlantHands
+from drivers.simulators.plant_hands import PlantHands
 from tests.stories import patient_clock
 
 LOOK = 0.01  # s

@@ -17,8 +17,8 @@ from app.compose.machine_files import parse_machine
 from core.machine.machine_model import Machine
 from drivers.canopen.canopen_machine import CanopenMachine
 from drivers.clocks import StepClock
-from drivers.lookalikes.canopen_devices import CanopenDevices
-from drivers.lookalikes.canopen_node import Device
+from drivers.simulators.canopen_devices import CanopenDevices
+from drivers.simulators.canopen_node import Device
 
 TICK = 0.005
 _channels = itertools.count()

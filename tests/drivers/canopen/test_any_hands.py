@@ -7,7 +7,7 @@ import random
 import pytest
 
 from core.executor.commands import Command, CycleStart, FeedHold, Reset
-from drivers.lookalikes.canopen_axis_drive import AxisDrive
+from drivers.simulators.canopen_axis_drive import AxisDrive
 from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_executor import BusRig
 

@@ -13,7 +13,7 @@ from app.compose.canopen_backend import canopen_peers
 from drivers.canopen.canopen_objects import drive_objects
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import RealClock
-from drivers.lookalikes.canopen_devices import CanopenDevices
+from drivers.simulators.canopen_devices import CanopenDevices
 from tests.drivers.canopen.bench import can_machine
 
 PATIENT = (

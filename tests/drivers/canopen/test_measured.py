@@ -19,7 +19,7 @@ from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_encoder import OWN
 from tests.drivers.canopen.test_executor import BUS_TICK, BusRig
 from tests.drivers.inverter.benches import Bench, config, far_end
-from tests.drivers.inverter.inverter_lookalikes import Inverter
+from tests.drivers.inverter.inverter_simulators import Inverter
 from tests.drivers.inverter.wires import BenchWire
 from tests.executor.rig import INCH
 from tests.texts import text

@@ -11,7 +11,7 @@ import pytest
 from core.ports import DriverError
 from drivers.canopen.canopen_objects import TORQUE
 from drivers.canopen.canopen_setup import Setup
-from drivers.lookalikes.canopen_axis_drive import AxisDrive
+from drivers.simulators.canopen_axis_drive import AxisDrive
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
 

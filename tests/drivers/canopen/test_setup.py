@@ -14,8 +14,8 @@ from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.clocks import StepClock
-from drivers.lookalikes.canopen_axis_drive import AxisDrive
-from drivers.lookalikes.canopen_devices import CanopenDevices
+from drivers.simulators.canopen_axis_drive import AxisDrive
+from drivers.simulators.canopen_devices import CanopenDevices
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic, says
 from tests.drivers.machines import ramp

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from drivers.canopen.canopen_objects import DriveState, reset_step, state_of, towards_enabled
-from drivers.lookalikes.canopen_axis_drive import PowerStates
+from drivers.simulators.canopen_axis_drive import PowerStates
 
 
 @pytest.mark.parametrize(

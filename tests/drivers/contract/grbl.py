@@ -1,4 +1,4 @@
-"""A controller that plans by itself: the grblHAL look-alike at the other end of a wire that can break."""
+"""A controller that plans by itself: the grblHAL simulator at the other end of a wire that can break."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN
 from drivers.clocks import StepClock
 from drivers.grblhal.grblhal_machine import GrblMachine
-from drivers.lookalikes.grblhal_firmware import Firmware
-from drivers.lookalikes.spindle_motor import SpindleMotor
 from drivers.operator_station import PanelStation
+from drivers.simulators.grblhal_firmware import Firmware
+from drivers.simulators.spindle_motor import SpindleMotor
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import Readings
 from tests.drivers.grblhal.bench import LoopWire, grbl_machine, quirky

@@ -17,8 +17,8 @@ from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN
 from drivers.clocks import StepClock
 from drivers.hal.hal_machine import HalMachine
-from drivers.lookalikes.hal_far_end import HalFarEnd
-from drivers.lookalikes.plant_hands import PlantHands
+from drivers.simulators.hal_far_end import HalFarEnd
+from drivers.simulators.plant_hands import PlantHands
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 

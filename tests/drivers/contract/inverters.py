@@ -20,7 +20,7 @@ from tests.drivers.contract.rig import Fault
 from tests.drivers.contract.simulated import Simulated
 from tests.drivers.contract.world import SimWorld
 from tests.drivers.inverter.benches import config, far_end
-from tests.drivers.inverter.inverter_lookalikes import Inverter
+from tests.drivers.inverter.inverter_simulators import Inverter
 from tests.drivers.inverter.wires import BenchWire
 
 _RTU, _NO_WATCH = 2.2, "it has no time-out of its own: a watchdog relay on its run terminal"

@@ -12,7 +12,7 @@ from core.faults import FaultCode
 from core.machine.machine_model import Machine
 from core.ports import BlockSink, MachinePorts, Unknown
 from drivers.clocks import StepClock
-from drivers.lookalikes.plant_hands import PlantHands
+from drivers.simulators.plant_hands import PlantHands
 from tests.drivers.contract.moves import hand_over, start
 from tests.drivers.contract.world import World
 

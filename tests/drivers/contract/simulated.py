@@ -16,8 +16,8 @@ from drivers.feeder.feeder_links import LoopLink
 from drivers.feeder.feeder_messages import Message
 from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Driven, Feeder
-from drivers.lookalikes.plant_hands import PlantHands
 from drivers.reopening import Opening
+from drivers.simulators.plant_hands import PlantHands
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from drivers.lookalikes.plant_hands import PlantHands
+from drivers.simulators.plant_hands import PlantHands
 
 Readings = Mapping[str, bool]
 

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from drivers.lookalikes.canopen_devices import CanopenDevices
+from drivers.simulators.canopen_devices import CanopenDevices
 from tests.drivers.feeder.bus import SteadyClock, bus_file, peers_on
 
 pytestmark = pytest.mark.real_time

@@ -1,4 +1,4 @@
-"""An executor on the controller's look-alike, on a clock that the test moves."""
+"""An executor on the controller's simulator, on a clock that the test moves."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from core.proving.prove_program import prove
 from drivers.clocks import StepClock
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_wire import WireLostError
-from drivers.lookalikes.grblhal_firmware import Firmware
-from drivers.lookalikes.grblhal_settings import Quirks
+from drivers.simulators.grblhal_firmware import Firmware
+from drivers.simulators.grblhal_settings import Quirks
 
 TICK = 0.01
 SHIPPED = resources.machine_file("gt75-grblhal.toml")

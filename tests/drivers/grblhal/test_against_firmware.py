@@ -1,4 +1,4 @@
-"""The look-alike beside the firmware's own simulator: the same bytes to both, and the answers compared.
+"""The simulator and the simulator of the firmware itself get the same bytes, and the answers are compared.
 
 Runs where TURNDESK_GRBLHAL_SIM names the simulator's program (grblHAL/Simulator with its core), as it comes.
 """
@@ -16,7 +16,7 @@ import pytest
 
 from core.ports import Clock
 from drivers.clocks import RealClock, StepClock
-from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.simulators.grblhal_firmware import Firmware
 from tests.drivers.grblhal.bench import quirky
 from tests.drivers.grblhal.test_like_the_simulator import AS_IT_COMES
 from tests.free_port import free_port
@@ -92,7 +92,7 @@ class Real:
 
 
 class Ours:
-    """The look-alike as the simulator comes."""
+    """The simulator as the simulator comes."""
 
     def __init__(self) -> None:
         self.clock = StepClock()

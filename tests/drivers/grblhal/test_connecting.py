@@ -14,7 +14,7 @@ from core.ports import DriverError, LineOp
 from drivers.clocks import StepClock
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_wire import TcpWire
-from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.simulators.grblhal_firmware import Firmware
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import GrblBench, LoopWire, grbl_machine, quirky
 

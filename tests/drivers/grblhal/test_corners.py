@@ -1,4 +1,4 @@
-"""The look-alike's planner: it comes down for what lies ahead, as a controller with ``$11`` does."""
+"""The simulator's planner: it comes down for what lies ahead, as a controller with ``$11`` does."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import math
 import pytest
 
 from drivers.clocks import StepClock
-from drivers.lookalikes.grblhal_firmware import Firmware
-from drivers.lookalikes.grblhal_settings import Quirks, Registers
-from drivers.lookalikes.grblhal_slides import Place, PlannedBlock, Slides, straight
+from drivers.simulators.grblhal_firmware import Firmware
+from drivers.simulators.grblhal_settings import Quirks, Registers
+from drivers.simulators.grblhal_slides import Place, PlannedBlock, Slides, straight
 
 STEP = 0.001
-ACCEL = 3000.0  # $120 and $122 of the look-alike, mm/s²
+ACCEL = 3000.0  # $120 and $122 of the simulator, mm/s²
 SPEED = 100.0  # mm/s
 
 

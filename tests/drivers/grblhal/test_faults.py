@@ -193,7 +193,7 @@ def test_what_an_estop_switches_off_is_no_output_that_has_gone_off_by_itself() -
 
 
 def test_a_feed_per_turn_with_a_standing_spindle_stays_in_the_planner_until_a_reset() -> None:
-    """The look-alike's own habit, and that the recovery gets rid of it."""
+    """The simulator's own habit, and that the recovery gets rid of it."""
     bench = GrblBench()
     bench.ready()
     bench.peer.feed(b"G95\nG1X5F.1\n")

@@ -1,4 +1,4 @@
-"""The look-alike against what the firmware's own source does: what it says, when, and what it refuses.
+"""The simulator against what the firmware's own source does: what it says, when, and what it refuses.
 
 Where each habit stands: docs/decisions/0027-grblhal.md.
 """
@@ -10,7 +10,7 @@ import math
 import pytest
 
 from drivers.clocks import StepClock
-from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.simulators.grblhal_firmware import Firmware
 from tests.drivers.grblhal.bench import quirky
 
 LATHE = b"G8G18G21G90G94G97\n"

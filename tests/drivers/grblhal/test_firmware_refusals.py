@@ -1,4 +1,4 @@
-"""What the look-alike refuses, with the numbers that the firmware's ``errors.h`` has for it."""
+"""What the simulator refuses, with the numbers that the firmware's ``errors.h`` has for it."""
 
 from __future__ import annotations
 

@@ -17,12 +17,12 @@ from app.compose.machine_files import load_machine, parse_machine
 from core.ports import DriverError
 from core.table_schema import MachineFileError
 from drivers.clocks import RealClock
-from drivers.lookalikes.grblhal_far_end import TcpEnd, serve
-from drivers.lookalikes.grblhal_firmware import Firmware
-from drivers.lookalikes.spindle_motor import SpindleFaults
+from drivers.simulators.grblhal_far_end import TcpEnd, serve
+from drivers.simulators.grblhal_firmware import Firmware
+from drivers.simulators.spindle_motor import SpindleFaults
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import SHIPPED, quirky
-from tests.drivers.inverter.inverter_lookalikes import HuanyangSlave, Inverter
+from tests.drivers.inverter.inverter_simulators import HuanyangSlave, Inverter
 from tests.drivers.inverter.lines import HuanyangEnd, Pair, inverter, until
 from tests.late_computer import stalls_told
 

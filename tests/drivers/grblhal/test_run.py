@@ -1,4 +1,4 @@
-"""Programs on the look-alike: what goes out, what waits, what is held, stepped, overridden and refused."""
+"""Programs on the simulator: what goes out, what waits, what is held, stepped, overridden and refused."""
 
 from __future__ import annotations
 

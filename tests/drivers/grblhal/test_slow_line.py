@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.executor.snapshot import State
-from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.simulators.grblhal_firmware import Firmware
 from tests.drivers.grblhal.bench import GrblBench, quirky
 
 DIAGONALS = "G90G94F300\n" + "X1Z1\nX0Z0\n" * 4 + "M30\n"

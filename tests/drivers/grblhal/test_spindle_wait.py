@@ -12,9 +12,9 @@ from core.executor.snapshot import State
 from core.faults import code_of
 from drivers.clocks import StepClock
 from drivers.grblhal.grblhal_waits import AT_MOST, longest_wait
-from drivers.lookalikes.grblhal_firmware import Firmware
-from drivers.lookalikes.plant_config import SimSpindle
-from drivers.lookalikes.spindle_motor import SpindleMotor
+from drivers.simulators.grblhal_firmware import Firmware
+from drivers.simulators.plant_config import SimSpindle
+from drivers.simulators.spindle_motor import SpindleMotor
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 
 TOLERANCE, ON, OFF, COOLANT = 340, 394, 539, 673

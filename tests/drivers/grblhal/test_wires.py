@@ -1,4 +1,4 @@
-"""The command line against the look-alike on a pseudo terminal and on TCP, in real time."""
+"""The command line against the simulator on a pseudo terminal and on TCP, in real time."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from app.cli.main import main
 from core.ports import DriverError
 from drivers.clocks import RealClock
 from drivers.grblhal.grblhal_wire import open_wire
-from drivers.lookalikes.grblhal_far_end import PtyEnd, TcpEnd, serve
-from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.simulators.grblhal_far_end import PtyEnd, TcpEnd, serve
+from drivers.simulators.grblhal_firmware import Firmware
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import SHIPPED
 from tests.drivers.ptys import open_pty

@@ -8,7 +8,7 @@ from drivers.clocks import StepClock
 from drivers.inverter.inverter_attendant import Attendant
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
 from drivers.inverter.inverter_table import InverterConfig
-from tests.drivers.inverter.inverter_lookalikes import (
+from tests.drivers.inverter.inverter_simulators import (
     HZ_PER_RPM,
     DeltaMemory,
     HitachiMemory,

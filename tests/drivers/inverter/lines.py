@@ -15,7 +15,7 @@ from pymodbus.server import ModbusSerialServer
 from pymodbus.simulator import DataType, SimData, SimDevice
 
 from drivers.clocks import RealClock
-from tests.drivers.inverter.inverter_lookalikes import (
+from tests.drivers.inverter.inverter_simulators import (
     DeltaMemory,
     HitachiMemory,
     HuanyangSlave,

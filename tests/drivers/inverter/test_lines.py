@@ -23,7 +23,7 @@ from drivers.clocks import RealClock, StepClock
 from drivers.inverter.inverter_obedience import PRESS
 from tests.coded import raises_code
 from tests.drivers.inverter.benches import FAMILIES
-from tests.drivers.inverter.inverter_lookalikes import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
+from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter
 from tests.drivers.inverter.lines import HuanyangEnd, ModbusServer, Pair, inverter, until
 from tests.late_computer import stalls_told
 from tests.texts import text

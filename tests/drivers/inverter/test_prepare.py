@@ -11,7 +11,7 @@ from drivers.inverter.modbus_rtu import NoAnswerError
 from drivers.serial_line import WireError
 from tests.coded import raises_code
 from tests.drivers.inverter.benches import bench
-from tests.drivers.inverter.inverter_lookalikes import DeltaMemory, HitachiMemory, HuanyangSlave
+from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, HuanyangSlave
 from tests.texts import begins
 
 

@@ -6,7 +6,7 @@ import pytest
 
 from core.executor.snapshot import State
 from core.store.store_rows import Kind, ToolRow
-from drivers.lookalikes.plant_hands import PlantHands
+from drivers.simulators.plant_hands import PlantHands
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.texts import Pattern, begins, shows, text
 

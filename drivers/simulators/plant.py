@@ -23,16 +23,16 @@ from core.ports import (
     Stop,
     code_of,
 )
-from drivers.lookalikes.drive_limits import check_cam, check_limits
-from drivers.lookalikes.foreseen_motion import ForeseenMotion, foresee
-from drivers.lookalikes.plant_config import SimConfig
-from drivers.lookalikes.plant_terminals import Terminals
-from drivers.lookalikes.servo_axis import Servo
-from drivers.lookalikes.spindle_motor import SpindleMotor
-from drivers.lookalikes.tool_setter import ToolSetter
 from drivers.operator_station import Panel
 from drivers.sample_log import SampleLog
 from drivers.setpoint_queue import Tolerance, straight
+from drivers.simulators.drive_limits import check_cam, check_limits
+from drivers.simulators.foreseen_motion import ForeseenMotion, foresee
+from drivers.simulators.plant_config import SimConfig
+from drivers.simulators.plant_terminals import Terminals
+from drivers.simulators.servo_axis import Servo
+from drivers.simulators.spindle_motor import SpindleMotor
+from drivers.simulators.tool_setter import ToolSetter
 from drivers.spindle_gear import GearedQueue, Phase, Slides
 from drivers.wakeup import Touch, Wakeup
 

@@ -15,13 +15,13 @@ from drivers.canopen.canopen_bus import opened
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_nodes import CanNode
 from drivers.canopen.drive_profiles import DriveProfile
-from drivers.lookalikes.canopen_axis_drive import AxisDrive
-from drivers.lookalikes.canopen_modules import EncoderDevice, TerminalBoard
-from drivers.lookalikes.canopen_node import Device, DeviceNetwork, DeviceNode
-from drivers.lookalikes.canopen_spindle_drive import SpindleDrive
-from drivers.lookalikes.plant import Plant
-from drivers.lookalikes.plant_config import SimConfig
-from drivers.lookalikes.plant_hands import PlantHands, Schedule
+from drivers.simulators.canopen_axis_drive import AxisDrive
+from drivers.simulators.canopen_modules import EncoderDevice, TerminalBoard
+from drivers.simulators.canopen_node import Device, DeviceNetwork, DeviceNode
+from drivers.simulators.canopen_spindle_drive import SpindleDrive
+from drivers.simulators.plant import Plant
+from drivers.simulators.plant_config import SimConfig
+from drivers.simulators.plant_hands import PlantHands, Schedule
 
 _SETTLED = 1e-9
 

@@ -1,4 +1,4 @@
-"""The lines that a grblHAL look-alike reads: modes, functions, blocks and ``$`` commands."""
+"""The lines that a grblHAL simulator reads: modes, functions, blocks and ``$`` commands."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ import re
 from dataclasses import dataclass
 from typing import Protocol
 
-from drivers.lookalikes.grblhal_settings import Quirks, Registers
-from drivers.lookalikes.grblhal_slides import Place, PlannedBlock, Shape, Slides, circle, straight
-from drivers.lookalikes.grblhal_waits import Wait, coolant_wait, spindle_wait
-from drivers.lookalikes.spindle_motor import TurnedSpindle
+from drivers.simulators.grblhal_settings import Quirks, Registers
+from drivers.simulators.grblhal_slides import Place, PlannedBlock, Shape, Slides, circle, straight
+from drivers.simulators.grblhal_waits import Wait, coolant_wait, spindle_wait
+from drivers.simulators.spindle_motor import TurnedSpindle
 
 
 class Controller(Protocol):
@@ -57,7 +57,7 @@ class Controller(Protocol):
     def raise_alarm(self, number: int) -> None: ...
 
 
-# --- The look-alike's modal state, and the words that change it.
+# --- The simulator's modal state, and the words that change it.
 
 
 _MODAL = {
@@ -111,7 +111,7 @@ class Modes:
         )
 
 
-# --- The look-alike's ``$`` lines: identity, settings, unlocking, homing, the parser's state.
+# --- The simulator's ``$`` lines: identity, settings, unlocking, homing, the parser's state.
 
 
 _AXES = {"": 7, "X": 1, "Y": 2, "Z": 4}

@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from core.ports import BoolArray, FloatArray
-from drivers.lookalikes.plant_config import SimSpindle
+from drivers.simulators.plant_config import SimSpindle
 
 _BEARINGS, _SPEEDS_UP, _IN_CUT = 10.0, 70.0, 30.0  # per cent
 _THERE = 1e-9  # turns

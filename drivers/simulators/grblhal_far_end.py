@@ -1,4 +1,4 @@
-"""The look-alike at the other end of a pseudo terminal or a TCP port."""
+"""The simulator at the other end of a pseudo terminal or a TCP port."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from core.message import Message
 from core.ports import DriverError
-from drivers.lookalikes.grblhal_firmware import Firmware
+from drivers.simulators.grblhal_firmware import Firmware
 
 _ROUND = 0.002  # s
 

@@ -6,13 +6,13 @@ import math
 from dataclasses import dataclass
 
 from core.ports import Clock
-from drivers.lookalikes.grblhal_program import Modes, Program
-from drivers.lookalikes.grblhal_settings import Quirks, Registers
-from drivers.lookalikes.grblhal_slides import PlannedBlock, Slides
-from drivers.lookalikes.plant_config import SimSpindle
-from drivers.lookalikes.spindle_motor import SpindleMotor, TurnedSpindle
+from drivers.simulators.grblhal_program import Modes, Program
+from drivers.simulators.grblhal_settings import Quirks, Registers
+from drivers.simulators.grblhal_slides import PlannedBlock, Slides
+from drivers.simulators.plant_config import SimSpindle
+from drivers.simulators.spindle_motor import SpindleMotor, TurnedSpindle
 
-# --- What the look-alike's real-time bytes do, in whatever state it is.
+# --- What the simulator's real-time bytes do, in whatever state it is.
 
 
 _STEPS = {0x91: 10, 0x92: -10, 0x93: 1, 0x94: -1}
@@ -87,7 +87,7 @@ def _override(m: Firmware, byte: int) -> None:
     m.turn(m.rpm)
 
 
-# --- One step of the look-alike's machine: homing, the wait for an index, slides that move and stop.
+# --- One step of the simulator's machine: homing, the wait for an index, slides that move and stop.
 
 
 STEP = 0.001  # s
@@ -142,7 +142,7 @@ def _wants_index(m: Firmware, block: PlannedBlock) -> bool:
     return True
 
 
-# --- The look-alike's status reports, with what each carries and what it leaves out.
+# --- The simulator's status reports, with what each carries and what it leaves out.
 
 
 _OFFSETS_BUSY, _OFFSETS_IDLE = 30, 10  # every so many reports

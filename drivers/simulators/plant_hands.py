@@ -7,11 +7,11 @@ from functools import partial
 
 from core.message import Message
 from core.ports import DriverError
-from drivers.lookalikes.plant import Plant
-from drivers.lookalikes.plant_config import PlannedFault
-from drivers.lookalikes.servo_axis import Servo
-from drivers.lookalikes.worn_axis import TURN
 from drivers.operator_station import StationHands
+from drivers.simulators.plant import Plant
+from drivers.simulators.plant_config import PlannedFault
+from drivers.simulators.servo_axis import Servo
+from drivers.simulators.worn_axis import TURN
 
 
 class PlantHands(StationHands):

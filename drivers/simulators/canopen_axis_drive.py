@@ -11,7 +11,7 @@ from drivers.canopen.canopen_objects import BIT_12, CSP, HM, IP, NEW, PP, REACHE
 from drivers.canopen.drive_profiles import CIA402, DriveProfile, Records
 from drivers.canopen.pvt_mode import hermite
 from drivers.canopen.pvt_records import unpacked, unpacked_segment
-from drivers.lookalikes.servo_axis import Servo
+from drivers.simulators.servo_axis import Servo
 
 # --- The power states of a CiA 402 drive as the drive keeps them, with the transitions of the profile.
 

@@ -9,10 +9,10 @@ from dataclasses import replace
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_objects import HM, IP, NEW, PV, REACHED, DriveState
 from drivers.canopen.drive_profiles import CIA402, DriveProfile
-from drivers.lookalikes.canopen_axis_drive import AxisDrive
-from drivers.lookalikes.plant_config import SimAxis
-from drivers.lookalikes.servo_axis import Servo
-from drivers.lookalikes.spindle_motor import SpindleMotor
+from drivers.simulators.canopen_axis_drive import AxisDrive
+from drivers.simulators.plant_config import SimAxis
+from drivers.simulators.servo_axis import Servo
+from drivers.simulators.spindle_motor import SpindleMotor
 
 EMCY_FAULT = 0x7120  # motor blocked
 _INDEX = (33, 34)

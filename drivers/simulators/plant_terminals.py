@@ -7,8 +7,8 @@ from collections.abc import Mapping
 
 from core.message import Message
 from core.ports import PROBE, DriverError
-from drivers.lookalikes.plant_config import SimCollet, SimOutput
-from drivers.lookalikes.tool_setter import ToolSetter
+from drivers.simulators.plant_config import SimCollet, SimOutput
+from drivers.simulators.tool_setter import ToolSetter
 
 _GUARD = "guard"
 

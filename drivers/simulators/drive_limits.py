@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from core.message import Message
 from core.ports import Cam, DriverError, Segments
-from drivers.lookalikes.servo_axis import Servo
+from drivers.simulators.servo_axis import Servo
 
 _STANDS = 10.0  # rpm; faster than this the spindle's drive turns, and cannot position
 _SLIPS = 1.1  # of an axis' speed: a spindle that asks for more is refused, one that asks for less slips

@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-from drivers.lookalikes.grblhal_settings import Registers
-from drivers.lookalikes.spindle_motor import TurnedSpindle
+from drivers.simulators.grblhal_settings import Registers
+from drivers.simulators.spindle_motor import TurnedSpindle
 
 TOLERANCE, SPINDLE_ON, SPINDLE_OFF, COOLANT_ON = 340, 394, 539, 673
 _AT_MOST = 60.0  # s without a delay

@@ -1,4 +1,4 @@
-"""The look-alike's planner and slides: blocks on a path, always able to stop at its end."""
+"""The simulator's planner and slides: blocks on a path, always able to stop at its end."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from drivers.lookalikes.grblhal_settings import Registers
+from drivers.simulators.grblhal_settings import Registers
 
 Place = tuple[float, float]  # X as a radius, Z; mm
 Shape = tuple[float, Callable[[float], Place]]  # length, and distance to place

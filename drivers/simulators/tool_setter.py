@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from drivers.lookalikes.plant_config import SimSetter
+from drivers.simulators.plant_config import SimSetter
 
 
 class ToolSetter:

@@ -8,8 +8,8 @@ from typing import Protocol
 
 from core.ports import Clock
 from drivers.inverter.modbus_rtu import sealed, whole
-from drivers.lookalikes.plant_config import SimSpindle
-from drivers.lookalikes.spindle_motor import SpindleMotor
+from drivers.simulators.plant_config import SimSpindle
+from drivers.simulators.spindle_motor import SpindleMotor
 
 HZ_PER_RPM = 1 / 60
 

@@ -1,11 +1,11 @@
-"""Settings of a grblHAL look-alike, refused as the real ones are, and the habits that can be switched."""
+"""Settings of a grblHAL simulator, refused as the real ones are, and the habits that can be switched."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
 
-# --- What the look-alike does like the real one, or is made to do; each can be switched.
+# --- What the simulator does like the real one, or is made to do; each can be switched.
 
 
 @dataclass(slots=True)

@@ -8,7 +8,7 @@ from core.ports import StationState
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_nodes import CanTerminal
-from drivers.lookalikes.plant import Plant
+from drivers.simulators.plant import Plant
 
 _STATION = frozenset({"estop", "start", "hold", "spindle_auto"})
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from drivers.lookalikes.plant_config import SimAxis
-from drivers.lookalikes.servo_response import AT_REST, Number, Response, ServoLoop, Setpoints
-from drivers.lookalikes.worn_axis import WornAxis
+from drivers.simulators.plant_config import SimAxis
+from drivers.simulators.servo_response import AT_REST, Number, Response, ServoLoop, Setpoints
+from drivers.simulators.worn_axis import WornAxis
 
 _FEEDS, _CUTS = 0.05, 0.25  # mm/s, and the fraction of the rapid above which nothing is cut
 _SETTLED = 1e-4  # mm or degrees, and per second: below this the slide is put on its setpoint

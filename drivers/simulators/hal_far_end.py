@@ -19,11 +19,11 @@ from drivers.hal.bridge.packets import Head, unpack
 from drivers.hal.hal_border import Border, border_of
 from drivers.hal.hal_config import HalAxis, HalConfig
 from drivers.hal.hal_session import bridge_config
-from drivers.lookalikes.hal_components import Cells, Fifo, Program, sampler, streamer, watchdog
-from drivers.lookalikes.plant import Plant
-from drivers.lookalikes.plant_config import SimConfig
-from drivers.lookalikes.plant_hands import PlantHands
-from drivers.lookalikes.servo_axis import Servo
+from drivers.simulators.hal_components import Cells, Fifo, Program, sampler, streamer, watchdog
+from drivers.simulators.plant import Plant
+from drivers.simulators.plant_config import SimConfig
+from drivers.simulators.plant_hands import PlantHands
+from drivers.simulators.servo_axis import Servo
 
 _ROUND, _REPORT = 2, 4  # periods between two rounds of the bridge, between two reports
 _STATION = frozenset({"estop", "start", "hold", "spindle_auto"})
