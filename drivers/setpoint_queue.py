@@ -67,6 +67,46 @@ class AxisFigures:
     corner: float = 4.0  # velocity that a corner may jump: amax times the setpoint interval
 
 
+def check_limits(
+    segments: Segments,
+    axes: Sequence[AxisFigures],
+    homed: Sequence[bool],
+    actual: Sequence[float] | None = None,
+) -> None:
+    """Raise DriverError for setpoints that are too fast, or outside the travel of an axis that is homed.
+
+    With ``actual``, an axis that is outside its travel may move back from there.
+    """
+    for n, axis in enumerate(axes):
+        if abs(segments.v[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
+            raise DriverError(
+                Message(
+                    "{axis}: the setpoint speed exceeds {vmax}/s; nothing was queued",
+                    axis=axis.name,
+                    vmax=f"{axis.vmax:.1f}",
+                ),
+                "drive-limits",
+                reason="too-fast",
+            )
+        if axis.travel is None or not homed[n]:
+            continue
+        low, high = axis.travel
+        if actual is not None:
+            low, high = min(low, actual[n]), max(high, actual[n])
+        place = segments.p[:, n]
+        if place.min(initial=low) < low - 0.01 or place.max(initial=high) > high + 0.01:
+            raise DriverError(
+                Message(
+                    "{axis}: setpoints are outside the travel range {low}…{high}; nothing was queued",
+                    axis=axis.name,
+                    low=f"{low:.2f}",
+                    high=f"{high:.2f}",
+                ),
+                "drive-limits",
+                reason="leaves-travel",
+            )
+
+
 _SLOT = 1e-6  # s; clock rounding between the end of one piece and the start of the next
 _REST = 0.01  # mm/s or degrees/s; what rounding may leave of a velocity
 

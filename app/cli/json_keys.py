@@ -320,9 +320,9 @@ changes[].new | string | | Value now; — if the file does not have the key.
 ports | list | | Nodes, drives, inputs, outputs and other connections.
 ports[].name | string | | What was checked.
 ports[].at | string | | Where it is connected.
-ports[].state | string | | State, such as ok, on, off, no answer, missing, wrong or fault.
+ports[].state | string | | State, such as ok, on, off, not checked, no answer, missing, wrong or fault.
 ports[].detail | string | | Details; may be empty.
-ports[].verdict | string | | ok or FAIL.
+ports[].verdict | string | | ok, FAIL, or not checked if no hardware reports the value.
 warnings | list | | Warnings, as sentences.
 trouble | list | | Failures, as sentences; if there are any, the exit status is 1.
 """

@@ -73,7 +73,7 @@ Rows = Sequence[tuple[str, str, str, str]]  # name, where it hangs, state, detai
 
 def check(file: str | None, *, json_wanted: bool) -> int:
     """Validates, connects and reports; answers the exit status."""
-    from app.compose.machine_answers import check_ports
+    from app.compose.machine_answers import NOT_CHECKED, check_ports
     from app.compose.machine_files import named_machine
     from core.table_schema import MachineFileError
 
@@ -102,8 +102,13 @@ def check(file: str | None, *, json_wanted: bool) -> int:
     )
     if not json_wanted:
         sys.stdout.write(f"{machine.source} is valid: {machine.name}, backend {machine.backend}\n")
-        judged = [(f"{row.verdict:<4}  {row.name}", *row[1:]) for row in answers.rows]
+        judged = [
+            (f"{row.verdict:<4}  {row.name}", *row[1:]) for row in answers.rows if row.verdict != NOT_CHECKED
+        ]
         sys.stdout.write("".join(f"{line}\n" for line in table(judged)))
+        unchecked = [row.name for row in answers.rows if row.verdict == NOT_CHECKED]
+        if unchecked:
+            sys.stdout.write(f"  not checked, because no hardware reports them: {summary(unchecked)}\n")
         sys.stdout.write("".join(f"  changed since it was accepted: {change}\n" for change in told))
     said = (*answers.warnings, *answers.trouble)
     sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in said))
@@ -128,6 +133,15 @@ def table(rows: Rows) -> Iterator[str]:
         text = textwrap.wrap(detail, max(WIDTH - len(start), 30)) or [""]
         yield (head + text[0]).rstrip()
         yield from (start + more for more in text[1:])
+
+
+def summary(names: Sequence[str]) -> str:
+    """Return the names in one line; several inputs or outputs are only counted."""
+    parts = [name for name in names if not name.startswith(("input ", "output "))]
+    for kind in ("input", "output"):
+        terminals = [name for name in names if name.startswith(f"{kind} ")]
+        parts += terminals if len(terminals) < 2 else [f"{len(terminals)} {kind}s"]
+    return ", ".join(parts)
 
 
 def _report(json_wanted: bool, report: dict[str, object]) -> None:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypedDict
 
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
 from core.ports import Clock, DriverError, MachinePorts
-from drivers.setpoint_queue import AxisFigures
 
 if TYPE_CHECKING:
     from app.desk.station_hands import StationPanel
@@ -49,7 +48,8 @@ class Backend:
     ``connect`` what lives in the control's own process, with its inverter; a backend that has both is asked
     for the feeder by its machine file. ``played``: machine and other end are simulated here. ``play`` is the
     other end alone, for trying a machine file without hardware. ``survey`` asks every node by itself, or
-    looks at every pin: its name, where it is, what is wrong with it and what it says.
+    looks at every pin: its name, where it is, what is wrong with it and what it says. ``measured`` lists the
+    rows of ``turndesk machine check`` whose values hardware reports; without it no row counts as checked.
     """
 
     word: str
@@ -58,6 +58,7 @@ class Backend:
     played: Callable[[Machine], bool] = lambda _machine: False
     play: Play | None = None
     survey: Callable[[Machine, Clock], Iterable[tuple[str, str, str, str]]] | None = None
+    measured: Callable[[Machine], Iterable[str]] = lambda _machine: ()
 
 
 def backend_of(machine: Machine) -> Backend:
@@ -84,15 +85,46 @@ def playable() -> list[str]:
     return [word for word in BACKENDS if _backend(word).play is not None]
 
 
-def axis_figures(axis: Axis, machine: Machine) -> dict[str, Any]:
-    """What every driver of setpoints has to know of an axis: ``AxisFigures`` by the names of its fields."""
-    figures = {each.name: getattr(axis, each.name, None) for each in fields(AxisFigures)}
-    return figures | {"corner": axis.amax * machine.timing.setpoint}
+class AxisFields(TypedDict):
+    """The fields of ``drivers.setpoint_queue.AxisFigures``."""
+
+    name: str
+    vmax: float
+    amax: float
+    count: float
+    following_window: float
+    following_time: float
+    travel: tuple[float, float] | None
+    absolute: bool
+    home_speed: float
+    corner: float
+
+
+def axis_figures(axis: Axis, machine: Machine) -> AxisFields:
+    """Return the values of an axis that every driver of setpoints needs."""
+    return {
+        "name": axis.name,
+        "vmax": axis.vmax,
+        "amax": axis.amax,
+        "count": axis.count,
+        "following_window": axis.following_window,
+        "following_time": axis.following_time,
+        "travel": axis.travel,
+        "absolute": axis.absolute,
+        "home_speed": axis.home_speed or 10.0,
+        "corner": axis.amax * machine.timing.setpoint,
+    }
 
 
 def has_station(machine: Machine) -> bool:
     """Whether the machine has buttons of its own, or is operated by those on the screen."""
     return any(name in machine.inputs for name in STATION)
+
+
+def wired_inputs(machine: Machine) -> list[str]:
+    """Return the rows of ``turndesk machine check`` for inputs, and for a station that is wired to them."""
+    inputs = [f"input {name}" for name in machine.inputs]
+    return [*inputs, "station"] if has_station(machine) else inputs
 
 
 def has_inverter(machine: Machine) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.backend_entry import Backend, axis_figures, has_station
+from app.compose.backend_entry import Backend, axis_figures, has_station, wired_inputs
 from core.machine.hardware_model import HomeModel
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
@@ -207,7 +207,18 @@ def _survey(machine: Machine, clock: Clock) -> Iterator[tuple[str, str, str, str
         yield Message("node {answer}", answer=answer.name), str(answer.node), answer.trouble, answer.detail
 
 
-BACKEND = Backend("bus", driven=can_driven, played=_played, play=_play, survey=_survey)
+def _measured(machine: Machine) -> Iterator[str]:
+    """Axes and a spindle that have a node, and everything at the terminals of the modules."""
+    config = canopen_config(machine)
+    yield from (axis.name for axis in config.axes if axis.node is not None)
+    if config.spindle is not None or config.encoder is not None:
+        yield "spindle"
+    if config.spindle is not None and config.spindle.is_c:
+        yield "C"
+    yield from wired_inputs(machine)
+
+
+BACKEND = Backend("bus", driven=can_driven, played=_played, play=_play, survey=_survey, measured=_measured)
 
 
 # --- What a control writes to the nodes of a bus at each start, to be compared with what it wrote before.

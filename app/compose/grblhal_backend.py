@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 
 from app.compose.backend_entry import Backend, Connected, has_inverter
 from app.compose.inverter_backend import with_inverter
@@ -99,4 +99,15 @@ def _connect(machine: Machine, clock: Clock) -> Connected:
     return Connected(ports, controller.panel, None, close)
 
 
-BACKEND = Backend("controller", connect=_connect, play=_play)
+def _measured(machine: Machine) -> Iterator[str]:
+    """The controller, a spindle with an encoder, and the inputs.
+
+    The controller counts the steps that it sends, and the overrides are those of the screen.
+    """
+    yield "controller"
+    if machine.spindle.encoder_ppr:
+        yield "spindle"
+    yield from (f"input {name}" for name in machine.inputs)
+
+
+BACKEND = Backend("controller", connect=_connect, play=_play, measured=_measured)

@@ -7,13 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import resources
-from app.compose.backend_entry import Backend, axis_figures, has_station
+from app.compose.backend_entry import Backend, axis_figures, has_station, wired_inputs
 from core.machine.hardware_model import HomeModel
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.clocks import RealClock
 from drivers.feeder.feeder_server import Driven
+from drivers.hal.boards.board_table import ETHERCAT, MESA_SERVO, SIM, BoardTable
 from drivers.hal.hal_config import HalAxis, HalConfig, HalInput, HalOutput, HalPot, HalSpindle
 from drivers.hal.hal_machine import HalMachine
 from drivers.hal.hal_session import HalSession
@@ -67,7 +68,7 @@ def _file(machine: Machine, name: str) -> Path:
 def _axis(axis: Axis, machine: Machine, hal: HalTable) -> HalAxis:
     home = machine.hardware.homes.get(axis.name) or HomeModel()
     return HalAxis(
-        **axis_figures(axis, machine) | {"home_speed": axis.home_speed or 10.0},
+        **axis_figures(axis, machine),
         pins=hal.axes.get(axis.name),
         home_method=home.method,
         home_latch=home.latch,
@@ -102,4 +103,20 @@ def _survey(machine: Machine, _clock: Clock) -> Iterator[tuple[str, str, str, st
         yield each.path, each.pin, each.trouble, each.trouble
 
 
-BACKEND = Backend("HAL", driven=hal_driven, survey=_survey)
+def _measured(machine: Machine) -> Iterator[str]:
+    """Axes with an encoder, a spindle with an encoder, and all inputs; nothing on a simulated board.
+
+    The position of a step drive is the number of steps that were sent. Without [board], the driver does not
+    know what is at the pins of the axes.
+    """
+    board, hal = machine.hardware.table(BoardTable), machine.hardware.table(HalTable)
+    if board is not None and board.kind == SIM:
+        return
+    if board is not None and board.kind in {MESA_SERVO, ETHERCAT} and hal is not None:
+        yield from hal.axes
+    if machine.spindle.encoder_ppr:
+        yield "spindle"
+    yield from wired_inputs(machine)
+
+
+BACKEND = Backend("HAL", driven=hal_driven, survey=_survey, measured=_measured)

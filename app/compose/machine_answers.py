@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from app.compose.backend_entry import backend_of, has_inverter, played
 from app.compose.backends import connect, real_time
 from app.compose.page_server import listening_at
+from app.compose.pendant_wire import wired
 from app.compose.sharing_desk import place_of
 from app.compose.shop_floor import try_shop_floor
 from core.machine.machine_model import Axis, Machine
@@ -28,7 +29,7 @@ from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.pendant.pendant_station import PendantStation
 from drivers.pendant.pendant_table import PendantModel
 
-MISSING = "missing"
+MISSING, NOT_CHECKED = "missing", "not checked"
 FAILED = (
     "fault",
     "no answer",
@@ -51,8 +52,16 @@ class Row(NamedTuple):
 
     @property
     def verdict(self) -> str:
-        """Whether it is as the machine file has it: ``ok`` or ``FAIL``."""
-        return "FAIL" if self.state in FAILED else "ok"
+        """Return ``ok``, ``FAIL`` where it is not as the machine file has it, or ``not checked``."""
+        if self.state in FAILED:
+            return "FAIL"
+        return NOT_CHECKED if self.state == NOT_CHECKED else "ok"
+
+    def checked(self, measured: Container[str]) -> Row:
+        """Return the row as ``not checked`` if it is not one of the ``measured`` rows and does not fail."""
+        if self.name in measured or self.state in FAILED:
+            return self
+        return self._replace(state=NOT_CHECKED, detail=self.detail or self.state)
 
 
 @dataclass(slots=True)
@@ -163,11 +172,14 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
     try:
         if real_time(machine):
             _settle(clock, connected.ports, machine)
-        rows = list(_rows(machine, connected.ports))
+        measured = _measured(machine, connected.ports)
+        rows = [row.checked(measured) for row in _rows(machine, connected.ports)]
         told = {row.detail for row in rows}
         answers.warnings += [each for each in connected.ports.warnings if each not in told]
     finally:
         connected.close()
+    if (word := backend_of(machine).word) in measured:
+        answers.rows.append(Row(word, "", "ok", ""))
     answers.rows += rows
     answers.trouble += [
         Message("{row}: {state}; {detail}", row=row.name, state=row.state, detail=row.detail)
@@ -176,6 +188,17 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
         for row in rows
         if row.state in FAILED
     ]
+
+
+def _measured(machine: Machine, ports: MachinePorts) -> set[str]:
+    """Return the names of the rows whose values hardware has reported."""
+    backend = wired(machine)
+    names = set() if played(machine) else set(backend_of(machine).measured(backend))
+    if has_inverter(machine):
+        names.add("spindle")
+    if isinstance(ports.station, PendantStation) and not ports.station.away:
+        names |= {"pendant", *(f"input {name}" for name in machine.inputs.keys() - backend.inputs.keys())}
+    return names
 
 
 def _settle(clock: Clock, ports: MachinePorts, machine: Machine) -> None:
@@ -223,7 +246,7 @@ def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
             yield Row(
                 name,
                 terminal,
-                "untold",
+                NOT_CHECKED,
                 "the signal cuts power directly in hardware; its state is not reported",
             )
             continue

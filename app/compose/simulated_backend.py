@@ -62,9 +62,7 @@ def _setter(machine: Machine, tips: tuple[tuple[float, float], ...]) -> SimSette
 
 
 def _axis(axis: Axis, machine: Machine) -> SimAxis:
-    figures = axis_figures(axis, machine)
-    home_speed = axis.home_speed or 10.0
-    return SimAxis(**figures | {"home_speed": home_speed}, own_drive=not machine.spindle_is_c)
+    return SimAxis(**axis_figures(axis, machine), own_drive=not machine.spindle_is_c)
 
 
 def _driven(machine: Machine, clock: Clock) -> Driven:

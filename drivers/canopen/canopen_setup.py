@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from typing import TypeVar
 
 import canopen
@@ -10,7 +10,7 @@ from canopen.pdo import PdoBase, PdoMap
 from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
 from core.message import Message
-from core.ports import DriverError, Segments
+from core.ports import DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus, Node
 from drivers.canopen.canopen_config import AxisConfig
@@ -439,32 +439,3 @@ def limits(config: AxisConfig) -> Objects:
         return ()
     low, high = config.travel
     return ((od.LIMITS, 1, round(low / config.count)), (od.LIMITS, 2, round(high / config.count)))
-
-
-def check_limits(segments: Segments, axes: Sequence[AxisConfig], homed: Sequence[bool]) -> None:
-    """The last line before the wire, behind the control's own. Raises DriverError."""
-    for i, axis in enumerate(axes):
-        if abs(segments.v[:, i]).max() > axis.vmax * 1.001 + 0.01:
-            raise DriverError(
-                Message(
-                    "{axis}: the setpoint speed exceeds {vmax}/s; nothing was queued",
-                    axis=axis.name,
-                    vmax=f"{axis.vmax:.1f}",
-                ),
-                "drive-limits",
-                reason="too-fast",
-            )
-        if axis.travel is None or not homed[i]:
-            continue
-        low, high = axis.travel
-        if segments.p[:, i].min() < low - 0.01 or segments.p[:, i].max() > high + 0.01:
-            raise DriverError(
-                Message(
-                    "{axis}: setpoints are outside the range {low}…{high}; nothing was queued",
-                    axis=axis.name,
-                    low=f"{low:.2f}",
-                    high=f"{high:.2f}",
-                ),
-                "drive-limits",
-                reason="leaves-travel",
-            )

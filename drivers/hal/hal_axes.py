@@ -15,7 +15,7 @@ from drivers.hal.hal_homing import Homing
 from drivers.hal.hal_link import HalLink, told_fault
 from drivers.hal.hal_touch import HalTouch
 from drivers.setpoint_pieces import Piece
-from drivers.setpoint_queue import Tolerance, pieces_of
+from drivers.setpoint_queue import Tolerance, check_limits, pieces_of
 from drivers.spindle_gear import GearedQueue, Motion, Phase, Slides
 
 _PAST = 0.5  # s of setpoints that may still be asked for
@@ -426,31 +426,7 @@ class HalAxes:
             raise DriverError("the drives are off; switch them on first", "power-lost")
 
     def _check(self, segments: Segments) -> None:
-        """Raises DriverError for setpoints beyond the axes' speeds and travels."""
-        for n in self._driven:
-            axis = self.config.axes[n]
-            if abs(segments.v[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
-                text = Message(
-                    "{axis}: setpoints exceed the speed limit of {vmax}/s; nothing was queued",
-                    axis=axis.name,
-                    vmax=f"{axis.vmax:.1f}",
-                )
-                reason = "too-fast"
-            elif axis.travel is not None and self._homed[n] and not self._inside(segments, n, axis.travel):
-                text = Message(
-                    "{axis}: setpoints are outside the travel range {low}…{high}; nothing was queued",
-                    axis=axis.name,
-                    low=f"{axis.travel[0]:.2f}",
-                    high=f"{axis.travel[1]:.2f}",
-                )
-                reason = "leaves-travel"
-            else:
-                continue
-            raise DriverError(text, "drive-limits", reason=reason)
-
-    def _inside(self, segments: Segments, n: int, travel: tuple[float, float]) -> bool:
-        low, high = min(travel[0], self._actual[n]), max(travel[1], self._actual[n])
-        return bool(segments.p[:, n].min() >= low - 0.01 and segments.p[:, n].max() <= high + 0.01)
+        check_limits(segments, self.config.axes, self._homed, self._actual)
 
     def _send(self, what: str, pieces: Sequence[Piece], **values: object) -> None:
         self._link.say_pieces(what, [self._to_hal(piece) for piece in pieces], **values)

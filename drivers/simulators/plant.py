@@ -26,7 +26,7 @@ from core.ports import (
 from drivers.operator_station import Panel
 from drivers.sample_log import SampleLog
 from drivers.setpoint_queue import Tolerance, straight
-from drivers.simulators.drive_limits import check_cam, check_limits
+from drivers.simulators.drive_limits import check_cam, check_drives
 from drivers.simulators.foreseen_motion import ForeseenMotion, foresee
 from drivers.simulators.plant_config import SimConfig
 from drivers.simulators.plant_terminals import Terminals
@@ -137,7 +137,7 @@ class Plant:
         with self.lock:
             now = self.advance()
             self._need_power()
-            check_limits(segments, self.servos, self.spindle.speed)
+            check_drives(segments, self.servos, self.spindle.speed)
             self.queue.splice(segments, now)
 
     def mesh(self, cam: Cam) -> None:

@@ -8,8 +8,12 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.cli.machine_command import table
+from app.cli.machine_command import summary, table
 from app.cli.main import main
+from app.compose import simulated_backend
+from app.compose.backend_entry import Backend, backend_of
+from app.compose.machine_answers import FAILED, Row
+from app.compose.machine_files import shipped_machine
 from drivers.simulated.simulated_machine import SimIO
 
 Captured = pytest.CaptureFixture[str]
@@ -19,9 +23,9 @@ def test_shipped_lathe_is_good_and_answers(capsys: Captured) -> None:
     assert main(["machine", "check"]) == 0
     told = capsys.readouterr()
     assert told.err == ""
-    assert "gt75.toml is valid: GT-75" in told.out
-    for name in ("X", "Z", "C", "spindle", "input TB2-5", "input 16"):
-        assert f"  {name} " in told.out
+    first, second = told.out.splitlines()
+    assert first.startswith("gt75.toml is valid: GT-75")
+    assert second.endswith(": X, Z, C, spindle, station, 25 inputs, 14 outputs")
 
 
 def test_json_has_every_drive_and_input(capsys: Captured, tmp_path: Path) -> None:
@@ -30,9 +34,12 @@ def test_json_has_every_drive_and_input(capsys: Captured, tmp_path: Path) -> Non
     assert main(["machine", "check", str(path), "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert (report["file"], report["errors"]) == (str(path), [])
-    states = {port["name"]: port["state"] for port in report["ports"]}
-    assert states["X"] == "ok"
-    assert states["input collet_closed"] == "on"
+    ports = {port.pop("name"): port for port in report["ports"]}
+    assert len(ports) == 44
+    assert {port["state"] for port in ports.values()} == {"not checked"}
+    assert {port["verdict"] for port in ports.values()} == {"not checked"}
+    assert ports["X"]["detail"] == "homed, at 0 in"
+    assert (ports["input collet_closed"]["at"], ports["input collet_closed"]["detail"]) == ("IN-5", "on")
 
 
 def test_every_mistake_is_a_line(capsys: Captured, tmp_path: Path) -> None:
@@ -74,12 +81,61 @@ def test_the_table_fits_a_terminal() -> None:
     assert lines[-1] == "  input a  401.6000.1.0  on"
 
 
-def test_terminals_positions_and_outputs_are_in_the_table(capsys: Captured) -> None:
+def board(monkeypatch: pytest.MonkeyPatch, *measured: str) -> None:
+    """Replace the simulated backend by a real one, whose hardware reports these rows."""
+    backend = Backend("board", connect=simulated_backend.BACKEND.connect, measured=lambda _machine: measured)
+    monkeypatch.setattr(simulated_backend, "BACKEND", backend)
+
+
+def test_only_measured_rows_are_in_the_table(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    board(monkeypatch, "board", "X", "input end_of_bar", "no such row")
     assert main(["machine", "check"]) == 0
-    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
-    assert ["ok", "X", "ok", "homed,", "at", "0", "in"] in lines
-    assert ["ok", "output", "collet", "OUT-2", "on"] in lines
-    assert ["ok", "input", "end_of_bar", "IN-6", "off"] in lines
+    *lines, last = [line.split() for line in capsys.readouterr().out.splitlines()[1:]]
+    assert lines == [
+        ["ok", "board", "ok"],
+        ["ok", "X", "ok", "homed,", "at", "0", "in"],
+        ["ok", "input", "end_of_bar", "IN-6", "off"],
+    ]
+    assert last[-8:] == ["Z,", "C,", "spindle,", "station,", "24", "inputs,", "14", "outputs"]
+
+
+def test_a_driver_that_talks_to_nothing_is_not_ok(capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    board(monkeypatch)
+    assert main(["machine", "check", "--json"]) == 0
+    ports = json.loads(capsys.readouterr().out)["ports"]
+    assert {port["verdict"] for port in ports} == {"not checked"}
+
+
+@pytest.mark.parametrize("state", FAILED)
+def test_a_failure_stays_one_although_nothing_was_measured(state: str) -> None:
+    row = Row("X", "", state, "why").checked(())
+    assert (row.verdict, row.state, row.detail) == ("FAIL", state, "why")
+
+
+@pytest.mark.parametrize(
+    ("name", "measured"),
+    [
+        ("gt75", set()),
+        ("gt75-vfd", set()),
+        ("gt75-hal", set()),
+        ("gt75-parport", {"spindle"}),
+        ("gt75-mesa-7i76e", {"spindle", "station"}),
+        ("gt75-mesa-7i97", {"X", "Z", "spindle", "station"}),
+        ("gt75-ethercat", {"X", "Z", "spindle", "station"}),
+        ("gt75-canopen", {"X", "Z", "spindle", "station"}),
+        ("gt75-grblhal", {"controller", "spindle"}),
+    ],
+)
+def test_step_drives_simulated_boards_and_outputs_are_not_measured(name: str, measured: set[str]) -> None:
+    machine = shipped_machine(name)
+    rows = set(backend_of(machine).measured(machine))
+    inputs = {f"input {each}" for each in machine.inputs} if measured else set()
+    assert rows == measured | inputs
+
+
+def test_the_summary_counts_terminals_and_names_a_single_one() -> None:
+    assert summary(["X", "input estop", "output a", "output b"]) == "X, input estop, 2 outputs"
+    assert summary([]) == ""
 
 
 def test_an_inverter_that_is_not_there_has_its_row(capsys: Captured, tmp_path: Path) -> None:

@@ -131,11 +131,11 @@ def test_a_pendant_that_is_not_there_is_a_row_that_fails(monkeypatch: pytest.Mon
     """``machine check`` names it, and what to do; the machine answers all the same."""
     monkeypatch.setattr("app.compose.pendant_wire.entries", list)
     answers = check_ports(parse_machine(text(), "test"))
-    row = next(each for each in answers.rows if each.name == "pendant")
-    assert (row.at, row.state) == ("0b33:0030", "no answer")
-    assert "not plugged in" in row.detail
+    rows = {each.name: each for each in answers.rows}
+    assert (rows["pendant"].at, rows["pendant"].state) == ("0b33:0030", "no answer")
+    assert "not plugged in" in rows["pendant"].detail
     assert any("pendant" in each for each in answers.trouble)
-    assert {"X", "Z", "spindle"} <= {each.name for each in answers.rows}
+    assert {rows[name].verdict for name in ("X", "Z", "spindle", "input wheel_x")} == {"not checked"}
 
 
 def test_a_pendant_that_is_there_is_read_beside_the_machine() -> None:

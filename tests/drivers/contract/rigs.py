@@ -8,8 +8,9 @@ from tests.drivers.contract.hal import Hal
 from tests.drivers.contract.inverters import DeltaVfdB, HitachiWj200, HuanyangHy
 from tests.drivers.contract.rig import Rig
 from tests.drivers.contract.simulated import Fed, Simulated
+from tests.drivers.contract.skeleton import Skeleton
 
-RIGS: dict[str, type[Simulated | Fed | Canopen | FedCanopen | Grblhal | Hal]] = {
+RIGS: dict[str, type[Simulated | Fed | Canopen | FedCanopen | Grblhal | Hal | Skeleton]] = {
     "simulated": Simulated,
     "fed": Fed,
     "canopen": Canopen,
@@ -22,6 +23,7 @@ RIGS: dict[str, type[Simulated | Fed | Canopen | FedCanopen | Grblhal | Hal]] = 
     "delta": DeltaVfdB,
     "hitachi": HitachiWj200,
     "huanyang": HuanyangHy,
+    "skeleton": Skeleton,
 }
 
 

@@ -41,7 +41,7 @@ def test_every_pin_that_the_machine_file_names_has_its_verdict() -> None:
     assert not answers.trouble
     pins = {row.name: row for row in answers.rows}
     assert pins["hal.axes.X.command"].at == "x-servo.in"
-    assert {row.state for row in answers.rows} <= {"ok", "on", "off"}
+    assert {row.state for row in answers.rows} == {"ok", "not checked"}  # the board is simulated
 
 
 @pytest.mark.long
@@ -60,7 +60,7 @@ def test_a_pin_that_is_not_as_it_is_said_is_named(
     old: str, new: str, row: str, why: str, tmp_path: Path
 ) -> None:
     answers = check_ports(load_machine(lathe(tmp_path, ((old, new),))))
-    wrong = [each for each in answers.rows if each.state != "ok"]
+    wrong = [each for each in answers.rows if each.verdict == "FAIL"]
     assert [each.name for each in wrong] == [row]
     assert why in wrong[0].detail
     assert answers.trouble

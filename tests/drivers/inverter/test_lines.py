@@ -138,8 +138,10 @@ def test_estop_keeps_it_off(connected: Connected) -> None:
 def test_machine_check_reads_it(wired: Wired, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["machine", "check", str(wired.path), "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
-    (spindle,) = [port for port in report["ports"] if port["name"] == "spindle"]
-    assert spindle["state"] == "ok"
+    ports = {port["name"]: port for port in report["ports"]}
+    spindle = ports.pop("spindle")
+    assert spindle["state"] == spindle["verdict"] == "ok"
+    assert {port["verdict"] for port in ports.values()} == {"not checked"}
     assert spindle["detail"].startswith("0 rpm, ")
     assert "0.00 Hz" in spindle["detail"]
     assert any("encoder" in warning for warning in report["warnings"])
