@@ -5,76 +5,27 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from dataclasses import fields as fields_of
-from enum import Enum, StrEnum
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple, TypeGuard, TypeVar
 
 from core.coded_error import CodedError
+from core.key_declaration import (
+    LENGTHS,
+    Field,
+    Kind,
+    Pair,
+    Schema,
+    Value,
+    keys_of,
+    shown,
+    to_file,
+    to_model,
+)
 from core.message import Message
 from core.nearest import nearest
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
-
-# --- Units of a machine file. The file writes its own; the model has mm, seconds, degrees, rpm.
-
-
-INCH = 25.4
-
-
-class Unit(StrEnum):
-    """What a number of the file means; the word is what a finding shows, ``len`` is the file's in or mm."""
-
-    PLAIN = ""
-    LENGTH = "len"
-    FEED = "len/min"
-    ACCEL = "len/s²"
-    MILLISECONDS = "ms"
-    SECONDS = "s"
-    PERCENT = "%"
-    DEGREES = "deg"
-    RPM = "rpm"
-    RPM_PER_SECOND = "rpm/s"
-    TURNS_PER_MINUTE = "rpm of the C axis"
-    TURNS_PER_MINUTE_SECOND = "rpm/s of the C axis"
-    DEGREES_PER_MINUTE = "deg/min"
-    DEGREES_PER_SECOND_SQUARED = "deg/s²"
-    KILOWATTS = "kW"
-
-
-# A division where there is one, so that 300 in/min gives the very number that an F300 word gives.
-_DIVISOR = {
-    Unit.FEED: 60.0,
-    Unit.DEGREES_PER_MINUTE: 60.0,
-    Unit.MILLISECONDS: 1000.0,
-    Unit.PERCENT: 100.0,
-}
-_MULTIPLIER = {Unit.TURNS_PER_MINUTE: 6.0, Unit.TURNS_PER_MINUTE_SECOND: 6.0, Unit.KILOWATTS: 1000.0}
-LENGTHS = frozenset((Unit.LENGTH, Unit.FEED, Unit.ACCEL))
-
-
-def to_model(value: float, unit: Unit, inch: bool) -> float:
-    """A number of the file in the model's unit."""
-    length = value * INCH if inch and unit in LENGTHS else value
-    return length * _MULTIPLIER.get(unit, 1.0) / _DIVISOR.get(unit, 1.0)
-
-
-def to_file(value: float, unit: Unit, inch: bool) -> float:
-    """A number of the model in the file's unit."""
-    number = value * _DIVISOR.get(unit, 1.0) / _MULTIPLIER.get(unit, 1.0)
-    return number / INCH if inch and unit in LENGTHS else number
-
-
-def word(unit: Unit, inch: bool) -> str:
-    """The unit as the file's owner would write it, with a space before it."""
-    text = unit.value.replace("len", "in" if inch else "mm")
-    return f" {text}" if text else ""
-
-
-def shown(value: float, unit: Unit, inch: bool) -> str:
-    """A number of the model in the file's unit, for a sentence."""
-    return f"{to_file(value, unit, inch):.6g}{word(unit, inch)}"
-
 
 # --- What is wrong with a machine file: all of it at once, each with path, value and what was expected.
 
@@ -108,48 +59,11 @@ class MachineFileError(CodedError):
         super().__init__(f"{source}: {text}", " ".join(each.code for each in self.errors if each.code))
 
 
-Pair = tuple[float, float]
-Triple = tuple[float, float, float]
-Value = float | bool | str | Pair | Triple | tuple[float, ...]
 _Model = TypeVar("_Model", bound="DataclassInstance")
-
-
-class Kind(Enum):
-    """The shapes a value may have; the text says it in a finding."""
-
-    NUMBER = "a number"
-    WHOLE = "a whole number"
-    FLAG = "true or false"
-    TEXT = "nonblank text in quotation marks"
-    PAIR = "two numbers, [low, high]"
-    TRIPLE = "three numbers, [x, y, z]"
-    NUMBERS = "one to four numbers, [first, second]"
-    CHOICE = "one of"
-    WORDS = 'a list of words, such as ["one", "another"]'  # kept as one text, with blanks between them
 
 
 _HUGE = 10**300
 _NUMERIC = frozenset((Kind.NUMBER, Kind.WHOLE, Kind.PAIR, Kind.TRIPLE, Kind.NUMBERS))
-
-
-@dataclass(frozen=True, slots=True)
-class Field:
-    """One key: kind, unit, range in the model's unit, and the default; None: the key is required.
-
-    ``derived``: the default follows from other values of the file (``machine_defaults.py``). ``meaning`` is
-    what the reference of the machine file says about the key.
-    """
-
-    key: str
-    kind: Kind
-    unit: Unit = Unit.PLAIN
-    low: float = 0.0
-    high: float = 0.0
-    default: Value | None = None
-    choices: tuple[str | bool, ...] = ()
-    derived: bool = False
-    _: KW_ONLY
-    meaning: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +75,7 @@ class TableReference:
 
     heading: str
     purpose: str
-    fields: tuple[Field, ...] = ()
+    keys: Schema = ()
 
 
 class Values:
@@ -205,23 +119,20 @@ class Values:
             raise TypeError(f"{path} holds no pair")
         return value
 
-    def triple(self, path: str) -> Triple:
-        value = self.found[path]
-        if not isinstance(value, tuple) or len(value) != 3:
-            raise TypeError(f"{path} holds no triple")
-        return value
-
     def numbers(self, path: str) -> tuple[float, ...]:
         value = self.found[path]
         if not isinstance(value, tuple):
             raise TypeError(f"{path} holds no list")
         return value
 
-    def model(self, kind: type[_Model], path: str, keys: Mapping[str, str] = {}, **given: object) -> _Model:
+    def model(
+        self, kind: type[_Model], path: str, keys: Mapping[str, str] = {}, /, **given: object
+    ) -> _Model:
         """A table as a dataclass, once nothing is wrong with it.
 
-        A field has the value under its own name, or under the key that ``keys`` has for it, or is ``given``.
+        A field has the value of its key, or of the key that ``keys`` names for it, or is ``given``.
         """
+        keys = keys or {each.attribute: each.key for each in keys_of(kind)}
         names = [field.name for field in fields_of(kind) if field.name not in given]
         said = {name: self.found[f"{path}.{keys.get(name, name)}"] for name in names}
         return kind(**said, **given)
@@ -285,7 +196,7 @@ def unknown_keys(table: Mapping[str, object], known: list[str], path: str) -> li
 
 
 def read_table(
-    table: object, fields: tuple[Field, ...], path: str, values: Values, children: tuple[str, ...] = ()
+    table: object, keys: Schema, path: str, values: Values, children: tuple[str, ...] = ()
 ) -> list[Finding]:
     """Puts every good value of ``table`` into ``values`` under ``path``; returns what is wrong.
 
@@ -300,6 +211,7 @@ def read_table(
                 "not-a-table",
             )
         ]
+    fields = keys_of(keys)
     findings = unknown_keys(table, [*(field.key for field in fields), *children], path)
     for field in fields:
         place = joined(path, field.key)
@@ -450,19 +362,24 @@ def _nothing(_file: FileReading) -> Iterable[Finding]:
     return ()
 
 
+def _no_others(_file: FileReading) -> Mapping[str, object]:
+    return {}
+
+
 @dataclass(frozen=True, slots=True)
 class DriverTable:
     """A table of the machine file that belongs to a driver: its keys, its rules, and what it becomes.
 
     ``children`` are tables inside it, read by ``read_children``, which returns what is wrong with them.
-    ``rules`` looks at every file, also one without this table. ``model`` is asked once nothing is wrong.
+    ``others`` returns what the table's object has in addition to its keys, once nothing is wrong.
+    ``rules`` looks at every file, also one without this table.
     ``always``: a file without it has its defaults. ``port`` is the key that names a serial port.
     ``purpose`` is what the reference says about the table, ``parts`` the tables inside it.
     """
 
     path: str
-    fields: tuple[Field, ...]
-    model: Callable[[FileReading], object]
+    keys: type[DataclassInstance]
+    others: Callable[[FileReading], Mapping[str, object]] = _no_others
     children: tuple[str, ...] = ()
     read_children: Callable[[FileReading], Iterable[Finding]] = _nothing
     rules: Callable[[FileReading], Iterable[Finding]] = _nothing
@@ -471,6 +388,10 @@ class DriverTable:
     _: KW_ONLY
     purpose: str
     parts: tuple[TableReference, ...] = ()
+
+    def model(self, file: FileReading) -> object:
+        """The object that holds the values of the table."""
+        return file.values.model(self.keys, self.path, **self.others(file))
 
 
 @dataclass(frozen=True, slots=True)
@@ -499,28 +420,26 @@ def expected_table(path: str, raw: object) -> Finding:
     )
 
 
-def read_named(raw: object, fields: tuple[Field, ...], path: str, values: Values) -> list[Finding]:
+def read_named(raw: object, keys: Schema, path: str, values: Values) -> list[Finding]:
     """As ``read_table`` for every table inside one whose names are of the owner's choice."""
     if not isinstance(raw, dict):
         return [expected_table(path, raw)]
     return [
-        found
-        for name, entry in raw.items()
-        for found in read_table(entry, fields, joined(path, name), values)
+        found for name, entry in raw.items() for found in read_table(entry, keys, joined(path, name), values)
     ]
 
 
 def read_axes_and_spindle(
-    file: FileReading, axes: tuple[str, tuple[Field, ...]], spindle: tuple[str, tuple[Field, ...]]
+    file: FileReading, axes: tuple[str, type], spindle: tuple[str, type]
 ) -> Iterator[Finding]:
-    """A driver's tables by axis and for the spindle, each by its path and fields; either may be left out."""
-    (path, fields), (spindle_path, spindle_fields) = axes, spindle
+    """A driver's tables by axis and for the spindle, each by its path and class; either may be left out."""
+    (path, kind), (spindle_path, spindle_kind) = axes, spindle
     named, turns = file.raw(path), file.raw(spindle_path)
     if isinstance(named, dict):
         yield from unknown_keys(named, list(file.axes), path)
         named = {name: entry for name, entry in named.items() if name in file.axes}
-    yield from read_named({} if named is None else named, fields, path, file.values)
+    yield from read_named({} if named is None else named, kind, path, file.values)
     if turns is None or isinstance(turns, dict):
-        yield from read_table(turns or {}, spindle_fields, spindle_path, file.values)
+        yield from read_table(turns or {}, spindle_kind, spindle_path, file.values)
     else:
         yield expected_table(spindle_path, turns)

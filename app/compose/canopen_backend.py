@@ -84,7 +84,7 @@ def canopen_config(machine: Machine) -> CanopenConfig:
     modules = tuple(node for node in found if node.profile == 401)
     first = modules[0].name if modules else ""
     return CanopenConfig(
-        bus=can.bus,
+        bus=can,
         axes=tuple(_axis(axis, machine, nodes.get(axis.name)) for axis in machine.axes),
         spindle=_spindle(machine, nodes),
         encoder=_encoder(machine, nodes),
@@ -101,9 +101,7 @@ def canopen_config(machine: Machine) -> CanopenConfig:
             name: PotConfig(_terminal(pot.terminal, first), pot.low, pot.high, pot.switch)
             for name, pot in machine.hardware.analog.items()
         },
-        mode=can.mode,
         commit=machine.timing.commit,
-        record=can.record,
     )
 
 
@@ -135,7 +133,7 @@ def _encoder(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | Non
         return None
     own = nodes[model.node] if nodes[model.node].profile != 402 else None
     counts, rpm_max = model.counts_per_rev, machine.spindle.rpm_max
-    return EncoderConfig(model.node, own, model.index, model.sub, counts, rpm_max)
+    return EncoderConfig(model.node, own, *model.address, counts, rpm_max)
 
 
 def _terminal(text: str, first: str) -> CanTerminal:
@@ -148,7 +146,7 @@ def _terminal(text: str, first: str) -> CanTerminal:
 def _played(machine: Machine) -> bool:
     """On a virtual bus the other end is here too: there is none elsewhere."""
     can = machine.hardware.table(CanopenTable)
-    return can is not None and not can.bus.own_process
+    return can is not None and not can.own_process
 
 
 def can_driven(machine: Machine, clock: Clock) -> Driven:

@@ -134,7 +134,7 @@ class FeederProcess:
 def beat(machine: Machine) -> float:
     """Seconds from setpoint to setpoint where the drives want each at its time; else 0."""
     can = machine.hardware.table(CanopenTable)
-    return can.bus.sync if can is not None and can.mode in CYCLIC else 0.0
+    return can.sync if can is not None and can.mode in CYCLIC else 0.0
 
 
 def without_priority(period: float, late: float) -> str:

@@ -48,9 +48,7 @@ def grblhal_config(machine: Machine) -> GrblConfig:
             )
         )
     return GrblConfig(
-        port=model.port,
-        baud=model.baud,
-        settings=model.settings,
+        table=model,
         axes=tuple(_axis(axis, machine) for axis in machine.axes),
         rpm_max=machine.spindle.rpm_max,
         outputs={name: GrblOutput(out.terminal, out.safe) for name, out in machine.outputs.items()},
@@ -66,7 +64,7 @@ def _play(
     _typed: Callable[[], Iterable[str]],
 ) -> None:
     """A simulator of the controller, on the TCP port of the machine file or on a new pseudo terminal."""
-    address = tcp_address(grblhal_config(machine).port)
+    address = tcp_address(grblhal_config(machine).table.port)
     end: TcpEnd | PtyEnd = PtyEnd() if address is None else TcpEnd(*address)
     say(
         Message(

@@ -29,11 +29,8 @@ def hal_config(machine: Machine) -> HalConfig:
         raise DriverError(Message("{source}: the [hal] table is missing", source=machine.source))
     spindle = machine.spindle
     return HalConfig(
+        table=hal,
         file=_file(machine, hal.file),
-        thread=hal.thread,
-        period=hal.period,
-        ahead=hal.ahead,
-        watchdog=hal.watchdog,
         commit=machine.timing.commit,
         axes=tuple(_axis(axis, machine, hal) for axis in machine.axes),
         spindle=HalSpindle(
@@ -44,9 +41,6 @@ def hal_config(machine: Machine) -> HalConfig:
             encoder=bool(spindle.encoder_ppr),
             turned=machine.hardware.spindle_driver == "hal",
         ),
-        machine_on=hal.machine_on,
-        charge_pump=hal.charge_pump,
-        link_fault=hal.link_fault,
         outputs={
             name: HalOutput(out.terminal, out.safe, name in machine.lamps)
             for name, out in machine.outputs.items()

@@ -53,9 +53,9 @@ def _attended(
         raise DriverError(
             "an inverter on a serial line works only in real time, not with a clock that is advanced manually"
         )
-    table = machine.hardware.table(InverterTable)
-    assert table is not None  # a rule of the machine file
-    line, config = table.line, table.config
+    config = machine.hardware.table(InverterTable)
+    assert config is not None  # a rule of the machine file
+    line = config.line
     attended = attendant(config, lambda: open_wire(line), clock)
     thread = AttendantThread(attended)
     try:

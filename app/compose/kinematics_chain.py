@@ -36,7 +36,7 @@ def _rotary(model: RotaryModel, axis: Axis) -> Rotary:
     return Rotary(
         name=axis.name,
         table=model.table,
-        direction=model.direction,
+        direction=model.unit_vector,
         point=model.point,
         low=low,
         high=high,

@@ -13,13 +13,13 @@ from app.compose.page_server import listening_at
 from app.compose.pendant_wire import wired
 from app.compose.sharing_desk import place_of
 from app.compose.shop_floor import try_shop_floor
+from core.key_declaration import Unit, shown
 from core.machine.machine_model import Axis, Machine
 from core.machine.sharing_table import SharingTable
 from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, broker_of
 from core.message import Message
 from core.ports import Clock, DriverError, MachinePorts, StationState
 from core.sharing.sharing_errors import SharingError
-from core.table_schema import Unit, shown
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import RealClock, StepClock
 from drivers.grblhal.grblhal_config import HARDWARE
@@ -279,7 +279,7 @@ def _node(machine: Machine, name: str) -> str:
     hardware = machine.hardware
     inverter, can = hardware.table(InverterTable), hardware.table(CanopenTable)
     if name == "spindle" and hardware.spindle_driver == "vfd" and inverter is not None:
-        return inverter.line.port
+        return inverter.port
     if machine.backend != "canopen" or can is None:
         return ""
     return next((f"node {node.id}" for node in can.nodes if node.name == name), "")

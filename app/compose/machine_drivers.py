@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from core.machine import (
     backup_table,
-    gauge_table,
     machine_file,
     serial_table,
     setter_table,
@@ -33,7 +32,6 @@ DRIVERS: tuple[Driver, ...] = (
     hal_table.DRIVER,
     board_table.DRIVER,
     serial_table.DRIVER,
-    gauge_table.DRIVER,
     setter_table.DRIVER,
     pendant_table.DRIVER,
     mtconnect_table.DRIVER,

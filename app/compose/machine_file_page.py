@@ -15,10 +15,13 @@ from math import isfinite
 from pathlib import Path
 
 from app.compose.machine_drivers import DRIVERS
-from core.machine import machine_tables, mill_kinematics
-from core.machine.driver_tables import ANALOG, tables_of
+from core.key_declaration import LENGTHS, Field, Kind, Unit, keys_of, to_file
+from core.machine import axis_tables, machine_tables, mill_kinematics
+from core.machine.driver_tables import tables_of
+from core.machine.hardware_model import AnalogModel
+from core.machine.machine_model import InputModel, OutputModel
 from core.page_contents import contents
-from core.table_schema import LENGTHS, Field, Kind, TableReference, Unit, to_file
+from core.table_schema import TableReference
 
 _HEAD = """\
 # Machine file reference
@@ -58,7 +61,9 @@ def references() -> Iterator[TableReference]:
     """Yield every table that a machine file may have, in the order of the page."""
     plain = dict(machine_tables.plain_tables(DRIVERS))
     yield TableReference(
-        "machine", "General machine settings and the timing of the setpoint queue.", _machine()
+        "machine",
+        "General machine settings and the timing of the setpoint queue.",
+        machine_tables.machine_fields(DRIVERS),
     )
     yield TableReference("limits", "Limits that apply to all axes. The table is optional.", plain["limits"])
     yield from _axes()
@@ -87,34 +92,30 @@ def references() -> Iterator[TableReference]:
     yield from _signals()
     yield from _kinematics()
     for table in tables_of(DRIVERS):
-        yield TableReference(table.path, table.purpose, table.fields)
+        yield TableReference(table.path, table.purpose, table.keys)
         yield from table.parts
-
-
-def _machine() -> tuple[Field, ...]:
-    return machine_tables.machine_fields(DRIVERS)
 
 
 def _axes() -> Iterator[TableReference]:
     yield TableReference(
         "axis.X, axis.Y, axis.Z",
         f"A linear axis. {_AXES} A lathe has X and Z, a mill X, Y and Z; all of them are required.",
-        machine_tables.SLIDE,
+        axis_tables.Slide,
     )
     yield TableReference(
         "axis.X.home, axis.Y.home, axis.Z.home",
         "Homing settings of a linear axis. An axis with `absolute = true` does not need this table.",
-        machine_tables.HOME,
+        axis_tables.Home,
     )
     yield TableReference(
         "axis.C of a lathe",
         "The C axis of a lathe. A lathe without this table does not have a C axis.",
-        machine_tables.C_AXIS,
+        axis_tables.LatheC,
     )
     yield TableReference(
         "axis.C of a lathe, linear",
         "Keys of the third axis of a lathe if it is a linear axis (`linear = true`).",
-        machine_tables.THIRD_SLIDE,
+        axis_tables.ThirdSlide,
     )
     yield TableReference(
         "axis.A, axis.B, axis.C of a mill",
@@ -122,12 +123,12 @@ def _axes() -> Iterator[TableReference]:
             "A rotary axis of a mill. A mill can have at most two rotary axes, and each "
             "axis needs a table in [kinematics]."
         ),
-        machine_tables.ROTARY_AXIS,
+        axis_tables.RotaryAxis,
     )
     yield TableReference(
         "axis.A.home, axis.B.home, axis.C.home of a mill",
         "Homing settings of a rotary axis. An axis with `absolute = true` does not need this table.",
-        machine_tables.ROTARY_HOME,
+        axis_tables.RotaryHome,
     )
 
 
@@ -139,7 +140,7 @@ def _signals() -> Iterator[TableReference]:
         "TurnDesk switches `lamp_red`, `lamp_amber`, `lamp_green` and `lamp_buzzer` automatically, and "
         "an output "
         "whose name begins with `live` drives the live tool.",
-        machine_tables.OUTPUT,
+        OutputModel,
     )
     yield TableReference(
         "io.in.…",
@@ -150,24 +151,24 @@ def _signals() -> Iterator[TableReference]:
             "`start_inhibit`, `wheel_…` and `jog_…`. Programs read inputs by their names "
             "(M91 to M97)."
         ),
-        machine_tables.INPUT,
+        InputModel,
     )
     yield TableReference(
         "io.analog.…",
         "An analog signal: `feed_pot`, `spindle_pot`, `handwheel` or `spindle_load`.",
-        ANALOG,
+        AnalogModel,
     )
     yield TableReference(
         "m_codes.…",
         "An M code that switches an output; the last word of the heading is the number of "
         "the code, without a leading zero. M codes that are part of the programming language "
         "are rejected.",
-        machine_tables.M_CODE,
+        machine_tables.MCode,
     )
     yield TableReference(
         "m_codes.… with ignored = true",
         "An M code from another machine; this machine ignores the code.",
-        machine_tables.M_IGNORED,
+        machine_tables.IgnoredMCode,
     )
 
 
@@ -175,12 +176,12 @@ def _kinematics() -> Iterator[TableReference]:
     yield TableReference(
         mill_kinematics.TABLE,
         "The position of the workpiece on a mill with rotary axes.",
-        mill_kinematics.WORKPIECE,
+        mill_kinematics.KinematicsModel,
     )
     yield TableReference(
         "kinematics.A, kinematics.B, kinematics.C",
         "Location of a rotary axis of a mill.",
-        mill_kinematics.ROTARY,
+        mill_kinematics.RotaryModel,
     )
 
 
@@ -194,9 +195,9 @@ def _title(table: TableReference) -> str:
 
 def _table(table: TableReference) -> Iterator[str]:
     yield from ("", f"## {_title(table)}", "", *_wrapped(table.purpose))
-    if table.fields:
+    if fields := keys_of(table.keys):
         yield from ("", "| key | unit | range | default | meaning |", "|---|---|---|---|---|")
-        yield from (_row(field) for field in table.fields)
+        yield from (_row(field) for field in fields)
 
 
 def _wrapped(text: str) -> list[str]:

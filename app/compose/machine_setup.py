@@ -30,9 +30,9 @@ def control_limits(machine: Machine) -> ControlLimits:
     """What the interpreter must know of a machine."""
     c_axis = machine.axes[2]
     return ControlLimits(
-        max_feed=machine.max_feed,
+        max_feed=machine.limits.max_feed,
         max_rpm=machine.spindle.rpm_max,
-        resolution=machine.resolution,
+        resolution=machine.limits.resolution,
         slide_accel=machine.axes[1].amax,
         unclamp_while_turning=machine.interlocks.unclamp_while_turning,
         start_with_collet_open=machine.interlocks.spindle_with_collet_open,
@@ -92,7 +92,7 @@ def setup_for(
         block_delete=block_delete,
         strict=strict,
         metric=not machine.inch,
-        last_rapid=machine.manual_rapid,
+        last_rapid=machine.limits.manual_rapid,
         inputs=InputStates(dict(inputs or {})),
     )
 

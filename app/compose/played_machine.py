@@ -127,8 +127,7 @@ def play_peers(
     """
     can = machine.hardware.table(CanopenTable)
     assert can is not None  # a rule of the machine file
-    bus = can.bus
-    if not bus.own_process:
+    if not can.own_process:
         raise DriverError(
             "the CAN interface virtual works only within a single process that also simulates "
             "the drives; use udp_multicast"
@@ -142,8 +141,8 @@ def play_peers(
         Message(
             "simulated drives for {machine} on {interface} {channel}; press Ctrl-C to stop",
             machine=machine.name,
-            interface=bus.interface,
-            channel=bus.channel,
+            interface=can.interface,
+            channel=can.channel,
         )
     )
     try:

@@ -41,7 +41,7 @@ def sim_config(machine: Machine) -> SimConfig:
             orients=spindle.oriented,
             orient_rpm=spindle.orient_rpm,
         ),
-        collet=SimCollet(open_time=machine.timing.collet_open, close_time=machine.timing.collet_close),
+        collet=SimCollet(open_time=machine.collet.open_time, close_time=machine.collet.close_time),
         outputs={
             name: SimOutput(safe=output.safe, initial=name == "collet")
             for name, output in machine.outputs.items()

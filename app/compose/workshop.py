@@ -282,7 +282,7 @@ def rebuilt(job: Job, watch: Watch) -> Search:
 
 def give_searchto(desk: Desk, machine: Machine) -> None:
     """Give the desk its SEARCHTO; its ways go at the manual rapid, slower within the part."""
-    rapid = machine.manual_rapid
+    rapid = machine.limits.manual_rapid
     choices = Choices(rapid=rapid, modest=_MODEST * rapid)
 
     def prove(job: Job, watch: Watch) -> Proved:

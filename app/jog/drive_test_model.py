@@ -143,7 +143,7 @@ class DriveTests:
     def _limits(self, axis: str) -> Limits:
         machine, model = self.machine, self.machine.axis(axis)
         rate = self.desk.snapshot().drive_test.rate
-        return Limits(min(model.vmax, machine.manual_rapid), model.amax, rate)
+        return Limits(min(model.vmax, machine.limits.manual_rapid), model.amax, rate)
 
     def next_shape(self) -> None:
         """F2: step, ramp, sine."""

@@ -56,16 +56,16 @@ class JogSpeeds:
         """How fast a step goes, mm/s or degrees/s."""
         if self._turns(axis):
             return min(STEP_SPEED_C, self.machine.axis(axis).vmax)
-        return min(STEP_SPEED, self.machine.manual_rapid)
+        return min(STEP_SPEED, self.machine.limits.manual_rapid)
 
     def velocity(self, axis: str, mode: Mode, *, rapid: bool) -> float:
         """How fast a held jog goes, mm/s or degrees/s."""
         if self._turns(axis):
             return min(C_RAPID if rapid else DEGREE_SPEEDS[self.speed], self.machine.axis(axis).vmax)
         if rapid:
-            return self.machine.manual_rapid
+            return self.machine.limits.manual_rapid
         slow = MM_SPEEDS[self.speed] if mode.metric else INCH_SPEEDS[self.speed] * MM_PER_INCH
-        return min(slow / 60, self.machine.manual_rapid)
+        return min(slow / 60, self.machine.limits.manual_rapid)
 
 
 def step_words(mode: Mode) -> tuple[str, ...]:
@@ -85,7 +85,7 @@ def turn_words() -> tuple[str, ...]:
 
 def rapid_word(machine: Machine, mode: Mode) -> str:
     """The rapid of hand moves a minute."""
-    return f"{machine.manual_rapid * 60 / mode.unit:.0f}"
+    return f"{machine.limits.manual_rapid * 60 / mode.unit:.0f}"
 
 
 def _short(step: float) -> str:

@@ -57,8 +57,8 @@ CONTROL: Entries = {
             "the computer is too slow or too hot, or its disk does not respond",
             "the screen was locked or the computer was in sleep mode",
         ),
-        "Check the tool. Read on the screen which functions will restart, then press Cycle "
-        "Start. Measure this part: it is not counted until you add it (F10, 2, F2)",
+        "Check the tool. Read what will restart, then press Cycle Start. Measure this part, "
+        "and count it by hand if it is good (F10, 2, F2)",
         tells=True,
     ),
     "switched-off": hold(

@@ -82,7 +82,7 @@ def modal_at_power_up(context: MachineContext) -> Modal:
     begins = Modal(
         metric=not machine.inch,
         diameter=machine.language == "sinumerik",
-        rapid_rate=machine.manual_rapid,
+        rapid_rate=machine.limits.manual_rapid,
     )
     return modal_as_machine(begins, context)
 

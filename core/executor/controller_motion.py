@@ -176,7 +176,7 @@ class ControllerMotion:
         self._context = context
         self._sink = sink
         machine = context.machine
-        self._limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.corner_tolerance)
+        self._limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance)
         self._waiting: deque[Block] = deque()  # not yet cut
         self._pieces: deque[BlockPart] = deque()  # cut, not yet handed over
         self._sent: deque[_Sent] = deque()  # handed over, not yet done

@@ -356,7 +356,7 @@ class Jogger:
     def top(self, axis: Axis, homed: bool) -> float:
         """How fast an axis goes by hand at most."""
         endless = axis.travel is None or axis.rotary
-        rapid = axis.vmax if endless else min(axis.vmax, self._context.machine.manual_rapid)
+        rapid = axis.vmax if endless else min(axis.vmax, self._context.machine.limits.manual_rapid)
         return rapid if homed else _UNHOMED * rapid
 
 

@@ -34,7 +34,7 @@ class SetpointMotion:
         machine = context.machine
         self._context = context
         self._axes = context.ports.axes
-        self._limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.corner_tolerance)
+        self._limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance)
         self._queue = PlanQueue(self._axes, machine.timing.lookahead)
         self._section: PathSection | None = None
         self._pass: ThreadPass | GearedThreadPass | None = None  # instead of a path section

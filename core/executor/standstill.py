@@ -204,8 +204,8 @@ def _move_collet(closed: bool, context: MachineContext) -> Wait:
             "unclamp",
             Message("the spindle turns at {measured} rpm", measured=f"{context.spindle.measured:.0f}"),
         )
-    timing = context.machine.timing
-    time = timing.collet_close if closed else timing.collet_open
+    collet = context.machine.collet
+    time = collet.close_time if closed else collet.open_time
     moved_at: list[float] = []
 
     def done(passed: float) -> bool:

@@ -83,7 +83,7 @@ class Supervisor:
         """The switch may bounce while the collet closes; it must be off for its closing time."""
         now = self._context.now
         self._open_since = now if self._open_since is None else self._open_since
-        if now - self._open_since > 2.0 * self._context.machine.timing.collet_close:
+        if now - self._open_since > 2.0 * self._context.machine.collet.close_time:
             raise AlarmError("collet-lost")
 
     _open_since: float | None = None
@@ -140,7 +140,7 @@ class OutputsWatch:
         if not off:
             return
         if trip.spindle:
-            context.spindle.dropped("DRIVER PROCESS SWITCHED OFF SPINDLE AND OUTPUTS")
+            context.spindle.dropped("DRIVER HOST STOPPED SPINDLE/OUTPUTS")
         context.outputs.fell(outputs)
         self._known_off |= set(outputs)
         template = (

@@ -11,10 +11,10 @@ from core.executor.jogging import LONGEST_LEASE, Jogger
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import State, Touched, TouchPhase
 from core.executor.start_conditions import guard_open
+from core.key_declaration import INCH
 from core.machine.setter_table import SetterModel
 from core.message import Message
 from core.ports import PROBE, Latch, Unknown
-from core.table_schema import INCH
 
 _SETTLED = 0.1  # s at rest until the input is believed to be off
 _RENEWED = 0.03  # s between two renewals of the way

@@ -2,46 +2,33 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from core.table_schema import Driver, DriverTable, Field, Kind
+from core.key_declaration import Range, file_key, key_table
+from core.table_schema import Driver, DriverTable
 
 KEPT = 14
-_FIELDS = (
-    Field(
-        "folder",
-        Kind.TEXT,
-        default="",
-        meaning=(
-            "Folder for the daily backups, preferably on another disk or computer. Default: "
-            "`backups` in the data folder."
-        ),
-    ),
-    Field(
-        "keep",
-        Kind.WHOLE,
-        low=2,
-        high=400,
-        default=KEPT,
-        meaning="Number of daily backups that TurnDesk retains; it deletes older backups.",
-    ),
-)
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class BackupTable:
     """``folder`` on another disk or computer; empty: the data folder's own. The newest ``keep`` stay."""
 
-    folder: str = ""
-    keep: int = KEPT
+    folder: str = file_key(
+        default="",
+        meaning="Folder for the daily backups, preferably on another disk or computer. Default: `backups` "
+        "in the data folder.",
+    )
+    keep: int = file_key(
+        Range(2, 400),
+        default=KEPT,
+        meaning="Number of daily backups that TurnDesk retains; it deletes older backups.",
+    )
 
 
 DRIVER = Driver(
     tables=(
         DriverTable(
             "backup",
-            _FIELDS,
-            lambda file: file.values.model(BackupTable, "backup"),
+            BackupTable,
             purpose="Where TurnDesk saves its daily backups, and how many of them it retains.",
         ),
     )

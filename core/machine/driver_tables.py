@@ -9,11 +9,8 @@ from core.message import Message
 from core.table_schema import (
     Driver,
     DriverTable,
-    Field,
     FileReading,
     Finding,
-    Kind,
-    Unit,
     Values,
     raw_at,
     read_named,
@@ -23,47 +20,6 @@ from core.table_schema import (
 )
 
 ANALOG_NAMES = ("feed_pot", "spindle_pot", "handwheel", "spindle_load")
-ANALOG = (
-    Field(
-        "at",
-        Kind.TEXT,
-        meaning=(
-            "Terminal of the signal, written as the backend requires. The handwheel can also be "
-            "on the pendant, such as `pendant.REL_DIAL`."
-        ),
-    ),
-    Field(
-        "range",
-        Kind.PAIR,
-        Unit.PLAIN,
-        -1000.0,
-        1000.0,
-        default=(0.0, 1.0),
-        meaning=(
-            "Values at the two ends of the signal: fractions of the programmed value for the pots, "
-            "percent for `spindle_load`."
-        ),
-    ),
-    Field(
-        "switch",
-        Kind.TEXT,
-        default="",
-        meaning=(
-            "Name of the input of the AUTO/OFF switch next to the pot, such as `spindle_auto`. "
-            "Default: no switch."
-        ),
-    ),
-    Field(
-        "counts_per_click",
-        Kind.WHOLE,
-        low=-1000,
-        high=1000,
-        default=1,
-        meaning=(
-            "Handwheel: counts per detent; a negative value reverses the direction. A pot has no detents."
-        ),
-    ),
-)
 _AXES = "XYZABC"
 
 
@@ -88,7 +44,7 @@ class DriverReading:
         for table in self._tables:
             raw = file.raw(table.path)
             raw = {} if raw is None and table.always else raw
-            self.findings += read_table(raw, table.fields, table.path, file.values, table.children)
+            self.findings += read_table(raw, table.keys, table.path, file.values, table.children)
             self.findings += table.read_children(file)
         self.findings += _read_analog(file)
 
@@ -100,8 +56,15 @@ class DriverReading:
             feeder=values.flag("machine.feeder"),
             spindle_driver=values.text("spindle.driver"),
             tables={table.path: table.model(file) for table in self._tables},
-            analog={name: _analog(values, name) for name in file.names("io.analog")},
-            homes={name: _home(values, name) for name in file.axes if values.has(f"axis.{name}.home.order")},
+            analog={
+                name: values.model(AnalogModel, f"io.analog.{name}", name=name)
+                for name in file.names("io.analog")
+            },
+            homes={
+                name: values.model(HomeModel, f"axis.{name}.home")
+                for name in file.axes
+                if values.has(f"axis.{name}.home.order")
+            },
             refresh={name: longest for name, longest in refreshed.items() if longest > 0.0},
         )
 
@@ -118,23 +81,7 @@ def _read_analog(file: FileReading) -> Iterator[Finding]:
     if isinstance(table, dict):
         yield from unknown_keys(table, list(ANALOG_NAMES), "io.analog")
         table = {name: entry for name, entry in table.items() if name in ANALOG_NAMES}
-    yield from read_named({} if table is None else table, ANALOG, "io.analog", file.values)
-
-
-def _analog(values: Values, name: str) -> AnalogModel:
-    path = f"io.analog.{name}"
-    low, high = values.pair(f"{path}.range")
-    clicks = values.whole(f"{path}.counts_per_click")
-    return AnalogModel(name, values.text(f"{path}.at"), low, high, values.text(f"{path}.switch"), clicks)
-
-
-def _home(values: Values, axis: str) -> HomeModel:
-    path, has = f"axis.{axis}.home", values.has
-    return HomeModel(
-        method=values.whole(f"{path}.method") if has(f"{path}.method") else 0,
-        latch=values.number(f"{path}.latch") if has(f"{path}.latch") else 0.0,
-        offset=values.number(f"{path}.offset") if has(f"{path}.offset") else 0.0,
-    )
+    yield from read_named({} if table is None else table, AnalogModel, "io.analog", file.values)
 
 
 # --- rules between drivers and the rest of the file --------------------------------------------------------

@@ -6,22 +6,48 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+from core.key_declaration import Pair, Range, file_key, key_table
+
 _Table = TypeVar("_Table")
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class AnalogModel:
-    """A pot or a counting wheel: ``low`` … ``high`` is what both ends mean; ``switch`` names its input.
-
-    ``counts_per_click`` of the handwheel; negative: it turns the other way round.
-    """
+    """A pot or a counting wheel; ``range`` is what both ends mean, ``switch`` names its input."""
 
     name: str
-    terminal: str
-    low: float
-    high: float
-    switch: str = ""
-    counts_per_click: int = 1
+    terminal: str = file_key(
+        name="at",
+        meaning="Terminal of the signal, written as the backend requires. The handwheel can also be on the "
+        "pendant, such as `pendant.REL_DIAL`.",
+    )
+    range: Pair = file_key(
+        Range(-1000.0, 1000.0),
+        default=(0.0, 1.0),
+        meaning="Values at the two ends of the signal: fractions of the programmed value for the pots, "
+        "percent for `spindle_load`.",
+    )
+    switch: str = file_key(
+        default="",
+        meaning="Name of the input of the AUTO/OFF switch next to the pot, such as `spindle_auto`. "
+        "Default: no switch.",
+    )
+    counts_per_click: int = file_key(
+        Range(-1000, 1000),
+        default=1,
+        meaning="Handwheel: counts per detent; a negative value reverses the direction. A pot has no "
+        "detents.",
+    )
+
+    @property
+    def low(self) -> float:
+        """What the lower end means."""
+        return self.range[0]
+
+    @property
+    def high(self) -> float:
+        """What the upper end means."""
+        return self.range[1]
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,10 @@ from core.machine.driver_tables import DriverReading, tables_there
 from core.machine.machine_model import (
     Axis,
     ClampingModel,
+    ColletModel,
     InputModel,
     Interlocks,
+    LimitsModel,
     Machine,
     OutputModel,
     SpindleModel,
@@ -44,15 +46,6 @@ _AXIS_KEYS = {
     "in_position": "in_pos",
     "still_time": "still_ms",
 }
-_SPINDLE_KEYS = {
-    "accel": "accel_rpm_s",
-    "decel": "decel_rpm_s",
-    "at_speed": "at_speed_pct",
-    "at_speed_time": "at_speed_s",
-    "timeout": "timeout_s",
-    "power": "power_kw",
-}
-_TIMING_KEYS = {name: f"{name}_ms" for name in ("commit", "lookahead", "low_water", "lease", "setpoint")}
 
 
 def text_of(path: Path) -> str:
@@ -119,32 +112,27 @@ def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
 
 def _machine(reading: Reading, added: DriverReading, kinematics: KinematicsReading, source: str) -> Machine:
     values = reading.values
-    slowest, fastest = values.pair("spindle.rpm")
-    opens, closes = values.number("collet.open_s"), values.number("collet.close_s")
     return Machine(
         name=values.text("machine.name"),
         backend=values.text("machine.backend"),
         axes=_axes(reading),
         c_enabled=reading.kind == "lathe" and values.flag("axis.C.enabled"),
         c_feedback=values.flag("c_axis.feedback"),
-        spindle=values.model(SpindleModel, "spindle", _SPINDLE_KEYS, rpm_min=slowest, rpm_max=fastest),
-        timing=values.model(Timing, "machine", _TIMING_KEYS, collet_open=opens, collet_close=closes),
+        spindle=values.model(SpindleModel, "spindle"),
+        timing=values.model(Timing, "machine"),
+        limits=values.model(LimitsModel, "limits"),
+        collet=values.model(ColletModel, "collet"),
         interlocks=values.model(Interlocks, "interlocks"),
         clamping=values.model(ClampingModel, "clamping"),
         tooling=values.text("tooling.kind"),
         silenced=tuple(values.text("checks.silenced").split()),
-        max_feed=values.number("limits.max_feed"),
-        manual_rapid=values.number("limits.manual_rapid"),
-        resolution=values.number("limits.resolution"),
-        outputs={name: _output(reading, name) for name in reading.outputs},
+        outputs={name: values.model(OutputModel, f"io.out.{name}", name=name) for name in reading.outputs},
         absent=frozenset(reading.absent),
-        inputs={name: _input(reading, name) for name in reading.inputs},
+        inputs={name: values.model(InputModel, f"io.in.{name}", name=name) for name in reading.inputs},
         m_codes={code: (output, on) for code, output, on in signal_rules.enabled_codes(reading)},
         m_disabled=frozenset(signal_rules.disabled_codes(reading)),
         m_ignored=frozenset(signal_rules.ignored_codes(reading)),
         source=source,
-        clearance=values.number("limits.clearance"),
-        corner_tolerance=values.number("limits.corner_tolerance"),
         inch=bool(values.inch),
         kind=reading.kind,
         language=values.text("machine.language"),
@@ -193,14 +181,3 @@ def _axis(reading: Reading, name: str) -> Axis:
         home_speed=values.number(f"{path}.home.speed") if homed else 0.0,
         rotary=not slide and not (of_lathe and _of_c(reading, "linear")),
     )
-
-
-def _output(reading: Reading, name: str) -> OutputModel:
-    path = f"io.out.{name}"
-    safe = reading.values.found[f"{path}.safe"]
-    return OutputModel(name, None if safe == "keep" else bool(safe), reading.values.text(f"{path}.at"))
-
-
-def _input(reading: Reading, name: str) -> InputModel:
-    values, path = reading.values, f"io.in.{name}"
-    return InputModel(name, values.text(f"{path}.at"), values.text(f"{path}.active") == "low")

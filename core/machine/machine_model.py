@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from math import inf
 
+from core.key_declaration import Pair, Range, Unit, file_key, key_table
 from core.machine.hardware_model import Hardware
 from core.machine.mill_kinematics import KinematicsModel
 from core.machine.signal_table import LAMPS
@@ -45,81 +46,297 @@ class Axis:
         return self.still_window + (self.following_window - self.still_window) * share
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class SpindleModel:
     """The main spindle, rpm, rpm/s and W."""
 
-    rpm_min: float
-    rpm_max: float
-    accel: float
-    decel: float
-    at_speed: float  # fraction of the command
-    at_speed_time: float
-    timeout: float
-    stop_below: float
-    encoder_ppr: int
-    controlled: bool = True  # false: one speed, rpm_max, and no S
-    oriented: bool = False  # its drive stops it at an angle, to which it turns at
-    orient_rpm: float = 60.0
-    power: float = 0.0  # at the highest speed; 0: not stated
+    _: KW_ONLY
+    rpm: Pair = file_key(Range(1.0, 20000.0, Unit.RPM), meaning="Lowest and highest speed.")
+    accel: float = file_key(
+        Range(10.0, 50000.0, Unit.RPM_PER_SECOND), name="accel_rpm_s", meaning="Acceleration of the spindle."
+    )
+    decel: float = file_key(
+        Range(10.0, 50000.0, Unit.RPM_PER_SECOND),
+        name="decel_rpm_s",
+        derived=True,
+        meaning="Deceleration of the spindle. Default: `accel_rpm_s`.",
+    )
+    at_speed: float = file_key(
+        Range(0.005, 0.25, Unit.PERCENT),
+        name="at_speed_pct",
+        meaning="Largest difference between the measured and the commanded speed, in percent of the "
+        "commanded speed, at which the spindle is at speed.",
+    )
+    at_speed_time: float = file_key(
+        Range(0.05, 5.0, Unit.SECONDS),
+        name="at_speed_s",
+        meaning="Time for which the speed must be within `at_speed_pct` before the spindle is at speed.",
+    )
+    timeout: float = file_key(
+        Range(0.5, 60.0, Unit.SECONDS),
+        name="timeout_s",
+        meaning="Time within which the spindle must reach its speed or stop. If it does not, an alarm "
+        "stops the cycle. It must be longer than the time to accelerate to the highest speed.",
+    )
+    stop_below: float = file_key(
+        Range(0.5, 50.0, Unit.RPM),
+        meaning="Speed below which the spindle counts as stopped. It must be below the lowest speed.",
+    )
+    encoder_ppr: int = file_key(
+        Range(0, 100000),
+        meaning="Lines per revolution of the spindle encoder, four counts each. 0: no encoder. For a "
+        "CANopen spindle drive, `counts_per_rev` of its node applies instead.",
+    )
+    controlled: bool = file_key(
+        default=True,
+        meaning="false: the spindle has one fixed speed, the highest of `rpm`. SINUMERIK programs with S, "
+        "G96 or G4 S are then rejected.",
+    )
+    oriented: bool = file_key(
+        default=False,
+        meaning="true: the drive can stop the spindle at an angle. false: SPOS, M19 and cycle 204 are "
+        "rejected, and cycle 202 stops so that the operator can turn the spindle.",
+    )
+    orient_rpm: float = file_key(
+        Range(1.0, 1000.0, Unit.RPM),
+        default=60.0,
+        meaning="Speed at which the oriented spindle turns to its angle. The proof uses this value, and a "
+        "faster spindle raises alarm 203.",
+    )
+    power: float = file_key(
+        Range(50.0, 100000.0, Unit.KILOWATTS),
+        name="power_kw",
+        default=0.0,
+        meaning="Power of the spindle drive at the highest speed. Shapes uses it to suggest the depth of "
+        "cut. Default: 1.5 kW is assumed.",
+    )
+
+    @property
+    def rpm_min(self) -> float:
+        """The lowest speed."""
+        return self.rpm[0]
+
+    @property
+    def rpm_max(self) -> float:
+        """The highest speed; the only one of a spindle that is not ``controlled``."""
+        return self.rpm[1]
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class OutputModel:
-    """One output: ``safe`` is what E-stop makes of it, None keeps."""
+    """One output."""
 
     name: str
-    safe: bool | None
-    terminal: str = ""
+    terminal: str = file_key(
+        name="at",
+        meaning='Terminal of the output, written as the backend requires. "none": the machine does not '
+        "have this output.",
+    )
+    stated_safe: bool | str = file_key(
+        name="safe",
+        choices=(True, False, "keep"),
+        meaning="State of the output after an E-stop and, where the backend supports it, if TurnDesk stops "
+        'responding. "keep" leaves the output unchanged.',
+    )
+    refresh: float = file_key(
+        Range(0.05, 10.0, Unit.MILLISECONDS),
+        name="refresh_ms",
+        default=0.0,
+        meaning="Time after which the output switches off if TurnDesk does not refresh it; needs `safe = "
+        "false`. Default: no refresh is necessary.",
+    )
+
+    @property
+    def safe(self) -> bool | None:
+        """What an E-stop makes of the output; None: the output keeps its state."""
+        return None if self.stated_safe == "keep" else self.stated_safe is True
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class InputModel:
     """One input: the names by which a program or interlock asks for it."""
 
     name: str
-    terminal: str
-    active_low: bool = False
+    terminal: str = file_key(
+        name="at",
+        meaning="Terminal of the input, written as the backend requires, or `pendant.…` for a button of "
+        "the pendant.",
+    )
+    active: str = file_key(
+        default="high",
+        choices=("high", "low"),
+        meaning='"low": the input is on when it has no voltage, so a broken wire reads as on.',
+    )
+
+    @property
+    def active_low(self) -> bool:
+        """Whether the input is on when it has no voltage."""
+        return self.active == "low"
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class Timing:
     """Times of the control itself, seconds."""
 
-    commit: float
-    lookahead: float
-    low_water: float
-    lease: float
-    setpoint: float  # interval in which a corner may change a velocity by amax * interval
-    collet_open: float
-    collet_close: float
+    commit: float = file_key(
+        Range(0.001, 0.2, Unit.MILLISECONDS),
+        name="commit_ms",
+        meaning="Remaining time before its execution below which a queued setpoint can no longer be "
+        "changed. A feed hold and the end of a jog take effect after this time.",
+    )
+    lookahead: float = file_key(
+        Range(0.1, 10.0, Unit.MILLISECONDS),
+        name="lookahead_ms",
+        meaning="Time for which setpoints are queued ahead of the motion.",
+    )
+    low_water: float = file_key(
+        Range(0.005, 2.0, Unit.MILLISECONDS),
+        name="low_water_ms",
+        meaning="If less than this time is queued during a cycle, TurnDesk starts a feed hold.",
+    )
+    lease: float = file_key(
+        Range(0.05, 0.5, Unit.MILLISECONDS),
+        name="lease_ms",
+        meaning="Time after which a jog stops if it is not renewed.",
+    )
+    setpoint: float = file_key(
+        Range(0.0001, 0.02, Unit.MILLISECONDS),
+        name="setpoint_ms",
+        default=0.001,
+        meaning="Duration of a setpoint. At a corner the velocity of an axis may change by `amax` × this "
+        "time.",
+    )
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class Interlocks:
     """Omniturn section 10 and the two-hand start."""
 
-    spindle_with_collet_open: bool
-    unclamp_while_turning: bool
-    two_hand_start: bool
-    guard_stops: bool = False  # the input ``guard``, off while open, holds the cycle and stops the spindle
+    spindle_with_collet_open: bool = file_key(
+        default=False,
+        meaning="true: the spindle may turn with the collet open. false needs the input `collet_closed`.",
+    )
+    unclamp_while_turning: bool = file_key(
+        default=True,
+        meaning="true: the collet may open while the spindle turns, as bar work needs. false: the collet "
+        "opens only when the spindle has stopped.",
+    )
+    two_hand_start: bool = file_key(
+        default=True,
+        meaning="true: a cycle starts only by the input `start`, the output of the two-hand relay, or by "
+        "both palm buttons of the operator station on the screen. false: Cycle Start on the screen is "
+        "enough. The simulated machine always accepts Cycle Start on the screen.",
+    )
+    guard_stops: bool = file_key(
+        default=False,
+        meaning="true: while the input `guard` is off, the cycle is in feed hold, the spindle stops, and "
+        "no cycle starts.",
+    )
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class ClampingModel:
     """Chuck or collet, mm and rpm; 0: not said. ``stick_out`` is from its front to part zero.
 
     A tailstock has a quill; the tip of its centre, ``centre_point`` degrees, stands at Z ``centre_at``.
     """
 
-    diameter: float = 0.0
-    stick_out: float = 0.0
-    jaws: float = 0.0  # how far they stand before the body
-    jaw_diameter: float = 0.0
-    max_rpm: float = 0.0
-    quill_diameter: float = 0.0
-    centre_point: float = 60.0
-    centre_at: float = 0.0
+    diameter: float = file_key(
+        Range(0.0, 2000.0, Unit.LENGTH),
+        default=0.0,
+        meaning="Diameter of the chuck or collet. 0: not specified, and not checked.",
+    )
+    stick_out: float = file_key(
+        Range(0.0, 2000.0, Unit.LENGTH),
+        default=0.0,
+        meaning="Distance from the front of the jaws or collet to part zero. 0: not specified, and not "
+        "checked.",
+    )
+    jaws: float = file_key(
+        Range(0.0, 500.0, Unit.LENGTH),
+        default=0.0,
+        meaning="Length by which the jaws or the collet nose protrude from the body.",
+    )
+    jaw_diameter: float = file_key(
+        Range(0.0, 2000.0, Unit.LENGTH),
+        default=0.0,
+        meaning="Outside diameter of the jaws. 0: the same as `diameter`.",
+    )
+    max_rpm: float = file_key(
+        Range(0.0, 50000.0, Unit.RPM),
+        default=0.0,
+        meaning="Highest permitted speed of the chuck. 0: not specified, and not checked.",
+    )
+    quill_diameter: float = file_key(
+        Range(0.0, 500.0, Unit.LENGTH),
+        default=0.0,
+        meaning="Diameter of the tailstock quill. 0: no tailstock.",
+    )
+    centre_point: float = file_key(
+        Range(10.0, 170.0, Unit.DEGREES), default=60.0, meaning="Included angle of the tailstock center."
+    )
+    centre_at: float = file_key(
+        Range(-2000.0, 2000.0, Unit.LENGTH),
+        default=0.0,
+        meaning="Z position of the tip of the tailstock center, measured from part zero.",
+    )
+
+
+@key_table
+class LimitsModel:
+    """Limits of all axes, mm and mm/s; the resolution of X is on the radius."""
+
+    max_feed: float = file_key(
+        Range(0.1, 1000.0, Unit.FEED),
+        derived=True,
+        meaning="Highest feed that F may command, along the path. Default: `vmax` of the slowest linear "
+        "axis.",
+    )
+    manual_rapid: float = file_key(
+        Range(0.1, 500.0, Unit.FEED),
+        derived=True,
+        meaning="Rapid speed of a jog. Default: 100 in/min, or `vmax` of the slowest linear axis if that "
+        "is lower.",
+    )
+    resolution: float = file_key(
+        Range(1e-5, 0.02, Unit.LENGTH),
+        derived=True,
+        meaning="Smallest programmable distance (X: on the radius). Default: the largest `count` of the "
+        "linear axes.",
+    )
+    clearance: float = file_key(
+        Range(0.1, 100.0, Unit.LENGTH),
+        default=31.75,
+        meaning="Distance that an axis jogging at `vmax` may travel after the last renewal of the jog. "
+        "TurnDesk checks `lease_ms` against this distance.",
+    )
+    corner_tolerance: float = file_key(
+        Range(0.0, 0.1, Unit.LENGTH),
+        default=0.0,
+        meaning="Largest deviation of the tool tip where a curve was split into short chords. With 0, each "
+        "joint moves by at most one `count` per axis.",
+    )
+
+
+@key_table
+class ColletModel:
+    """Times of the collet, seconds."""
+
+    _: KW_ONLY
+    open_time: float = file_key(
+        Range(0.01, 10.0, Unit.SECONDS),
+        name="open_s",
+        default=0.5,
+        meaning="Time that the collet takes to open. The proof uses it, and so does a cycle if no input "
+        "`collet_closed` is wired.",
+    )
+    close_time: float = file_key(
+        Range(0.01, 10.0, Unit.SECONDS),
+        name="close_s",
+        derived=True,
+        meaning="Time that the collet takes to close, used like `open_s`. Default: 0.5 s if the input "
+        "`collet_closed` is wired; otherwise the key is required.",
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,9 +351,8 @@ class Machine:
     spindle: SpindleModel
     timing: Timing
     interlocks: Interlocks
-    max_feed: float  # mm/s, what an F word may ask for
-    manual_rapid: float  # mm/s
-    resolution: float  # mm of radius
+    limits: LimitsModel
+    collet: ColletModel
     outputs: Mapping[str, OutputModel]
     inputs: Mapping[str, InputModel]
     m_codes: Mapping[int, tuple[str, bool]]  # M code → output, state
@@ -144,8 +360,6 @@ class Machine:
     m_ignored: frozenset[int] = frozenset()  # of other machines: they do nothing on this one
     absent: frozenset[str] = frozenset()  # outputs that it has not: a collet closed by hand
     source: str = ""  # the file it came from
-    clearance: float = 0.0  # mm, how far a slide may run on after the last renewal of a jog
-    corner_tolerance: float = 0.0  # mm by which joints of short chords may be moved; 0: by a count alone
     inch: bool = True  # what its builder counts in
     clamping: ClampingModel = field(default_factory=ClampingModel)
     tooling: str = "single"  # "gang": all tools ride one slide; "single": one at a time

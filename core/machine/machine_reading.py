@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from core.machine import machine_tables
+from core.key_declaration import Schema
+from core.machine import axis_tables, machine_tables
 from core.machine.driver_tables import children_of
+from core.machine.machine_model import InputModel, OutputModel
 from core.message import Message
-from core.table_schema import Driver, Field, Finding, Values, joined, read_table, unknown_keys, written
+from core.table_schema import Driver, Finding, Values, joined, read_table, unknown_keys, written
 
 
 class Reading:
@@ -35,8 +37,8 @@ class Reading:
         self._axes()
         io = self._parent("io", ("in", "out", "analog"))
         self.absent, wired = _absent(io.get("out"))
-        self.outputs = self._named(wired, "io.out", machine_tables.OUTPUT)
-        self.inputs = self._named(io.get("in"), "io.in", machine_tables.INPUT)
+        self.outputs = self._named(wired, "io.out", OutputModel)
+        self.inputs = self._named(io.get("in"), "io.in", InputModel)
         self.m_codes = self._m_codes(self.data.get("m_codes", {}))
         self._language()
 
@@ -51,13 +53,11 @@ class Reading:
             )
             self.findings.append(Finding("machine.language", written(said), expected, "broken-rule"))
 
-    def _table(self, path: str, keys: tuple[Field, ...]) -> None:
+    def _table(self, path: str, keys: Schema) -> None:
         table = self.data.get(path, {} if path in machine_tables.MAY_BE_MISSING else None)
         self._keys(table, path, keys, children_of(self._drivers, path))
 
-    def _keys(
-        self, table: object, path: str, keys: tuple[Field, ...], children: tuple[str, ...] = ()
-    ) -> None:
+    def _keys(self, table: object, path: str, keys: Schema, children: tuple[str, ...] = ()) -> None:
         if table is None:
             self.findings.append(
                 Finding(f"[{path}]", "", ("this table is missing but required by TurnDesk"), "missing")
@@ -85,18 +85,16 @@ class Reading:
         lathe, rotary = self.kind == "lathe", machine_tables.ROTARY[self.kind]
         axes = self._parent("axis", (*machine_tables.SLIDES[self.kind], *(("C",) if lathe else rotary)))
         for name in machine_tables.SLIDES[self.kind]:
-            self._homed(axes.get(name), f"axis.{name}", machine_tables.SLIDE, machine_tables.HOME)
+            self._homed(axes.get(name), f"axis.{name}", axis_tables.Slide, axis_tables.Home)
         if lathe:
             third = axes.get("C", {})  # most have none: no table, no C
             linear = isinstance(third, dict) and third.get("linear") is True
-            self._keys(third, "axis.C", machine_tables.THIRD_SLIDE if linear else machine_tables.C_AXIS)
+            self._keys(third, "axis.C", axis_tables.ThirdSlide if linear else axis_tables.LatheC)
         for name in rotary:
             if name in axes:
-                self._homed(
-                    axes[name], f"axis.{name}", machine_tables.ROTARY_AXIS, machine_tables.ROTARY_HOME
-                )
+                self._homed(axes[name], f"axis.{name}", axis_tables.RotaryAxis, axis_tables.RotaryHome)
 
-    def _homed(self, table: object, path: str, keys: tuple[Field, ...], home: tuple[Field, ...]) -> None:
+    def _homed(self, table: object, path: str, keys: Schema, home: Schema) -> None:
         """The table of an axis, and in it how it is homed."""
         self._keys(table, path, keys, ("home",))
         if isinstance(table, dict) and "home" in table:
@@ -113,11 +111,11 @@ class Reading:
     def _m_codes(self, table: object) -> list[str]:
         """M codes that switch an output, and those of which the file says that they do nothing."""
         ignored, switching = _ignored(table)
-        names = {*self._named(ignored, "m_codes", machine_tables.M_IGNORED)}
-        names |= {*self._named(switching, "m_codes", machine_tables.M_CODE)}
+        names = {*self._named(ignored, "m_codes", machine_tables.IgnoredMCode)}
+        names |= {*self._named(switching, "m_codes", machine_tables.MCode)}
         return [name for name in table if name in names] if isinstance(table, dict) else []
 
-    def _named(self, table: object, path: str, keys: tuple[Field, ...]) -> list[str]:
+    def _named(self, table: object, path: str, keys: Schema) -> list[str]:
         """Reads tables under names of the owner's choice; returns those names."""
         if not isinstance(table, dict):
             self._keys(table, path, ())

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator
 from itertools import combinations
 from typing import NamedTuple
 
+from core.key_declaration import Unit, shown
 from core.message import Message
-from core.table_schema import Finding, Unit, Values, shown
+from core.table_schema import Finding, Values
 
 
 class Rule(NamedTuple):

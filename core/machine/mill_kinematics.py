@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
+from core.key_declaration import Range, Triple, Unit, file_key, key_table
 from core.message import Message
-from core.table_schema import Field, Finding, Kind, Triple, Unit, Values, read_table, written
+from core.table_schema import Finding, Values, read_table, written
 
 TABLE = "kinematics"
 MOST_ROTARIES = 2
@@ -19,91 +19,57 @@ _DIRECTIONS: dict[str, Triple] = {
     "-Z": (0.0, 0.0, -1.0),
 }
 _ALONG = {"A": "X", "B": "Y", "C": "Z"}
-WORKPIECE = (
-    Field(
-        "origin",
-        Kind.TRIPLE,
-        Unit.LENGTH,
-        -5000.0,
-        5000.0,
-        meaning="Machine position of the workpiece zero with all rotary axes at 0.",
-    ),
-    Field(
-        "basic_rotation",
-        Kind.NUMBER,
-        Unit.DEGREES,
-        -180.0,
-        180.0,
-        default=0.0,
-        meaning="Rotation of the workpiece about Z relative to the machine.",
-    ),
-)
-ROTARY = (
-    Field(
-        "side",
-        Kind.CHOICE,
-        choices=("table", "head"),
-        meaning="Whether the axis turns the table or the head.",
-    ),
-    Field(
-        "order",
-        Kind.WHOLE,
-        low=1,
-        high=9,
-        meaning=(
-            "Position in the chain from the workpiece to the tool, the lowest number first; tables "
-            "come before heads."
-        ),
-    ),
-    Field(
-        "direction",
-        Kind.CHOICE,
-        choices=tuple(_DIRECTIONS),
-        meaning="Direction of the axis of rotation with all rotary axes at 0.",
-    ),
-    Field(
-        "point",
-        Kind.TRIPLE,
-        Unit.LENGTH,
-        -5000.0,
-        5000.0,
-        meaning=(
-            "Any point on the axis of rotation: in machine positions for a table, measured from "
-            "the spindle nose for a head."
-        ),
-    ),
-    Field(
-        "modulo",
-        Kind.FLAG,
-        default=False,
-        meaning="true: the axis shows 0° to 360° and takes the shorter direction; it must not have `travel`.",
-    ),
-)
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class RotaryModel:
-    """One rotary axis with all of them at 0: unit vector and a point of its line, mm.
-
-    A table's point counts in the machine, a head's from the nose of the spindle. ``modulo``: shows 0 to 360.
-    """
+    """One rotary axis with all of them at 0."""
 
     name: str
-    table: bool
-    direction: Triple
-    point: Triple
-    modulo: bool
+    side: str = file_key(choices=("table", "head"), meaning="Whether the axis turns the table or the head.")
+    order: int = file_key(
+        Range(1, 9),
+        meaning="Position in the chain from the workpiece to the tool, the lowest number first; tables "
+        "come before heads.",
+    )
+    direction: str = file_key(
+        choices=tuple(_DIRECTIONS), meaning="Direction of the axis of rotation with all rotary axes at 0."
+    )
+    point: Triple = file_key(
+        Range(-5000.0, 5000.0, Unit.LENGTH),
+        meaning="Any point on the axis of rotation: in machine positions for a table, measured from the "
+        "spindle nose for a head.",
+    )
+    modulo: bool = file_key(
+        default=False,
+        meaning="true: the axis shows 0° to 360° and takes the shorter direction; it must not have `travel`.",
+    )
+
+    @property
+    def table(self) -> bool:
+        """Whether the axis turns the table, not the head."""
+        return self.side == "table"
+
+    @property
+    def unit_vector(self) -> Triple:
+        """The direction of the axis of rotation."""
+        return _DIRECTIONS[self.direction]
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class KinematicsModel:
-    """``chain`` goes from the workpiece to the tool. ``origin`` is the machine position of the workpiece's
-    zero with all rotary axes at 0, mm; ``basic_rotation`` its turn about Z against the machine, degrees.
-    """
+    """The workpiece, mm and degrees. ``chain`` goes from the workpiece to the tool."""
 
-    origin: Triple
-    basic_rotation: float
-    chain: tuple[RotaryModel, ...]
+    origin: Triple = file_key(
+        Range(-5000.0, 5000.0, Unit.LENGTH),
+        meaning="Machine position of the workpiece zero with all rotary axes at 0.",
+    )
+    basic_rotation: float = file_key(
+        Range(-180.0, 180.0, Unit.DEGREES),
+        default=0.0,
+        meaning="Rotation of the workpiece about Z relative to the machine.",
+    )
+    chain: tuple[RotaryModel, ...] = ()
 
 
 class KinematicsReading:
@@ -121,15 +87,12 @@ class KinematicsReading:
         """What the table says, once nothing is wrong with it."""
         if not self._there:
             return None
-        ordered = sorted(self._names, key=lambda name: self._values.number(f"{TABLE}.{name}.order"))
-        return KinematicsModel(
-            origin=self._values.triple(f"{TABLE}.origin"),
-            basic_rotation=self._values.number(f"{TABLE}.basic_rotation"),
-            chain=tuple(self._rotary(name) for name in ordered),
-        )
+        chain = (self._values.model(RotaryModel, f"{TABLE}.{name}", name=name) for name in self._names)
+        ordered = sorted(chain, key=lambda axis: axis.order)
+        return self._values.model(KinematicsModel, TABLE, chain=tuple(ordered))
 
     def _read(self, table: object, kind: str, rotary: Sequence[str]) -> None:
-        self.findings += read_table(table, WORKPIECE, TABLE, self._values, tuple(rotary))
+        self.findings += read_table(table, KinematicsModel, TABLE, self._values, tuple(rotary))
         if kind != "mill":
             self.findings.append(
                 Finding(
@@ -153,21 +116,11 @@ class KinematicsReading:
                     )
                 )
                 continue
-            found = read_table(table[name], ROTARY, path, self._values)
+            found = read_table(table[name], RotaryModel, path, self._values)
             self.findings += found
             if not found:
                 self._names.append(name)
         self.findings += [*self._broken()]
-
-    def _rotary(self, name: str) -> RotaryModel:
-        values, path = self._values, Message("{table}.{name}", table=TABLE, name=name)
-        return values.model(
-            RotaryModel,
-            path,
-            name=name,
-            table=values.text(f"{path}.side") == "table",
-            direction=_DIRECTIONS[values.text(f"{path}.direction")],
-        )
 
     def _broken(self) -> Iterator[Finding]:
         """Rules between the axes; each is looked at where its values are good."""

@@ -1,92 +1,83 @@
-"""[dnc] of the machine file: the serial line for programs."""
+"""[dnc] and [gauge] of the machine file: the serial lines for programs and for a gauge."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any
 
-from core.table_schema import Driver, DriverTable, Field, Kind
+from core.key_declaration import Range, file_key, key_table
+from core.table_schema import Driver, DriverTable
 
-_FIELDS = (
-    Field("port", Kind.TEXT, meaning="Serial port, such as `/dev/serial/by-id/…`."),
-    Field("baud", Kind.WHOLE, low=110, high=1_000_000, default=9600, meaning="Bit rate of the line."),
-    Field("bits", Kind.WHOLE, low=7, high=8, default=8, meaning="Data bits of a character."),
-    Field(
-        "parity",
-        Kind.CHOICE,
-        choices=("N", "E", "O"),
-        default="N",
-        meaning="Parity: none (N), even (E) or odd (O).",
-    ),
-    Field("stop", Kind.WHOLE, low=1, high=2, default=1, meaning="Stop bits of a character."),
-    Field(
-        "flow",
-        Kind.CHOICE,
-        choices=("xonxoff", "rtscts", "none"),
-        default="xonxoff",
-        meaning="Flow control of the line.",
-    ),
-    Field(
-        "wrap",
-        Kind.CHOICE,
-        choices=("%", ""),
-        default="%",
-        meaning='Line before and after a program. "": none; a pause then ends a received program.',
-    ),
-    Field(
-        "eol",
-        Kind.CHOICE,
-        choices=("\r\n", "\n", "\r"),
-        default="\r\n",
-        meaning="Line ending of the programs that TurnDesk sends.",
-    ),
-    Field(
-        "dc_codes",
-        Kind.FLAG,
-        default=False,
-        meaning=(
-            "true: TurnDesk sends DC2 before and DC4 after a program, and DC1 before and DC3 after "
-            "it receives one."
-        ),
-    ),
-    Field(
-        "wait",
-        Kind.FLAG,
-        default=False,
-        meaning="true: TurnDesk sends a program only after the other side has sent DC1.",
-    ),
-    Field(
-        "leader",
-        Kind.WHOLE,
-        low=0,
-        high=2000,
-        default=0,
-        meaning="Number of NUL characters before and after a program that is sent.",
-    ),
+_BAUD: Any = file_key(Range(110, 1_000_000), default=9600, meaning="Bit rate of the line.")
+_BITS: Any = file_key(Range(7, 8), default=8, meaning="Data bits of a character.")
+_PARITY: Any = file_key(
+    default="N", choices=("N", "E", "O"), meaning="Parity: none (N), even (E) or odd (O)."
 )
+_STOP: Any = file_key(Range(1, 2), default=1, meaning="Stop bits of a character.")
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class DncModel:
     """The serial line for programs."""
 
-    port: str
-    baud: int
-    bits: int
-    parity: str  # N, E or O
-    stop: int
-    flow: str  # xonxoff, rtscts or none
-    wrap: str  # the line before and behind a program; empty: none
-    eol: str
-    dc_codes: bool = False  # DC2 and DC4 around what is sent, DC1 and DC3 around what is received
-    wait: bool = False  # send only when the other side has said DC1
-    leader: int = 0  # NULs before and behind what is sent
+    port: str = file_key(meaning="Serial port, such as `/dev/serial/by-id/…`.")
+    baud: int = _BAUD
+    bits: int = _BITS
+    parity: str = _PARITY
+    stop: int = _STOP
+    flow: str = file_key(
+        default="xonxoff", choices=("xonxoff", "rtscts", "none"), meaning="Flow control of the line."
+    )
+    wrap: str = file_key(
+        default="%",
+        choices=("%", ""),
+        meaning='Line before and after a program. "": none; a pause then ends a received program.',
+    )
+    eol: str = file_key(
+        default="\r\n",
+        choices=("\r\n", "\n", "\r"),
+        meaning="Line ending of the programs that TurnDesk sends.",
+    )
+    dc_codes: bool = file_key(
+        default=False,
+        meaning="true: TurnDesk sends DC2 before and DC4 after a program, and DC1 before and DC3 after it "
+        "receives one.",
+    )
+    wait: bool = file_key(
+        default=False, meaning="true: TurnDesk sends a program only after the other side has sent DC1."
+    )
+    leader: int = file_key(
+        Range(0, 2000), default=0, meaning="Number of NUL characters before and after a program that is sent."
+    )
 
 
-_TABLE = DriverTable(
-    "dnc",
-    _FIELDS,
-    lambda file: file.values.model(DncModel, "dnc"),
-    port="dnc.port",
-    purpose="The serial line over which programs are sent and received.",
+@key_table
+class GaugeModel:
+    """The serial line of a gauge; ``unit`` of lines that do not say theirs."""
+
+    port: str = file_key(meaning="Serial port of the gauge, such as `/dev/serial/by-id/…`.")
+    name: str = file_key(default="gauge", meaning="Name that is saved with each reading of the gauge.")
+    unit: str = file_key(
+        default="mm", choices=("mm", "in"), meaning="Unit of a reading whose line does not state one."
+    )
+    baud: int = _BAUD
+    bits: int = _BITS
+    parity: str = _PARITY
+    stop: int = _STOP
+
+
+DRIVER = Driver(
+    tables=(
+        DriverTable(
+            "dnc",
+            DncModel,
+            port="dnc.port",
+            purpose="The serial line over which programs are sent and received.",
+        ),
+        DriverTable(
+            "gauge",
+            GaugeModel,
+            port="gauge.port",
+            purpose="A gauge that sends its readings as lines of text over a serial line.",
+        ),
+    )
 )
-DRIVER = Driver(tables=(_TABLE,))

@@ -3,84 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from core.key_declaration import Range, Unit, file_key, key_table, shown
 from core.message import Message
-from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, shown
+from core.table_schema import Driver, DriverTable, FileReading, Finding
 
 PROBE_INPUT = "io.in.probe"
 SEES = 0.1  # s that may go by from the touch to the command to brake
-_FIELDS = (
-    Field(
-        "x",
-        Kind.NUMBER,
-        Unit.LENGTH,
-        -1000.0,
-        1000.0,
-        meaning="X position of the middle of the stylus, a radius measured from the spindle axis.",
-    ),
-    Field(
-        "z",
-        Kind.NUMBER,
-        Unit.LENGTH,
-        -3000.0,
-        3000.0,
-        meaning="Z position of the middle of the stylus, measured from part zero.",
-    ),
-    Field(
-        "width",
-        Kind.NUMBER,
-        Unit.LENGTH,
-        0.2,
-        100.0,
-        meaning="Width of the stylus, or the diameter of a ball.",
-    ),
-    Field(
-        "overtravel",
-        Kind.NUMBER,
-        Unit.LENGTH,
-        0.1,
-        50.0,
-        meaning="Distance by which the stylus may be pushed. The tool must be able to stop within it.",
-    ),
-    Field(
-        "speed",
-        Kind.NUMBER,
-        Unit.FEED,
-        0.05,
-        50.0,
-        meaning="Speed at which the tool searches for the stylus.",
-    ),
-    Field(
-        "slow",
-        Kind.NUMBER,
-        Unit.FEED,
-        0.002,
-        5.0,
-        meaning="Speed of the second touch, which is measured; not above `speed`.",
-    ),
-    Field(
-        "search",
-        Kind.NUMBER,
-        Unit.LENGTH,
-        0.5,
-        200.0,
-        default=12.7,
-        meaning="Distance within which the tool searches for the stylus.",
-    ),
-    Field(
-        "back_off",
-        Kind.NUMBER,
-        Unit.LENGTH,
-        0.05,
-        20.0,
-        default=1.27,
-        meaning="Distance by which the tool retracts between the two touches.",
-    ),
-)
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class SetterModel:
     """Where its stylus stands and how it is touched; mm and mm/s, X a radius.
 
@@ -89,14 +21,38 @@ class SetterModel:
     ``speed`` within ``search``, goes ``back_off`` from it and touches it at ``slow``.
     """
 
-    x: float
-    z: float
-    width: float
-    overtravel: float
-    speed: float
-    slow: float
-    search: float
-    back_off: float
+    x: float = file_key(
+        Range(-1000.0, 1000.0, Unit.LENGTH),
+        meaning="X position of the middle of the stylus, a radius measured from the spindle axis.",
+    )
+    z: float = file_key(
+        Range(-3000.0, 3000.0, Unit.LENGTH),
+        meaning="Z position of the middle of the stylus, measured from part zero.",
+    )
+    width: float = file_key(
+        Range(0.2, 100.0, Unit.LENGTH), meaning="Width of the stylus, or the diameter of a ball."
+    )
+    overtravel: float = file_key(
+        Range(0.1, 50.0, Unit.LENGTH),
+        meaning="Distance by which the stylus may be pushed. The tool must be able to stop within it.",
+    )
+    speed: float = file_key(
+        Range(0.05, 50.0, Unit.FEED), meaning="Speed at which the tool searches for the stylus."
+    )
+    slow: float = file_key(
+        Range(0.002, 5.0, Unit.FEED),
+        meaning="Speed of the second touch, which is measured; not above `speed`.",
+    )
+    search: float = file_key(
+        Range(0.5, 200.0, Unit.LENGTH),
+        default=12.7,
+        meaning="Distance within which the tool searches for the stylus.",
+    )
+    back_off: float = file_key(
+        Range(0.05, 20.0, Unit.LENGTH),
+        default=1.27,
+        meaning="Distance by which the tool retracts between the two touches.",
+    )
 
     def face(self, axis: str, sign: int) -> float:
         """Where a tip is that touches it going this way, mm from part zero."""
@@ -153,8 +109,7 @@ DRIVER = Driver(
     tables=(
         DriverTable(
             "setter",
-            _FIELDS,
-            lambda file: file.values.model(SetterModel, "setter"),
+            SetterModel,
             rules=_rules,
             purpose="A tool setter, or a probe at a fixed place, for touching off the tools of a lathe. "
             "It needs the input `probe`.",

@@ -3,40 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
+from core.key_declaration import Range, Unit, file_key, key_table
 from core.message import Message
-from core.table_schema import Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, raw_at, written
+from core.table_schema import Driver, DriverTable, FileReading, Finding, raw_at, written
 
 _LONGEST = 40  # letters of a desk's name
-_FIELDS = (
-    Field("folder", Kind.TEXT, default="", meaning="Shared folder, mounted on every computer."),
-    Field(
-        "postgresql",
-        Kind.TEXT,
-        default="",
-        meaning="Connection string of a PostgreSQL database, as libpq reads it.",
-    ),
-    Field(
-        "desk",
-        Kind.TEXT,
-        default="",
-        meaning="Name of this machine in the list of machines, at most 40 characters. Default: "
-        "`machine.name`.",
-    ),
-    Field(
-        "look",
-        Kind.NUMBER,
-        Unit.SECONDS,
-        2.0,
-        3600.0,
-        default=30.0,
-        meaning="Time between two checks for new versions.",
-    ),
-)
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class SharingTable:
     """Either ``folder`` or ``postgresql`` (what libpq takes); the other is empty.
 
@@ -44,10 +19,18 @@ class SharingTable:
     two looks at what is new there.
     """
 
-    folder: str
-    postgresql: str = field(repr=False)
-    desk: str
-    look: float
+    folder: str = file_key(default="", meaning="Shared folder, mounted on every computer.")
+    postgresql: str = file_key(
+        secret=True, default="", meaning="Connection string of a PostgreSQL database, as libpq reads it."
+    )
+    desk: str = file_key(
+        default="",
+        meaning="Name of this machine in the list of machines, at most 40 characters. Default: "
+        "`machine.name`.",
+    )
+    look: float = file_key(
+        Range(2.0, 3600.0, Unit.SECONDS), default=30.0, meaning="Time between two checks for new versions."
+    )
 
 
 def _rules(file: FileReading) -> Iterator[Finding]:
@@ -73,8 +56,7 @@ DRIVER = Driver(
     tables=(
         DriverTable(
             "sharing",
-            _FIELDS,
-            lambda file: file.values.model(SharingTable, "sharing"),
+            SharingTable,
             rules=_rules,
             purpose="The location through which machines share their programs. Specify exactly one of "
             "`folder` and `postgresql`.",

@@ -3,83 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from ipaddress import ip_address
 from urllib.parse import urlsplit
 
+from core.key_declaration import Range, Unit, Words, file_key, key_table
 from core.message import Message
-from core.table_schema import HIDDEN, Driver, DriverTable, Field, FileReading, Finding, Kind, Unit, written
+from core.table_schema import HIDDEN, Driver, DriverTable, FileReading, Finding, written
 
 LEAST_TOKEN = 12  # characters
 _WEB = ("http://", "https://")
-_PAGE_FIELDS = (
-    Field("enabled", Kind.FLAG, default=False, meaning="true: TurnDesk serves the office page."),
-    Field(
-        "bind",
-        Kind.TEXT,
-        default="127.0.0.1",
-        meaning=(
-            'Address at which the page is served. "127.0.0.1": only to this computer; "0.0.0.0": to '
-            "all computers, which needs a token."
-        ),
-    ),
-    Field("port", Kind.WHOLE, low=1, high=65535, default=8317, meaning="TCP port of the page."),
-    Field(
-        "token",
-        Kind.TEXT,
-        default="",
-        meaning=(
-            "Password in the address of the page: letters, digits, - and _. At least 12 characters "
-            "if other computers can connect."
-        ),
-    ),
-    Field(
-        "desks",
-        Kind.WORDS,
-        default="",
-        meaning=(
-            "Addresses of the office pages of other machines, with their tokens, to be shown on the "
-            "same page."
-        ),
-    ),
-    Field(
-        "agents",
-        Kind.WORDS,
-        default="",
-        meaning=(
-            "Addresses of MTConnect agents with the device, such as `http://shop-pc:5000/MILL4`, "
-            "whose machines are shown on the same page."
-        ),
-    ),
-)
-_ANNOUNCE_FIELDS = (
-    Field(
-        "mqtt",
-        Kind.TEXT,
-        default="",
-        meaning="MQTT broker as `host` or `host:port`; the default port is 1883. Default: no broker.",
-    ),
-    Field(
-        "topic", Kind.TEXT, default="turndesk", meaning="Topic before `/available`, `/state` and `/event`."
-    ),
-    Field("user", Kind.TEXT, default="", meaning="User name for the broker."),
-    Field("password", Kind.TEXT, default="", meaning="Password for the broker."),
-    Field(
-        "hook", Kind.TEXT, default="", meaning="Web address that receives each event by POST. Default: none."
-    ),
-    Field(
-        "again",
-        Kind.NUMBER,
-        Unit.SECONDS,
-        1.0,
-        3600.0,
-        default=10.0,
-        meaning="Time after which TurnDesk retries a broker or web address that did not respond.",
-    ),
-)
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class StatusPageTable:
     """Where browsers find the page of this desk, and what is shown beside it: the pages of other desks, and
     machines that an MTConnect agent tells of (the agent's address with the name of the device).
@@ -87,12 +22,31 @@ class StatusPageTable:
     ``token`` is the word that a browser must bring; empty only where no other computer can ask.
     """
 
-    enabled: bool
-    bind: str
-    port: int
-    token: str = field(repr=False)
-    desks: str = field(repr=False)
-    agents: str = field(repr=False)
+    enabled: bool = file_key(default=False, meaning="true: TurnDesk serves the office page.")
+    bind: str = file_key(
+        default="127.0.0.1",
+        meaning='Address at which the page is served. "127.0.0.1": only to this computer; "0.0.0.0": to '
+        "all computers, which needs a token.",
+    )
+    port: int = file_key(Range(1, 65535), default=8317, meaning="TCP port of the page.")
+    token: str = file_key(
+        secret=True,
+        default="",
+        meaning="Password in the address of the page: letters, digits, - and _. At least 12 characters if "
+        "other computers can connect.",
+    )
+    desks: Words = file_key(
+        secret=True,
+        default="",
+        meaning="Addresses of the office pages of other machines, with their tokens, to be shown on the "
+        "same page.",
+    )
+    agents: Words = file_key(
+        secret=True,
+        default="",
+        meaning="Addresses of MTConnect agents with the device, such as `http://shop-pc:5000/MILL4`, whose "
+        "machines are shown on the same page.",
+    )
 
     @property
     def others(self) -> tuple[str, ...]:
@@ -105,19 +59,26 @@ class StatusPageTable:
         return tuple(self.agents.split())
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class AnnounceTable:
     """The MQTT broker (``host:port``) and the web address that are told; empty: that one is not.
 
     ``again`` is the seconds after which a broker or host that was away is tried once more.
     """
 
-    mqtt: str
-    topic: str
-    user: str
-    password: str = field(repr=False)
-    hook: str = field(repr=False)
-    again: float
+    mqtt: str = file_key(
+        default="",
+        meaning="MQTT broker as `host` or `host:port`; the default port is 1883. Default: no broker.",
+    )
+    topic: str = file_key(default="turndesk", meaning="Topic before `/available`, `/state` and `/event`.")
+    user: str = file_key(default="", meaning="User name for the broker.")
+    password: str = file_key(secret=True, default="", meaning="Password for the broker.")
+    hook: str = file_key(default="", meaning="Web address that receives each event by POST. Default: none.")
+    again: float = file_key(
+        Range(1.0, 3600.0, Unit.SECONDS),
+        default=10.0,
+        meaning="Time after which TurnDesk retries a broker or web address that did not respond.",
+    )
 
 
 def loopback(address: str) -> bool:
@@ -213,15 +174,13 @@ DRIVER = Driver(
     tables=(
         DriverTable(
             "status_page",
-            _PAGE_FIELDS,
-            lambda file: file.values.model(StatusPageTable, "status_page"),
+            StatusPageTable,
             rules=_page_rules,
             purpose="The office page: a web page that shows the state of the machine to other computers.",
         ),
         DriverTable(
             "announce",
-            _ANNOUNCE_FIELDS,
-            lambda file: file.values.model(AnnounceTable, "announce"),
+            AnnounceTable,
             rules=_announce_rules,
             purpose="Where TurnDesk reports the state of the machine: an MQTT broker, a web hook, or both.",
         ),

@@ -169,7 +169,7 @@ class Timeline:
         self.start = setup.start
         self._machine = machine
         self._ideal = ideal
-        limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.corner_tolerance)
+        limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance)
         if ideal:
             limits = replace(limits, amax=(_AT_ONCE,) * len(limits.amax))
         self._planner = ChunkPlanner(limits, rpm_max=machine.spindle.rpm_max)
@@ -314,7 +314,7 @@ class Timeline:
             self._speed_wanted = False
 
     def _seconds(self, action: Action) -> float:
-        timing = self._machine.timing
+        collet = self._machine.collet
         if isinstance(action, Dwell):
             return action.seconds
         if isinstance(action, SpindleLock) or (isinstance(action, SpindleStop) and action.stands):
@@ -322,7 +322,7 @@ class Timeline:
         if isinstance(action, SpindleOrient):
             return self._until_still() + orienting(self._machine.spindle, action.sense)
         if isinstance(action, Collet):
-            return timing.collet_close if action.closed else timing.collet_open
+            return collet.close_time if action.closed else collet.open_time
         return 0.0
 
     def _until_still(self) -> float:

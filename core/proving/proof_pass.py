@@ -267,7 +267,7 @@ class ProofPass:
             needs=first_needs((*self._needs, *interpreter.lacking)),
             stops=self._stops,
             optional_stops=self._optional_stops,
-            corner_tolerance=self._machine.corner_tolerance,
+            corner_tolerance=self._machine.limits.corner_tolerance,
         )
 
     def _lathe_reach(self, source: Source) -> Reach:

@@ -21,12 +21,12 @@ from drivers.setpoint_queue import SetpointQueue, Tolerance, check_limits
 def follower_of(
     config: CanopenConfig, drives: DriveSet, queue: SetpointQueue, schedule: SyncSchedule
 ) -> Follower:
-    """The one of ``config.mode``."""
-    if config.mode == "pp":
+    """The one of ``config.bus.mode``."""
+    if config.bus.mode == "pp":
         return ProfiledFollower(drives.axes, drives.indices, queue)
-    if MOTIONS[config.mode].cyclic:
-        return CyclicFollower(drives.axes, drives.indices, queue, MOTIONS[config.mode].mode, schedule)
-    return PvtFollower(drives.axes, drives.indices, queue, config.commit, config.record)
+    if MOTIONS[config.bus.mode].cyclic:
+        return CyclicFollower(drives.axes, drives.indices, queue, MOTIONS[config.bus.mode].mode, schedule)
+    return PvtFollower(drives.axes, drives.indices, queue, config.commit, config.bus.record)
 
 
 _PAST = 0.5  # s of setpoints that may still be asked for
@@ -43,12 +43,12 @@ class CanopenAxes:
         self.config = config
         self.axes = tuple(axis.name for axis in config.axes)
         self.commit = config.commit
-        self.drives = DriveSet(config.axes, bus, MOTIONS[config.mode])
+        self.drives = DriveSet(config.axes, bus, MOTIONS[config.bus.mode])
         tolerance = Tolerance.of(config.axes)
         self.queue = SetpointQueue(self.axes, (0.0,) * len(self.axes), config.commit, tolerance)
         self.schedule = SyncSchedule(config.bus.sync, bus.clock.now())
         self.follower = follower_of(config, self.drives, self.queue, self.schedule)
-        self.cyclic = MOTIONS[config.mode].cyclic
+        self.cyclic = MOTIONS[config.bus.mode].cyclic
         self.homing: Homing | None = None
         self.fault = ""
         self.beside = ""  # what is wrong elsewhere on the bus

@@ -17,7 +17,7 @@ from canopen.sdo.exceptions import SdoAbortedError, SdoCommunicationError
 
 from core.message import Message
 from core.ports import Clock, DriverError, Fault
-from drivers.canopen.canopen_nodes import BusConfig
+from drivers.canopen.canopen_table import CanopenTable
 
 _log = logging.getLogger(__name__)
 for _library in ("can", "canopen"):  # what goes wrong there is raised, and told by us in one sentence
@@ -35,7 +35,7 @@ _ECHOING = ("udp_multicast",)  # hears itself: no other master can be told apart
 class Bus(canopen.Network):
     """One CAN bus. ``idle`` is what a wait does in between where time does not pass by itself (tests)."""
 
-    def __init__(self, config: BusConfig, clock: Clock, idle: Callable[[], None] | None = None) -> None:
+    def __init__(self, config: CanopenTable, clock: Clock, idle: Callable[[], None] | None = None) -> None:
         super().__init__(opened(config))
         self.config = config
         self.clock = clock
@@ -218,7 +218,7 @@ class Node(canopen.RemoteNode):
 _NOT_OPENED = (can.CanError, OSError, ValueError, TypeError, AttributeError, ImportError, NotImplementedError)
 
 
-def opened(config: BusConfig) -> can.BusABC:
+def opened(config: CanopenTable) -> can.BusABC:
     """The interface; raises DriverError. On udp_multicast a channel may end in ``:port``.
 
     Two groups on one port hear each other within one computer.
@@ -234,7 +234,7 @@ def opened(config: BusConfig) -> can.BusABC:
         _refuse(config, error)
 
 
-def _refuse(config: BusConfig, error: Exception) -> NoReturn:
+def _refuse(config: CanopenTable, error: Exception) -> NoReturn:
     hint = Message(
         "bring the interface up: ip link set {channel} up type can bitrate {bitrate}",
         channel=config.channel,

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from drivers.canopen.canopen_nodes import BusConfig, CanNode, CanTerminal
+from drivers.canopen.canopen_nodes import CanNode, CanTerminal
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.canopen.drive_profiles import CIA402, DriveProfile
 from drivers.setpoint_queue import AxisFigures
 
@@ -80,7 +81,7 @@ class PotConfig:
 class CanopenConfig:
     """The whole machine on the bus."""
 
-    bus: BusConfig
+    bus: CanopenTable
     axes: tuple[AxisConfig, ...]
     spindle: SpindleConfig | None = None
     encoder: EncoderConfig | None = None  # beside a spindle that somebody else turns
@@ -88,6 +89,4 @@ class CanopenConfig:
     outputs: Mapping[str, OutputConfig] = field(default_factory=dict)
     inputs: Mapping[str, CanTerminal] = field(default_factory=dict)
     pots: Mapping[str, PotConfig] = field(default_factory=dict)
-    mode: str = "pvt"  # pvt, csp, ip or pp
     commit: float = 0.14
-    record: float = 0.02

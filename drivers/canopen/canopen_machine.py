@@ -143,7 +143,7 @@ class CanopenMachine:
             samples=self.samples,
             touch=self.touch,
             unknown=self.unknown,
-            untraced=_UNTRACED if self.config.mode == "pp" else "",
+            untraced=_UNTRACED if self.config.bus.mode == "pp" else "",
             warnings=tuple(each for axis in self.axes.drives.axes for each in axis.drive.setup.warnings),
         )
 

@@ -8,11 +8,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TypeGuard
 
+from core.key_declaration import Range, file_key, key_table
 from core.table_schema import (
-    Field,
     FileReading,
     Finding,
-    Kind,
     TableReference,
     expected_table,
     read_named,
@@ -30,52 +29,9 @@ INPUT, BITS = 0x6000, 8  # the object of a module's inputs; bits of a byte
 _WINDOW, _OFF = 0x6065, 0xFFFFFFFF
 _LOW, _HIGH = -(2**31), 2**32 - 1  # of an object
 _SELDOM = 0.01  # s
-_ANSWERS, _ANSWER_TIME = 3, 0.02  # SYNCs, s
 
 CYCLIC = ("csp", "ip")  # modes with a setpoint each SYNC
 EVENED_OUT = 0.25  # of a period that a SYNC may be late
-_NODE = (
-    Field("id", Kind.WHOLE, low=1, high=127, meaning="Node number set at the device."),
-    Field(
-        "profile",
-        Kind.WHOLE,
-        low=401,
-        high=406,
-        default=402,
-        meaning="Device profile of CiA: 402 (drive), 401 (input and output module) or 406 (encoder).",
-    ),
-    Field(
-        "drive",
-        Kind.CHOICE,
-        choices=tuple(PROFILES),
-        default="",
-        meaning="Family of the drive. Default: `drive` of [canopen]; without it the family that the EDS "
-        "file names, or plain CiA 402.",
-    ),
-    Field(
-        "eds",
-        Kind.TEXT,
-        default="",
-        meaning="EDS file of the device, in the folder of the machine file. Default: the objects of the "
-        "family or of the standard.",
-    ),
-    Field(
-        "counts_per_rev",
-        Kind.WHOLE,
-        low=0,
-        high=100_000_000,
-        default=0,
-        meaning="Encoder counts per motor revolution, 4 × the lines, for drives that use rpm as "
-        "their unit of speed. 0: the drive uses counts/s. For the spindle: counts per "
-        "spindle revolution, needed for threads and C.",
-    ),
-)
-NODE_REFERENCE = TableReference(
-    "canopen.nodes.…",
-    "A device on the bus. A drive must be named after its axis or be named "
-    "`spindle`; other devices can have any name.",
-    _NODE,
-)
 SDO_REFERENCE = TableReference(
     "canopen.sdo.…",
     "Objects that TurnDesk writes to a node at each start and reads back; the last word "
@@ -85,44 +41,44 @@ SDO_REFERENCE = TableReference(
 Objects = tuple[tuple[int, int, int], ...]  # index, sub-index, value: written at every start and read back
 
 
-@dataclass(frozen=True, slots=True)
-class BusConfig:
-    """The wire. Times in seconds."""
-
-    interface: str  # python-can's name: socketcan, virtual, udp_multicast …
-    channel: str
-    bitrate: int = 1_000_000
-    host_id: int = 127
-    sync: float = 0.01
-    heartbeat: float = 0.1
-
-    @property
-    def seldom(self) -> int:
-        """SYNCs from one answer to the next of what need not be known at each: about 10 ms."""
-        return max(1, round(_SELDOM / self.sync))
-
-    @property
-    def patience(self) -> int:
-        """Answers to SYNC that a slide may leave out before it counts as silent: 3, or 20 ms."""
-        return max(_ANSWERS, round(_ANSWER_TIME / self.sync))
-
-    @property
-    def own_process(self) -> bool:
-        """Whether another process can own it; python-can's virtual bus lives in one."""
-        return self.interface != "virtual"
-
-
-@dataclass(frozen=True, slots=True)
+@key_table
 class CanNode:
     """One node of the bus: ``name`` is an axis, ``spindle`` or the name of an I/O module."""
 
     name: str
-    id: int
-    profile: int  # 402, 401 or 406
-    drive: str = ""  # family as it is sold, of drive_profiles; empty: as its EDS file says, or CiA 402 alone
-    eds: str = ""  # file of the object dictionary, beside the machine file; empty: the standard objects
-    counts_per_rev: int = 0  # the drive counts velocities in rpm of this many counts; 0: in counts/s
+    id: int = file_key(Range(1, 127), meaning="Node number set at the device.")
+    profile: int = file_key(
+        Range(401, 406),
+        default=402,
+        meaning="Device profile of CiA: 402 (drive), 401 (input and output module) or 406 (encoder).",
+    )
+    drive: str = file_key(
+        default="",
+        choices=tuple(PROFILES),
+        meaning="Family of the drive. Default: `drive` of [canopen]; without it the family that the EDS "
+        "file names, or plain CiA 402.",
+    )
+    eds: str = file_key(
+        default="",
+        meaning="EDS file of the device, in the folder of the machine file. Default: the objects of the "
+        "family or of the standard.",
+    )
+    counts_per_rev: int = file_key(
+        Range(0, 100_000_000),
+        default=0,
+        meaning="Encoder counts per motor revolution, 4 × the lines, for drives that use rpm as their unit "
+        "of speed. 0: the drive uses counts/s. For the spindle: counts per spindle revolution, needed for "
+        "threads and C.",
+    )
     sdo: Objects = ()  # those for all nodes of its profile, then its own
+
+
+NODE_REFERENCE = TableReference(
+    "canopen.nodes.…",
+    "A device on the bus. A drive must be named after its axis or be named "
+    "`spindle`; other devices can have any name.",
+    CanNode,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +90,11 @@ class CanTerminal:
     sub: int
     bit: int = -1
     active_low: bool = False
+
+
+def seldom(sync: float) -> int:
+    """Return the SYNCs from one answer to the next of what need not be known at each: about 10 ms."""
+    return max(1, round(_SELDOM / sync))
 
 
 # --- addresses -------------------------------------------------------------------------------------------
@@ -175,7 +136,7 @@ def input_addresses() -> Iterator[str]:
 def read_nodes(file: FileReading) -> Iterator[Finding]:
     """Reads [canopen.nodes]; what is wrong there and in [canopen.sdo]."""
     nodes, objects = file.raw(NODES), file.raw(SDO)
-    yield from read_named({} if nodes is None else nodes, _NODE, NODES, file.values)
+    yield from read_named({} if nodes is None else nodes, CanNode, NODES, file.values)
     if objects is None:
         return
     if not isinstance(objects, dict):

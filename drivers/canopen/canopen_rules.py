@@ -18,7 +18,6 @@ from drivers.canopen.canopen_nodes import (
     PLAIN_MODULE,
     SDO,
     SPINDLE,
-    BusConfig,
     can_terminal,
     family_of,
     module_names,
@@ -26,6 +25,7 @@ from drivers.canopen.canopen_nodes import (
     objects_of,
     profile_of,
     said,
+    seldom,
 )
 from drivers.canopen.drive_profiles import IN_RPM, PROFILES, QUEUED
 
@@ -134,8 +134,7 @@ def _cyclic(file: FileReading) -> Iterator[Finding]:
             yield Finding("machine.commit_ms", f"{1000 * commit:g}", expected)
     nodes = file.names(NODES)
     slides = sum(name in file.axes for name in nodes)
-    seldom = BusConfig("", "", sync=sync).seldom
-    load = cyclic_load(slides, len(nodes) - slides, bitrate, sync, seldom)
+    load = cyclic_load(slides, len(nodes) - slides, bitrate, sync, seldom(sync))
     if not load.fits:
         fits = next((ms for ms in range(1, 101) if _fits(slides, len(nodes) - slides, bitrate, ms)), 0)
         expected = Message(
@@ -149,8 +148,7 @@ def _cyclic(file: FileReading) -> Iterator[Finding]:
 
 
 def _fits(slides: int, others: int, bitrate: int, ms: int) -> bool:
-    seldom = BusConfig("", "", sync=0.001 * ms).seldom
-    return cyclic_load(slides, others, bitrate, 0.001 * ms, seldom).fits
+    return cyclic_load(slides, others, bitrate, 0.001 * ms, seldom(0.001 * ms)).fits
 
 
 def _numbers(file: FileReading) -> Iterator[Finding]:

@@ -14,8 +14,9 @@ from core.ports import DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus, Node
 from drivers.canopen.canopen_config import AxisConfig
-from drivers.canopen.canopen_nodes import BusConfig, Objects
+from drivers.canopen.canopen_nodes import Objects
 from drivers.canopen.canopen_objects import MODE_BITS
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.canopen.drive_profiles import WITHOUT, Entry
 
 _Answer = TypeVar("_Answer")
@@ -403,7 +404,7 @@ def _abort(error: DriverError) -> int:
 # --- What every drive is told at each start unless the machine file says otherwise: stops, limits, watching.
 
 
-def axis_objects(config: AxisConfig, bus: BusConfig) -> Objects:
+def axis_objects(config: AxisConfig, bus: CanopenTable) -> Objects:
     """For one axis drive, in its own units."""
     return (
         *config.profile.units,
@@ -415,7 +416,7 @@ def axis_objects(config: AxisConfig, bus: BusConfig) -> Objects:
     )
 
 
-def stopping(bus: BusConfig) -> Objects:
+def stopping(bus: CanopenTable) -> Objects:
     """For any drive: quick stop when our heartbeat is missing, then no power."""
     return (
         (od.ABORT_OPTION, 0, 3),
@@ -425,7 +426,7 @@ def stopping(bus: BusConfig) -> Objects:
     )
 
 
-def watching(bus: BusConfig) -> Objects:
+def watching(bus: CanopenTable) -> Objects:
     """For any node: its heartbeat, and ours, which it misses after three."""
     return (
         (od.HEARTBEAT, 0, round(1000 * bus.heartbeat)),

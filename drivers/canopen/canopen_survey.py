@@ -46,7 +46,7 @@ def survey(config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None 
     bus = _Quiet(config.bus, clock, idle)
     axes = {axis.name: axis for axis in config.axes}
     try:
-        return [_asked(bus, wanted, axes.get(wanted.name), config.mode) for wanted in _wanted(config)]
+        return [_asked(bus, wanted, axes.get(wanted.name), config.bus.mode) for wanted in _wanted(config)]
     finally:
         bus.close()
 

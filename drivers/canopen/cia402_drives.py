@@ -14,7 +14,7 @@ from core.ports import DriverError, Fault, FaultCode
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import AxisConfig
-from drivers.canopen.canopen_nodes import BusConfig, CanNode, Objects
+from drivers.canopen.canopen_nodes import CanNode, Objects
 from drivers.canopen.canopen_objects import (
     CSP,
     HM,
@@ -28,6 +28,7 @@ from drivers.canopen.canopen_objects import (
     towards_enabled,
 )
 from drivers.canopen.canopen_setup import Setup, axis_objects
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.canopen.drive_profiles import Entry
 from drivers.canopen.pvt_records import RecordQueue
 
@@ -484,7 +485,7 @@ class DriveSet:
         axis.drive.mode = self._how.mode
 
 
-def axis_work(config: AxisConfig, bus: BusConfig, how: Motion) -> DriveWork:
+def axis_work(config: AxisConfig, bus: CanopenTable, how: Motion) -> DriveWork:
     """What the drive of an axis is configured for."""
     queue = config.profile.queue if how.mode == IP and not how.cyclic else None
     submode: Objects = ((od.IP_SUBMODE, 0, queue.submode if queue is not None else 0),)

@@ -3,57 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import KW_ONLY
 
+from core.key_declaration import Range, file_key, key_table
 from core.message import Message
-from core.table_schema import DriverTable, Field, FileReading, Finding, Kind, Values, written
+from core.table_schema import DriverTable, FileReading, Finding, Values, written
 from drivers.canopen.canopen_nodes import DRIVE, ENCODER_PROFILE, MODULE, NODES, profile_of, sdo_address
 
 ENCODER, POSITION = "spindle.encoder", "6004:0"  # the table, and where a node of CiA 406 has its counts
 _LEAST = 16  # counts a turn of an encoder
-_FIELDS = (
-    Field(
-        "node",
-        Kind.TEXT,
-        meaning=(
-            "Name of the node in [canopen.nodes] that supplies the counts: an encoder, or a "
-            "drive with a second encoder input."
-        ),
-    ),
-    Field(
-        "object",
-        Kind.TEXT,
-        default="",
-        meaning=(
-            'Object of the position as index:sub-index, such as "60E4:1". Default: "6004:0" of an '
-            "encoder; required for a drive."
-        ),
-    ),
-    Field(
-        "counts_per_rev",
-        Kind.WHOLE,
-        low=-100_000_000,
-        high=100_000_000,
-        meaning="Counts per spindle revolution, at least 16; negative if the encoder counts down with M03.",
-    ),
-)
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class EncoderTable:
     """An encoder on the spindle, on the bus: a node of its own, or a drive's second input."""
 
-    node: str  # name in [canopen.nodes]
-    index: int
-    sub: int
-    counts_per_rev: int  # negative: it counts down with M03
+    _: KW_ONLY
+    node: str = file_key(
+        meaning="Name of the node in [canopen.nodes] that supplies the counts: an encoder, or a drive with "
+        "a second encoder input."
+    )
+    object: str = file_key(
+        default="",
+        meaning='Object of the position as index:sub-index, such as "60E4:1". Default: "6004:0" of an '
+        "encoder; required for a drive.",
+    )
+    counts_per_rev: int = file_key(
+        Range(-100_000_000, 100_000_000),
+        meaning="Counts per spindle revolution, at least 16; negative if the encoder counts down with M03.",
+    )
 
-
-def _table(file: FileReading) -> EncoderTable:
-    values = file.values
-    index, sub = sdo_address(values.text(f"{ENCODER}.object") or POSITION) or (0, 0)
-    counts = values.whole(f"{ENCODER}.counts_per_rev")
-    return EncoderTable(values.text(f"{ENCODER}.node"), index, sub, counts)
+    @property
+    def address(self) -> tuple[int, int]:
+        """Index and sub-index of the object."""
+        return sdo_address(self.object or POSITION) or (0, 0)
 
 
 def _rules(file: FileReading) -> Iterator[Finding]:
@@ -139,8 +122,7 @@ def _counts(file: FileReading) -> Iterator[Finding]:
 
 TABLE = DriverTable(
     ENCODER,
-    _FIELDS,
-    _table,
+    EncoderTable,
     rules=_rules,
     purpose="An encoder on the CANopen bus for a spindle that an inverter drives.",
 )

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from drivers.grblhal.grblhal_table import GrblhalTable
+
 
 @dataclass(frozen=True, slots=True)
 class GrblAxis:
@@ -46,14 +48,12 @@ class GrblInput:
 
 @dataclass(frozen=True, slots=True)
 class GrblConfig:
-    """The controller and what hangs on it. ``settings`` are written at each connection and read back.
+    """The controller and what hangs on it.
 
     ``own_spindle``: the controller turns it; else an inverter does, and the controller at most measures it.
     """
 
-    port: str
-    baud: int
-    settings: Mapping[int, float | str]
+    table: GrblhalTable
     axes: tuple[GrblAxis, ...]
     rpm_max: float
     outputs: Mapping[str, GrblOutput]

@@ -40,7 +40,7 @@ class GrblMachine:
         self._idle = idle
         self._wire = wire
         self._trips = 0
-        self.controller = Controller(config, wire or open_wire(config.port, config.baud), clock)
+        self.controller = Controller(config, wire or open_wire(config.table.port, config.table.baud), clock)
         self.blocks = GrblBlocks(self.controller)
         self.spindle = GrblSpindle(self.controller, self.blocks)
         self.encoder = GrblEncoder(self.controller)
@@ -108,7 +108,7 @@ class GrblMachine:
 
         def opened() -> Wire:
             close()
-            return self._wire or open_wire(config.port, config.baud)
+            return self._wire or open_wire(config.table.port, config.table.baud)
 
         return Opening(opened, at_once=self._wire is not None)
 
@@ -124,7 +124,7 @@ class GrblMachine:
         self._rounds(_CONNECTING)
         if c.busy or c.identity is None or (c.fault and c.alarm == 0):
             c.close()
-            raise DriverError(f"{c.config.port}: {c.fault or 'no response from controller'}")
+            raise DriverError(f"{c.config.table.port}: {c.fault or 'no response from controller'}")
 
     def _rounds(self, limit: float) -> None:
         end = self._clock.now() + limit

@@ -233,7 +233,7 @@ def settings(c: Controller) -> Script:
 
 
 def _wanted(c: Controller, there: Mapping[int, str]) -> dict[int, float | str]:
-    wanted: dict[int, float | str] = dict(c.config.settings)
+    wanted: dict[int, float | str] = dict(c.config.table.settings)
     always = c.identity is not None and c.identity.lathe and _MODE not in there
     if always and wanted.get(_MODE) == _LATHE:
         del wanted[_MODE]  # firmware that is built for lathes alone has no such setting

@@ -3,35 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import field
 
+from core.key_declaration import Range, file_key, key_table
 from core.message import Message
 from core.table_schema import (
     Driver,
     DriverTable,
-    Field,
     FileReading,
     Finding,
-    Kind,
     TableReference,
     expected_table,
     written,
 )
 
 _SETTINGS, _WHEEL, _GUARD = "grblhal.settings", "io.analog.handwheel", "io.in.guard.at"
-_FIELDS = (
-    Field("port", Kind.TEXT, meaning="Serial port of the controller, or its address as `tcp://host:port`."),
-    Field(
-        "baud", Kind.WHOLE, low=110, high=4_000_000, default=115_200, meaning="Bit rate of the serial port."
-    ),
-    Field(
-        "x_mode",
-        Kind.CHOICE,
-        choices=("G7", "G8"),
-        default="G8",
-        meaning='How the controller reads X. "G8": a radius, which is the only accepted value.',
-    ),
-)
 # What a controller on a lathe has to be told, and nothing else.
 _NEEDED = (
     (13, 0, "reports must be in mm, because reports in inches have too few decimals"),
@@ -43,14 +29,18 @@ _LIMITS = ((110, "vmax", 60.0, "mm/min"), (120, "amax", 1.0, "mm/s²"))
 _TRAVEL = 130
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class GrblhalTable:
     """A motion controller with its own planner. ``settings`` are written at each connection and read back."""
 
-    port: str  # a serial device, or tcp://host:port
-    baud: int
-    x_mode: str  # G8, radius
-    settings: Mapping[int, float | str]
+    port: str = file_key(meaning="Serial port of the controller, or its address as `tcp://host:port`.")
+    baud: int = file_key(Range(110, 4_000_000), default=115_200, meaning="Bit rate of the serial port.")
+    x_mode: str = file_key(
+        default="G8",
+        choices=("G7", "G8"),
+        meaning='How the controller reads X. "G8": a radius, which is the only accepted value.',
+    )
+    settings: Mapping[int, float | str] = field(default_factory=dict)
 
 
 def _read(file: FileReading) -> Iterator[Finding]:
@@ -75,10 +65,6 @@ def _settings(file: FileReading) -> dict[int, float | str]:
     table = file.raw(_SETTINGS)
     entries = table.items() if isinstance(table, dict) else ()
     return {int(key): value for key, value in entries if key.isdecimal() and _is_setting(value)}
-
-
-def _table(file: FileReading) -> GrblhalTable:
-    return file.values.model(GrblhalTable, "grblhal", settings=_settings(file))
 
 
 def _rules(file: FileReading) -> Iterator[Finding]:
@@ -148,8 +134,8 @@ DRIVER = Driver(
     tables=(
         DriverTable(
             "grblhal",
-            _FIELDS,
-            _table,
+            GrblhalTable,
+            lambda file: {"settings": _settings(file)},
             ("settings",),
             _read,
             _rules,

@@ -71,7 +71,7 @@ class HalAxes:
         self.spindle_at: tuple[float, float] | None = None  # time and turns of the newest sample
         self.index_at = 0.0  # turns at which the spindle's index was, as HAL counts
         probe = config.probe
-        self.touch = HalTouch(config.period, active_low=probe.active_low) if probe is not None else None
+        self.touch = HalTouch(config.table.period, active_low=probe.active_low) if probe is not None else None
         # An axis that turns as the spindle: it stays at its count. None: it is held, or there is none.
         self._lent = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
         self.c_turns = False  # C has its count from the index, and is to turn to its place, or does

@@ -127,7 +127,7 @@ def columns(config: HalConfig) -> int:
 
 def _streams(border: Border, config: HalConfig) -> None:
     count = columns(config)
-    depth = round(4.0 * config.ahead / config.period)
+    depth = round(4.0 * config.table.ahead / config.table.period)
     border.alone.append(f"loadrt streamer depth={depth},{depth} cfg={'f' * count},{'f' * count}")
     border.own("switch-at", FLOAT, "out", "td-switch-at")
     border.own("play-b", BIT, "out", "td-play-b")
@@ -168,7 +168,7 @@ def _chain(border: Border, config: HalConfig) -> None:
     border.wire("td-heartbeat", "watchdog.input-0")
     border.wire("td-watch", "watchdog.enable-in")
     border.wire("td-alive", "watchdog.ok-out")
-    border.values.append(("watchdog.timeout-0", config.watchdog))
+    border.values.append(("watchdog.timeout-0", config.table.watchdog))
     _estop(border, config)
     border.add("and2", "td.whole", in0=_reached(border, config), in1="td-alive", out="td-whole")
     pins: dict[str, str] = {"ok_in": "td-whole", "reset": "td-reset", "ok_out": "td-ok"}
@@ -184,10 +184,10 @@ def _chain(border: Border, config: HalConfig) -> None:
         pins["fault_in"] = "td-fault"
     border.add("estop_latch", "td.chain", **pins)
     border.wire("td-charge", "td.chain.watchdog")
-    border.drives("hal.charge_pump", config.charge_pump, BIT, "td-charge")
+    border.drives("hal.charge_pump", config.table.charge_pump, BIT, "td-charge")
     border.add("and2", "td.power", in0="td-ok", in1="td-enable", out="td-power")
     border.add("not", "td.no-power", in_="td-power", out="td-no-power")
-    border.drives("hal.machine_on", config.machine_on, BIT, "td-power")
+    border.drives("hal.machine_on", config.table.machine_on, BIT, "td-power")
 
 
 def _patience(config: HalConfig) -> float:
@@ -209,10 +209,10 @@ def _estop(border: Border, config: HalConfig) -> None:
 
 def _reached(border: Border, config: HalConfig) -> str:
     """Return the signal of a released E-stop whose input is current: a frozen input is a pressed E-stop."""
-    if not config.link_fault:
+    if not config.table.link_fault:
         return "td-estop-ok"
     border.own("link-fault", BIT, "in", "td-link-fault")
-    border.reads("hal.link_fault", config.link_fault, BIT, "td-link-fault")
+    border.reads("hal.link_fault", config.table.link_fault, BIT, "td-link-fault")
     border.add("not", "td.linked", in_="td-link-fault", out="td-linked")
     border.add("and2", "td.reached", in0="td-estop-ok", in1="td-linked", out="td-reached")
     return "td-reached"

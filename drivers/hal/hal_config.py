@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from core.ports import PROBE
-from drivers.hal.hal_table import NEEDS, HalAxisPins, HalSpindlePins
+from drivers.hal.hal_table import NEEDS, HalAxisPins, HalSpindlePins, HalTable
 from drivers.setpoint_queue import AxisFigures
 
 
@@ -71,19 +71,13 @@ class HalPot:
 
 @dataclass(frozen=True, slots=True)
 class HalConfig:
-    """The whole machine. Times in seconds; ``ahead`` is what of setpoints HAL holds."""
+    """The whole machine. Times in seconds; ``file`` is the path of the table's HAL file."""
 
+    table: HalTable
     file: Path
-    thread: str
-    period: float
-    ahead: float
-    watchdog: float
     commit: float
     axes: tuple[HalAxis, ...]
     spindle: HalSpindle
-    machine_on: str = ""
-    charge_pump: str = ""
-    link_fault: str = ""
     outputs: Mapping[str, HalOutput] = field(default_factory=dict)
     inputs: Mapping[str, HalInput] = field(default_factory=dict)
     pots: Mapping[str, HalPot] = field(default_factory=dict)

@@ -49,7 +49,7 @@ class HalMachine:
         self.axes.clearing.append(self.spindle.index.clear)
         self.axes.connecting.append(self.spindle.index.forget)
         self.io = HalTerminals(config, self.link, clock.now)
-        self.samples = HalSamples(self.axes, config.period)
+        self.samples = HalSamples(self.axes, config.table.period)
         try:
             self.link.connect()
         except DriverError:

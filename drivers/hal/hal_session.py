@@ -93,8 +93,8 @@ def bridge_config(config: HalConfig) -> BridgeConfig:
             BridgeAxis(axis.name, axis.amax, axis.following_window, axis.following_time, axis.is_spindle)
             for axis in config.driven
         ),
-        period=config.period,
-        ahead=config.ahead,
+        period=config.table.period,
+        ahead=config.table.ahead,
         outputs={name: output.safe for name, output in config.outputs.items()},
         lamps=tuple(name for name, output in config.outputs.items() if output.lamp),
         inputs=tuple(config.inputs),
@@ -156,14 +156,14 @@ class HalSession:
             raise DriverError(
                 Message("{file}: the HAL file cannot be read: {error}", file=config.file, error=error)
             ) from error
-        folder, session = self._folder, session_text(machine, border, config.thread, str(config.file))
+        folder, session = self._folder, session_text(machine, border, config.table.thread, str(config.file))
         (folder / "bridge.json").write_text(
             json.dumps(_told(config, border, folder, fd, zero, only_check=only_check)), encoding="utf-8"
         )
         # The bridge holds a lock as long as it lives: waitusr of HAL never sees that one has died.
         # Behind such a one it goes on for a while: what it has is played, and the limits brake.
         ramp = max((axis.vmax / axis.amax for axis in config.driven), default=0.0)
-        left = _LINGER + config.ahead + config.watchdog + ramp
+        left = _LINGER + config.table.ahead + config.table.watchdog + ramp
         linger = f'[ -e "{folder / _IN_ORDER}" ] || sleep {left:.2f}\n'
         (folder / "linger.sh").write_text(linger, encoding="utf-8")
         (folder / "clear.sh").write_text(CLEAR_STREAMS, encoding="utf-8")

@@ -8,18 +8,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import field, fields
+from typing import Any
 
+from core.key_declaration import Range, Unit, file_key, key_table
 from core.message import Message
 from core.table_schema import (
     Driver,
     DriverTable,
-    Field,
     FileReading,
     Finding,
-    Kind,
     TableReference,
-    Unit,
     read_axes_and_spindle,
     written,
 )
@@ -48,178 +47,111 @@ _OFF_SWITCH = {
     21: 1.0,
 }  # homing methods whose mark is the edge of a home switch, and the way off it
 
-_FIELDS = (
-    Field("file", Kind.TEXT, meaning="HAL file, in the folder of the machine file."),
-    Field("thread", Kind.TEXT, default="servo-thread", meaning="Name of the servo thread in the HAL file."),
-    Field(
-        "period_ms",
-        Kind.NUMBER,
-        Unit.MILLISECONDS,
-        0.0002,
-        0.004,
-        default=0.001,
-        meaning="Period of the servo thread.",
-    ),
-    Field(
-        "ahead_ms",
-        Kind.NUMBER,
-        Unit.MILLISECONDS,
-        0.01,
-        0.5,
-        default=0.1,
-        meaning="Time for which HAL buffers setpoints. If the computer is late for longer, the axes stop.",
-    ),
-    Field(
-        "watchdog_ms",
-        Kind.NUMBER,
-        Unit.MILLISECONDS,
-        0.05,
-        1.0,
-        default=0.25,
-        meaning="Time without a sign of life from TurnDesk after which HAL removes drive power.",
-    ),
-    Field("machine_on", Kind.TEXT, default="", meaning="Bit in: on while the drives may have power."),
-    Field(
-        "charge_pump",
-        Kind.TEXT,
-        default="",
-        meaning="Bit in: changes in every period while TurnDesk, the bridge and HAL run; for a charge "
-        "pump or watchdog relay.",
-    ),
-    Field(
-        "link_fault",
-        Kind.TEXT,
-        default="",
-        meaning="Bit out: on while the inputs of the board are not up to date. It opens the E-stop "
-        "chain. Required for a board on a cable.",
-    ),
-)
+
+def _optional(*, meaning: str) -> Any:
+    """Declare a pin that a HAL file may leave out."""
+    return file_key(default="", meaning=meaning)
 
 
-def _optional(meanings: Mapping[str, str]) -> tuple[Field, ...]:
-    """Return a field for each pin that a HAL file may leave out."""
-    return tuple(Field(key, Kind.TEXT, default="", meaning=meaning) for key, meaning in meanings.items())
-
-
-_AXIS = (
-    Field("command", Kind.TEXT, meaning="Float in: commanded position."),
-    Field("feedback", Kind.TEXT, meaning="Float out: measured position."),
-    *_optional(
-        {
-            "enable": "Bit in: on while power to the axis drive is allowed.",
-            "fault": "Bit out: on while the drive reports a fault.",
-            "home": "Bit out: on while the axis is on its home switch.",
-            "limit_low": (
-                "Bit out: on at the lower limit switch. The axis stops with an alarm, except during homing."
-            ),
-            "limit_high": (
-                "Bit out: on at the upper limit switch. The axis stops with an alarm, except during homing."
-            ),
-            "index_enable": "Bit I/O: index enable of the encoder that supplies `feedback`.",
-        }
-    ),
-)
-_TURNS = _optional(
-    {
-        "speed": "Float in: commanded speed in rpm, negative with M04.",
-        "speed_abs": "Float in: unsigned commanded speed in rpm; requires `on` or `forward`.",
-        "on": "Bit in: on while the spindle is commanded to turn.",
-        "forward": "Bit in: on with M03.",
-        "reverse": "Bit in: on with M04.",
-        "position": ("Float out: position in revolutions, increasing with M03. Required with `encoder_ppr`."),
-        "velocity": "Float out: measured speed in rev/s.",
-        "at_speed": "Bit out: on while the drive reports that the spindle is at speed.",
-        "fault": "Bit out: on while the drive reports a fault.",
-        "index_enable": (
-            "Bit I/O: index enable of the encoder that supplies `position`. Threading and M19 "
-            "wait for this signal."
-        ),
-        "position_mode": "Bit in: switches the spindle drive to position mode for C.",
-        "in_position_mode": (
-            "Bit out: on while the drive is in position mode. Default: the drive does not report the mode."
-        ),
-        "orient": "Bit in: on while the spindle must hold the commanded angle.",
-        "orient_angle": "Float in: commanded angle in degrees.",
-        "orient_mode": ("s32 in: orientation direction: 0 shortest path, 1 as with M03, 2 as with M04."),
-        "is_oriented": "Bit out: on while the spindle is at the commanded angle.",
-    }
-)
-
-
-@dataclass(frozen=True, slots=True)
+@key_table
 class HalAxisPins:
-    """Pins of one axis; empty: it has none. Positions in mm (X a radius) or degrees.
+    """Pins of one axis; empty: it has none. Positions in mm (X a radius) or degrees."""
 
-    ``command`` float in, ``feedback`` float out, ``enable`` bit in; ``fault``, ``home``, ``limit_low``,
-    ``limit_high`` bit out, true when it is so; ``index_enable`` bit I/O of the encoder that ``feedback``
-    counts.
-    """
+    command: str = file_key(meaning="Float in: commanded position.")
+    feedback: str = file_key(meaning="Float out: measured position.")
+    enable: str = _optional(meaning="Bit in: on while power to the axis drive is allowed.")
+    fault: str = _optional(meaning="Bit out: on while the drive reports a fault.")
+    home: str = _optional(meaning="Bit out: on while the axis is on its home switch.")
+    limit_low: str = _optional(
+        meaning="Bit out: on at the lower limit switch. The axis stops with an alarm, except during homing."
+    )
+    limit_high: str = _optional(
+        meaning="Bit out: on at the upper limit switch. The axis stops with an alarm, except during homing."
+    )
+    index_enable: str = _optional(meaning="Bit I/O: index enable of the encoder that supplies `feedback`.")
 
-    command: str
-    feedback: str
-    enable: str = ""
-    fault: str = ""
-    home: str = ""
-    limit_low: str = ""
-    limit_high: str = ""
-    index_enable: str = ""
 
-
-@dataclass(frozen=True, slots=True)
+@key_table
 class HalSpindlePins:
-    """Pins of the spindle; empty: it has none.
+    """Pins of the spindle; empty: it has none."""
 
-    ``speed`` (rpm, signed) and ``speed_abs`` float in; ``on``, ``forward``, ``reverse`` bit in. ``position``
-    (turns, rising with M03) and ``velocity`` (turns/s) float out; ``at_speed``, ``fault`` bit out.
-    ``index_enable`` bit I/O of the encoder that ``position`` counts: with it a thread is found again after a
-    restart. ``position_mode`` bit in and ``in_position_mode`` bit out change the drive over to C and tell it.
-    ``orient`` bit in, ``orient_angle`` float in (degrees) and ``orient_mode`` s32 in (0 short way, 1 as
-    M03, 2 as M04) have it brought to an angle, as the component ``orient`` does; ``is_oriented`` bit out.
-    """
+    speed: str = _optional(meaning="Float in: commanded speed in rpm, negative with M04.")
+    speed_abs: str = _optional(
+        meaning="Float in: unsigned commanded speed in rpm; requires `on` or `forward`."
+    )
+    on: str = _optional(meaning="Bit in: on while the spindle is commanded to turn.")
+    forward: str = _optional(meaning="Bit in: on with M03.")
+    reverse: str = _optional(meaning="Bit in: on with M04.")
+    position: str = _optional(
+        meaning="Float out: position in revolutions, increasing with M03. Required with `encoder_ppr`."
+    )
+    velocity: str = _optional(meaning="Float out: measured speed in rev/s.")
+    at_speed: str = _optional(meaning="Bit out: on while the drive reports that the spindle is at speed.")
+    fault: str = _optional(meaning="Bit out: on while the drive reports a fault.")
+    index_enable: str = _optional(
+        meaning="Bit I/O: index enable of the encoder that supplies `position`. Threading and M19 wait "
+        "for this signal."
+    )
+    position_mode: str = _optional(meaning="Bit in: switches the spindle drive to position mode for C.")
+    in_position_mode: str = _optional(
+        meaning="Bit out: on while the drive is in position mode. Default: the drive does not report the "
+        "mode."
+    )
+    orient: str = _optional(meaning="Bit in: on while the spindle must hold the commanded angle.")
+    orient_angle: str = _optional(meaning="Float in: commanded angle in degrees.")
+    orient_mode: str = _optional(
+        meaning="s32 in: orientation direction: 0 shortest path, 1 as with M03, 2 as with M04."
+    )
+    is_oriented: str = _optional(meaning="Bit out: on while the spindle is at the commanded angle.")
 
-    speed: str = ""
-    speed_abs: str = ""
-    on: str = ""
-    forward: str = ""
-    reverse: str = ""
-    position: str = ""
-    velocity: str = ""
-    at_speed: str = ""
-    fault: str = ""
-    index_enable: str = ""
-    position_mode: str = ""
-    in_position_mode: str = ""
-    orient: str = ""
-    orient_angle: str = ""
-    orient_mode: str = ""
-    is_oriented: str = ""
 
-
-@dataclass(frozen=True, slots=True)
+@key_table
 class HalTable:
     """A machine behind LinuxCNC's HAL. Times in seconds; ``ahead`` is what of setpoints HAL holds."""
 
-    file: str
-    thread: str
-    period: float
-    ahead: float
-    watchdog: float
-    machine_on: str
-    charge_pump: str
-    link_fault: str
-    axes: Mapping[str, HalAxisPins]
-    spindle: HalSpindlePins
+    file: str = file_key(meaning="HAL file, in the folder of the machine file.")
+    thread: str = file_key(default="servo-thread", meaning="Name of the servo thread in the HAL file.")
+    period: float = file_key(
+        Range(0.0002, 0.004, Unit.MILLISECONDS),
+        name="period_ms",
+        default=0.001,
+        meaning="Period of the servo thread.",
+    )
+    ahead: float = file_key(
+        Range(0.01, 0.5, Unit.MILLISECONDS),
+        name="ahead_ms",
+        default=0.1,
+        meaning="Time for which HAL buffers setpoints. If the computer is late for longer, the axes stop.",
+    )
+    watchdog: float = file_key(
+        Range(0.05, 1.0, Unit.MILLISECONDS),
+        name="watchdog_ms",
+        default=0.25,
+        meaning="Time without a sign of life from TurnDesk after which HAL removes drive power.",
+    )
+    machine_on: str = file_key(default="", meaning="Bit in: on while the drives may have power.")
+    charge_pump: str = file_key(
+        default="",
+        meaning="Bit in: changes in every period while TurnDesk, the bridge and HAL run; for a charge pump "
+        "or watchdog relay.",
+    )
+    link_fault: str = file_key(
+        default="",
+        meaning="Bit out: on while the inputs of the board are not up to date. It opens the E-stop chain. "
+        "Required for a board on a cable.",
+    )
+    axes: Mapping[str, HalAxisPins] = field(default_factory=dict)
+    spindle: HalSpindlePins = field(default_factory=HalSpindlePins)
 
 
 def _read(file: FileReading) -> Iterator[Finding]:
-    yield from read_axes_and_spindle(file, (_AXES, _AXIS), (_SPINDLE, _TURNS))
+    yield from read_axes_and_spindle(file, (_AXES, HalAxisPins), (_SPINDLE, HalSpindlePins))
 
 
-def _table(file: FileReading) -> HalTable:
-    keys = {"period": "period_ms", "ahead": "ahead_ms", "watchdog": "watchdog_ms"}
+def _pin_tables(file: FileReading) -> dict[str, object]:
+    """The tables inside."""
     axes = {name: file.values.model(HalAxisPins, f"{_AXES}.{name}") for name in file.names(_AXES)}
-    spindle = file.values.model(HalSpindlePins, _SPINDLE)
-    return file.values.model(HalTable, "hal", keys, axes=axes, spindle=spindle)
+    return {"axes": axes, "spindle": file.values.model(HalSpindlePins, _SPINDLE)}
 
 
 def _rules(file: FileReading) -> Iterator[Finding]:
@@ -458,8 +390,8 @@ DRIVER = Driver(
     tables=(
         DriverTable(
             "hal",
-            _FIELDS,
-            _table,
+            HalTable,
+            _pin_tables,
             ("axes", "spindle"),
             _read,
             _rules,
@@ -472,9 +404,9 @@ DRIVER = Driver(
                     "HAL pins of one axis; the last word of the heading is the axis name. "
                     "Positions are in mm (X: a radius) or degrees. The homing method decides which "
                     "switches are required.",
-                    _AXIS,
+                    HalAxisPins,
                 ),
-                TableReference("hal.spindle", "HAL pins of the spindle.", _TURNS),
+                TableReference("hal.spindle", "HAL pins of the spindle.", HalSpindlePins),
             ),
         ),
     ),

@@ -14,7 +14,7 @@ from drivers.inverter.huanyang_hy import HuanyangHy
 from drivers.inverter.inverter_attendant import DEAD, Attendant
 from drivers.inverter.inverter_family import Family
 from drivers.inverter.inverter_obedience import PRESS, Agreement
-from drivers.inverter.inverter_table import InverterConfig
+from drivers.inverter.inverter_table import InverterTable
 from drivers.inverter.modbus_rtu import Modbus
 from drivers.serial_line import Wire
 
@@ -41,7 +41,7 @@ class InverterSpindle:
 
     def __init__(
         self,
-        config: InverterConfig,
+        config: InverterTable,
         attendant: Attendant,
         clock: Clock,
         *,
@@ -186,7 +186,7 @@ class InverterSpindle:
 # --- From a configuration to an inverter that is attended.
 
 
-def attendant(config: InverterConfig, open_wire: Callable[[], Wire], clock: Clock) -> Attendant:
+def attendant(config: InverterTable, open_wire: Callable[[], Wire], clock: Clock) -> Attendant:
     """Whoever attends this inverter; nothing is opened yet. ``open_wire`` raises WireError."""
 
     def opened() -> Family:
@@ -195,9 +195,9 @@ def attendant(config: InverterConfig, open_wire: Callable[[], Wire], clock: Cloc
     return Attendant(opened, clock, config.comm_loss, config.rpm_max * config.hz_per_rpm)
 
 
-def family(config: InverterConfig, wire: Wire, clock: Clock) -> Family:
+def family(config: InverterTable, wire: Wire, clock: Clock) -> Family:
     """The family that the machine file names, on an open line."""
     if config.family == "huanyang":
-        return HuanyangHy(wire, clock, config.unit, config.character)
-    line = Modbus(wire, clock, config.unit, config.character)
+        return HuanyangHy(wire, clock, config.unit, config.line.character)
+    line = Modbus(wire, clock, config.unit, config.line.character)
     return HitachiWj200(line, clock) if config.family == "hitachi-wj200" else DeltaVfdB(line)

@@ -2,61 +2,37 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from core.table_schema import Driver, DriverTable, Field, FileReading, Kind, Unit
-
-_FIELDS = (
-    Field("enabled", Kind.FLAG, default=False, meaning="true: TurnDesk serves an MTConnect adapter."),
-    Field(
-        "bind",
-        Kind.TEXT,
-        default="127.0.0.1",
-        meaning='Address at which agents connect. "0.0.0.0": from all computers, without a password.',
-    ),
-    Field("port", Kind.WHOLE, low=1, high=65535, default=7878, meaning="TCP port of the adapter."),
-    Field(
-        "heartbeat_ms",
-        Kind.NUMBER,
-        Unit.MILLISECONDS,
-        0.001,
-        1800.0,
-        default=10.0,
-        meaning=(
-            "Interval at which the agent must send its ping; an agent that misses two of them is "
-            "disconnected."
-        ),
-    ),
-    Field(
-        "device",
-        Kind.TEXT,
-        default="TurnDesk",
-        meaning="Name of the device in MTConnect; a different one for each machine.",
-    ),
-)
+from core.key_declaration import Range, Unit, file_key, key_table
+from core.table_schema import Driver, DriverTable
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class MtconnectTable:
     """Where agents find the adapter, how often they shall ping (``heartbeat``, s), and the device's name."""
 
-    bind: str
-    port: int
-    heartbeat: float
-    enabled: bool = False
-    device: str = "TurnDesk"
-
-
-def _table(file: FileReading) -> MtconnectTable:
-    return file.values.model(MtconnectTable, "mtconnect", {"heartbeat": "heartbeat_ms"})
+    enabled: bool = file_key(default=False, meaning="true: TurnDesk serves an MTConnect adapter.")
+    bind: str = file_key(
+        default="127.0.0.1",
+        meaning='Address at which agents connect. "0.0.0.0": from all computers, without a password.',
+    )
+    port: int = file_key(Range(1, 65535), default=7878, meaning="TCP port of the adapter.")
+    heartbeat: float = file_key(
+        Range(0.001, 1800.0, Unit.MILLISECONDS),
+        name="heartbeat_ms",
+        default=10.0,
+        meaning="Interval at which the agent must send its ping; an agent that misses two of them is "
+        "disconnected.",
+    )
+    device: str = file_key(
+        default="TurnDesk", meaning="Name of the device in MTConnect; a different one for each machine."
+    )
 
 
 DRIVER = Driver(
     tables=(
         DriverTable(
             "mtconnect",
-            _FIELDS,
-            _table,
+            MtconnectTable,
             purpose="The MTConnect adapter, which reports the state of the machine to MTConnect agents.",
         ),
     )

@@ -4,39 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
+from core.key_declaration import file_key, key_table
 from core.message import Message
-from core.table_schema import AT_PENDANT, Driver, DriverTable, Field, FileReading, Finding, Kind, written
+from core.table_schema import AT_PENDANT, Driver, DriverTable, FileReading, Finding, written
 from drivers.pendant.input_codes import button_of, wheel_of
 
 _PATH, _WHEEL = "pendant", "io.analog.handwheel"
-_FIELDS = (
-    Field(
-        "device",
-        Kind.TEXT,
-        meaning=(
-            "Name of the USB device or its `vendor:product` in hexadecimal, as "
-            "`/proc/bus/input/devices` shows them."
-        ),
-    ),
-    Field(
-        "serial",
-        Kind.TEXT,
-        default="",
-        meaning="Serial number, to distinguish two identical devices. Default: any.",
-    ),
-    Field(
-        "counts",
-        Kind.CHOICE,
-        choices=("steps", "place"),
-        default="steps",
-        meaning=(
-            '"steps": the handwheel reports detents; "place": the handwheel reports its '
-            "position, 0 to 255, as a Contour Shuttle does."
-        ),
-    ),
-)
 STOPS = ("hold", "start_inhibit")  # what must not be believed to be there when it is gone
 _MAY = re.compile(r"hold|start_inhibit|wheel_\w+|jog_rapid|jog_[xyzabc]_(plus|minus)")
 _STARTS = re.compile(r"(cycle_?)?start.*|.*palms?.*|spindle_auto", re.IGNORECASE)
@@ -46,16 +20,26 @@ NO_START = (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class PendantModel:
     """``device`` is its name or ``vendor:product`` in hexadecimal; ``serial`` tells two alike apart.
 
     ``counts``: its wheel tells steps, as REL says, or its place (0…255), as a Shuttle does.
     """
 
-    device: str
-    serial: str
-    counts: str
+    device: str = file_key(
+        meaning="Name of the USB device or its `vendor:product` in hexadecimal, as "
+        "`/proc/bus/input/devices` shows them."
+    )
+    serial: str = file_key(
+        default="", meaning="Serial number, to distinguish two identical devices. Default: any."
+    )
+    counts: str = file_key(
+        default="steps",
+        choices=("steps", "place"),
+        meaning='"steps": the handwheel reports detents; "place": the handwheel reports its position, 0 to '
+        "255, as a Contour Shuttle does.",
+    )
 
 
 def _rules(file: FileReading) -> Iterator[Finding]:
@@ -137,8 +121,7 @@ DRIVER = Driver(
     tables=(
         DriverTable(
             _PATH,
-            _FIELDS,
-            lambda file: file.values.model(PendantModel, _PATH),
+            PendantModel,
             rules=_rules,
             purpose=(
                 "A pendant, gamepad or jog dial on USB. Its buttons are inputs of [io.in] at "

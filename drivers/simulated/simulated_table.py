@@ -3,25 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from core.key_declaration import Range, Unit, file_key, key_table
 from core.message import Message
-from core.table_schema import (
-    Driver,
-    DriverTable,
-    Field,
-    FileReading,
-    Finding,
-    Kind,
-    TableReference,
-    Unit,
-    read_table,
-    written,
-)
-
-if TYPE_CHECKING:
-    from drivers.simulators.plant_config import PlannedFault
+from core.table_schema import Driver, DriverTable, FileReading, Finding, TableReference, read_table, written
 
 FAULTS = (
     "jam",
@@ -45,100 +30,72 @@ FAULTS = (
 _OF_AN_AXIS = frozenset(
     ("jam", "encoder_stuck", "runaway", "drive_fault", "loose_gib", "encoder_ripple", "encoder_missed")
 )
-_FIELDS = (
-    Field(
-        "seed",
-        Kind.WHOLE,
-        low=0,
-        high=2**31,
-        default=1,
-        meaning="Seed of the random variation of times; the same seed produces the same run.",
-    ),
-    Field(
-        "realtime",
-        Kind.FLAG,
-        default=False,
-        meaning="true: a run without a screen also takes real time. false: it runs as fast as possible.",
-    ),
-)
-_FAULT = (
-    Field(
-        "at", Kind.NUMBER, Unit.SECONDS, 0.0, 1e6, meaning="Time after the start at which the fault occurs."
-    ),
-    Field("what", Kind.CHOICE, choices=FAULTS, meaning="Fault that occurs."),
-    Field("axis", Kind.TEXT, default="", meaning="Axis that has the fault; only for faults of an axis."),
-    Field(
-        "value",
-        Kind.NUMBER,
-        Unit.PLAIN,
-        -1e6,
-        1e6,
+
+
+@key_table
+class PlannedFault:
+    """``what`` happens ``at`` so many seconds, for ``seconds``, or for good where that is 0."""
+
+    at: float = file_key(
+        Range(0.0, 1e6, Unit.SECONDS), meaning="Time after the start at which the fault occurs."
+    )
+    what: str = file_key(choices=FAULTS, meaning="Fault that occurs.")
+    axis: str = file_key(default="", meaning="Axis that has the fault; only for faults of an axis.")
+    value: float = file_key(
+        Range(-1e6, 1e6),
         default=0.0,
-        meaning=(
-            "Size of the fault: mm/s of a runaway, mm of play or encoder error, a fraction for "
-            "faults of the spindle, belt and pots."
-        ),
-    ),
-    Field(
-        "seconds",
-        Kind.NUMBER,
-        Unit.SECONDS,
-        0.0,
-        1e6,
-        default=0.0,
-        meaning="Duration of the fault. 0: it remains.",
-    ),
-    Field("text", Kind.TEXT, default="", meaning="Text that the drive reports with the fault."),
-    Field(
-        "turn",
-        Kind.NUMBER,
-        Unit.PLAIN,
-        0.1,
-        1000.0,
+        meaning="Size of the fault: mm/s of a runaway, mm of play or encoder error, a fraction for faults "
+        "of the spindle, belt and pots.",
+    )
+    seconds: float = file_key(
+        Range(0.0, 1e6, Unit.SECONDS), default=0.0, meaning="Duration of the fault. 0: it remains."
+    )
+    text: str = file_key(default="", meaning="Text that the drive reports with the fault.")
+    turn: float = file_key(
+        Range(0.1, 1000.0),
         default=5.0,
         meaning="Travel in mm or degrees after which an encoder error repeats.",
-    ),
-)
+    )
 
 
-@dataclass(frozen=True, slots=True)
+class _Tip:
+    """Where the slides are when a tip is at part zero, mm."""
+
+    x: float = file_key(
+        Range(-5000.0, 5000.0, Unit.LENGTH),
+        meaning="X position of the axis when this tool tip is at part zero (a radius).",
+    )
+    z: float = file_key(
+        Range(-5000.0, 5000.0, Unit.LENGTH),
+        meaning="Z position of the axis when this tool tip is at part zero.",
+    )
+
+
+@key_table
 class SimulatedTable:
     """The simulated machine's own settings."""
 
-    seed: int = 1
-    realtime: bool = False  # a run without a screen keeps the machine's pace too
+    seed: int = file_key(
+        Range(0, 2**31),
+        default=1,
+        meaning="Seed of the random variation of times; the same seed produces the same run.",
+    )
+    realtime: bool = file_key(
+        default=False,
+        meaning="true: a run without a screen also takes real time. false: it runs as fast as possible.",
+    )
     faults: tuple[PlannedFault, ...] = ()
     tips: tuple[tuple[float, float], ...] = ()  # where the slides stand when a tip is on part zero, mm
 
 
-_TIP = (
-    Field(
-        "x",
-        Kind.NUMBER,
-        Unit.LENGTH,
-        -5000.0,
-        5000.0,
-        meaning="X position of the axis when this tool tip is at part zero (a radius).",
-    ),
-    Field(
-        "z",
-        Kind.NUMBER,
-        Unit.LENGTH,
-        -5000.0,
-        5000.0,
-        meaning="Z position of the axis when this tool tip is at part zero.",
-    ),
-)
-
-
 def _read(file: FileReading) -> Iterator[Finding]:
-    for name, fields in (("sim.faults", _FAULT), ("sim.tips", _TIP)):
+    for name, kind in (("sim.faults", PlannedFault), ("sim.tips", _Tip)):
         entries = file.raw(name)
         if entries is not None and not isinstance(entries, list):
             yield Finding(name, written(entries), "expected a list of tables, [{...}]")
             continue
         for path, entry in zip(_paths(file, name), entries or (), strict=True):
-            yield from read_table(entry, fields, path, file.values)
+            yield from read_table(entry, kind, path, file.values)
 
 
 def _paths(file: FileReading, name: str = "sim.faults") -> list[str]:
@@ -168,25 +125,22 @@ def _rules(file: FileReading) -> Iterator[Finding]:
             )
 
 
-def _table(file: FileReading) -> SimulatedTable:
-    number = file.values.number
-    tips = tuple((number(f"{path}.x"), number(f"{path}.z")) for path in _paths(file, "sim.tips"))
-    return file.values.model(SimulatedTable, "sim", faults=tuple(_faults(file)), tips=tips)
-
-
-def _faults(file: FileReading) -> Iterator[PlannedFault]:
-    for path in _paths(file):
-        from drivers.simulators.plant_config import PlannedFault  # noqa: PLC0415  few files plan any
-
-        yield file.values.model(PlannedFault, path)
+def _listed(file: FileReading) -> dict[str, object]:
+    """The entries of the two lists."""
+    values = file.values
+    tips = ((values.number(f"{path}.x"), values.number(f"{path}.z")) for path in _paths(file, "sim.tips"))
+    return {
+        "faults": tuple(values.model(PlannedFault, path) for path in _paths(file)),
+        "tips": tuple(tips),
+    }
 
 
 DRIVER = Driver(
     tables=(
         DriverTable(
             "sim",
-            _FIELDS,
-            _table,
+            SimulatedTable,
+            _listed,
             ("faults", "tips"),
             _read,
             _rules,
@@ -197,13 +151,13 @@ DRIVER = Driver(
                     "[sim.faults]",
                     "A fault of the simulated machine. Write the heading in double square brackets; this "
                     "table may occur any number of times.",
-                    _FAULT,
+                    PlannedFault,
                 ),
                 TableReference(
                     "[sim.tips]",
                     "A tool tip of the simulated machine, for testing a tool setter. The heading may "
                     "occur any number of times.",
-                    _TIP,
+                    _Tip,
                 ),
             ),
         ),

@@ -220,7 +220,7 @@ class HalFarEnd:
     # --- one period ---------------------------------------------------------------------------------------
 
     def _period(self, t: float) -> None:
-        period = self.config.period
+        period = self.config.table.period
         if not self.stands:
             self._read_board(t)
             self.thread.run(period)
@@ -243,7 +243,7 @@ class HalFarEnd:
             return
         self.errors += 1
         if self.errors >= _PACKET_ERRORS:  # io_error: the driver reads nothing any more until it is reloaded
-            self._set(self.config.link_fault, True)
+            self._set(self.config.table.link_fault, True)
 
     def _coast(self, t: float, period: float) -> None:
         """A board without its computer: its watchdog takes power, spindle and outputs."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from drivers.setpoint_queue import AxisFigures
+from drivers.simulated.simulated_table import PlannedFault
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,19 +64,6 @@ class SimSetter:
     z: float
     width: float
     tips: tuple[tuple[float, float], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class PlannedFault:
-    """``what`` happens ``at`` so many seconds, for ``seconds``, or for good where that is 0."""
-
-    at: float
-    what: str
-    axis: str = ""
-    value: float = 0.0
-    seconds: float = 0.0
-    text: str = ""
-    turn: float = 5.0  # mm or degrees of one turn of an encoder
 
 
 @dataclass(frozen=True, slots=True)

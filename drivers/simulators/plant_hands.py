@@ -8,8 +8,8 @@ from functools import partial
 from core.message import Message
 from core.ports import DriverError
 from drivers.operator_station import StationHands
+from drivers.simulated.simulated_table import PlannedFault
 from drivers.simulators.plant import Plant
-from drivers.simulators.plant_config import PlannedFault
 from drivers.simulators.servo_axis import Servo
 from drivers.simulators.worn_axis import TURN
 

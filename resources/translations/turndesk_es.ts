@@ -8341,7 +8341,7 @@
     <message>
       <location filename="app/offsets/cell_table_view.py" />
       <source>SET POS.</source>
-      <translation>FIJAR POS.</translation>
+      <translation>FIJAR</translation>
     </message>
     <message>
       <location filename="app/offsets/cell_table_view.py" />
@@ -15910,8 +15910,8 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
-      <source>Check the tool. Read on the screen which functions will restart, then press Cycle Start. Measure this part: it is not counted until you add it (F10, 2, F2)</source>
-      <translation>Revise la herramienta. Lea en la pantalla qué funciones van a arrancar, luego pulse arranque de ciclo. Mida esta pieza: no se cuenta hasta que usted la añade (F10, 2, F2)</translation>
+      <source>Check the tool. Read what will restart, then press Cycle Start. Measure this part, and count it by hand if it is good (F10, 2, F2)</source>
+      <translation>Revise la herramienta. Lea qué va a arrancar y pulse arranque de ciclo. Mida esta pieza y cuéntela a mano si es buena (F10, 2, F2)</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -18050,8 +18050,8 @@
     </message>
     <message>
       <location filename="core/executor/supervision.py" />
-      <source>DRIVER PROCESS SWITCHED OFF SPINDLE AND OUTPUTS</source>
-      <translation>EL PROCESO DE DRIVERS APAGÓ EL HUSILLO Y LAS SALIDAS</translation>
+      <source>DRIVER HOST STOPPED SPINDLE/OUTPUTS</source>
+      <translation>EL PROCESO DE DRIVERS APAGÓ EL HUSILLO O SALIDAS</translation>
     </message>
     <message>
       <location filename="core/executor/supervision.py" />

@@ -13,9 +13,8 @@ from core.ports import DriverError
 from core.table_schema import MachineFileError
 from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import SimAxes, Simulation, build_simulation
-from drivers.simulated.simulated_table import FAULTS, SimulatedTable
+from drivers.simulated.simulated_table import FAULTS, PlannedFault, SimulatedTable
 from drivers.simulators.plant import Plant
-from drivers.simulators.plant_config import PlannedFault
 from tests.coded import raises_code
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 

@@ -11,7 +11,7 @@ import pytest
 from core.ports import FloatArray
 from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import Simulation
-from drivers.simulators.plant_config import PlannedFault
+from drivers.simulated.simulated_table import PlannedFault
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 
 WN = 2.0 * math.pi * 40.0

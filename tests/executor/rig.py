@@ -118,7 +118,7 @@ class Rig:
         setup = Setup(
             tools=dict(tools or {}),
             limits=control_limits(self.machine),
-            last_rapid=self.machine.manual_rapid,
+            last_rapid=self.machine.limits.manual_rapid,
             **changes,  # type: ignore[arg-type]
         )
         job = make_job(Source(name, text), setup)

@@ -16,7 +16,7 @@ from core.executor.snapshot import State
 from core.ports import DriverError, Stop
 from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import build_simulation
-from drivers.simulators.plant_config import PlannedFault
+from drivers.simulated.simulated_table import PlannedFault
 from tests.executor.rig import FINE, Rig
 
 

@@ -60,7 +60,7 @@ def test_an_axis_that_is_not_homed_has_no_travel_and_goes_at_a_tenth() -> None:
     controller = PlayedController()
     jogger, context = jogger_on(controller)
     context.sample = context.sample._replace(homed=(False, False, False))
-    tenth = 0.1 * min(context.machine.axis("X").vmax, context.machine.manual_rapid)
+    tenth = 0.1 * min(context.machine.axis("X").vmax, context.machine.limits.manual_rapid)
     assert jogger.move("X", 500.0, LEASE)
     assert controller.jogged == [("X", pytest.approx(tenth), LEASE, None)]
 

@@ -36,7 +36,7 @@ RAPID = 100 * INCH / 60
 def wheeled(*inputs: str, per: int = 1) -> Machine:
     """The shipped lathe with a handwheel and these inputs beside it."""
     machine = load_machine()
-    wheel = AnalogModel("handwheel", "wheel", 0.0, 1.0, counts_per_click=per)
+    wheel = AnalogModel("handwheel", "wheel", (0.0, 1.0), counts_per_click=per)
     wired = {name: InputModel(name, f"test {name}") for name in inputs}
     return dataclasses.replace(
         machine,

@@ -21,7 +21,7 @@ CUT = "G90G94F300\nG71G72\nG01Z-50F300\nM30\n"
 
 def wired(*names: str) -> Machine:
     machine = load_machine()
-    wheel = AnalogModel("handwheel", "wheel", 0.0, 1.0)
+    wheel = AnalogModel("handwheel", "wheel", (0.0, 1.0))
     inputs = {name: InputModel(name, f"test {name}") for name in names}
     hardware = dataclasses.replace(machine.hardware, analog={"handwheel": wheel})
     return dataclasses.replace(machine, inputs={**machine.inputs, **inputs}, hardware=hardware)

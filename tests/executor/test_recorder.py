@@ -108,7 +108,7 @@ class Loadless:
 @pytest.mark.parametrize("own", [True, False])
 def test_the_load_that_an_input_tells_fills_what_the_samples_leave_open(own: bool) -> None:
     machine = load_machine()
-    pots = {"spindle_load": AnalogModel("spindle_load", "AI-1", 0.0, 150.0)}
+    pots = {"spindle_load": AnalogModel("spindle_load", "AI-1", (0.0, 150.0))}
     hardware = dataclasses.replace(machine.hardware, analog=pots)
     kind = type("LoadRecorded", (Recorded,), {"own": own})
     it: Recorded = kind(machine=dataclasses.replace(machine, hardware=hardware))

@@ -35,7 +35,7 @@ def with_setter(setter: SetterModel = SETTER, *inputs: str, tip: tuple[float, fl
 
 def wheeled(machine: Machine) -> Machine:
     """With a handwheel."""
-    analog = {"handwheel": AnalogModel("handwheel", "wheel", 0.0, 1.0)}
+    analog = {"handwheel": AnalogModel("handwheel", "wheel", (0.0, 1.0))}
     return dataclasses.replace(machine, hardware=dataclasses.replace(machine.hardware, analog=analog))
 
 

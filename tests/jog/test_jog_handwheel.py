@@ -45,7 +45,7 @@ class Scene:
 
     def __post_init__(self) -> None:
         machine = load_machine()
-        wheel = {"handwheel": AnalogModel("handwheel", "w", 0.0, 1.0, counts_per_click=4)}
+        wheel = {"handwheel": AnalogModel("handwheel", "w", (0.0, 1.0), counts_per_click=4)}
         machine = dataclasses.replace(
             machine,
             inputs={**machine.inputs, **{name: InputModel(name, f"t {name}") for name in self.switches}},

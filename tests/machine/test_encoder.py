@@ -27,10 +27,10 @@ def with_encoder(*changes: tuple[str, str]) -> str:
 
 def test_an_encoder_that_is_a_node() -> None:
     hardware = parse_machine(with_encoder(), "can").hardware
-    assert hardware.table(EncoderTable) == EncoderTable("turns", 0x6004, 0, 4096)
+    assert hardware.table(EncoderTable) == EncoderTable(node="turns", counts_per_rev=4096)
     inverter = hardware.table(InverterTable)
     assert inverter is not None
-    assert inverter.config.disagree == pytest.approx(0.15)
+    assert inverter.disagree == pytest.approx(0.15)
 
 
 def test_an_encoder_at_a_drive() -> None:
@@ -40,7 +40,7 @@ def test_an_encoder_at_a_drive() -> None:
     )
     found = parse_machine(text, "can").hardware.table(EncoderTable)
     assert found is not None
-    assert (found.node, found.index, found.sub, found.counts_per_rev) == ("Z", 0x60E4, 1, -2000)
+    assert (found.node, *found.address, found.counts_per_rev) == ("Z", 0x60E4, 1, -2000)
 
 
 @pytest.mark.parametrize(

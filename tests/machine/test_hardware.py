@@ -14,8 +14,7 @@ from drivers.canopen.canopen_nodes import CanTerminal, can_terminal
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.grblhal.grblhal_table import GrblhalTable
 from drivers.inverter.inverter_table import InverterTable
-from drivers.simulated.simulated_table import SimulatedTable
-from drivers.simulators.plant_config import PlannedFault
+from drivers.simulated.simulated_table import PlannedFault, SimulatedTable
 from tests.texts import text as wording
 
 CAN = resources.machine_file("gt75-canopen.toml")
@@ -43,19 +42,18 @@ def assert_refused(text: str, path: str, expected: str) -> None:
 
 def test_shipped_bus_in_model_units() -> None:
     machine = parse_machine(CAN, "can")
-    table = machine.hardware.table(CanopenTable)
-    assert table is not None
-    bus = table.bus
+    bus = machine.hardware.table(CanopenTable)
+    assert bus is not None
     assert (bus.interface, bus.channel, bus.bitrate) == ("socketcan", "can0", 1_000_000)
-    assert (bus.sync, bus.heartbeat, table.record, bus.host_id) == (0.01, 0.1, 0.02, 127)
-    assert [(node.name, node.id, node.profile) for node in table.nodes] == [
+    assert (bus.sync, bus.heartbeat, bus.record, bus.host_id) == (0.01, 0.1, 0.02, 127)
+    assert [(node.name, node.id, node.profile) for node in bus.nodes] == [
         ("X", 1, 402),
         ("Z", 2, 402),
         ("spindle", 3, 402),
         ("io", 10, 401),
     ]
-    assert (0x6007, 0, 3) in table.nodes[0].sdo
-    assert table.nodes[3].sdo == ()  # "all" means the drives
+    assert (0x6007, 0, 3) in bus.nodes[0].sdo
+    assert bus.nodes[3].sdo == ()  # "all" means the drives
     assert machine.hardware.spindle_driver == "cia402"
     assert machine.hardware.homes["X"].method == 1
     assert machine.hardware.homes["X"].latch == pytest.approx(6 * 25.4 / 60)
@@ -86,7 +84,7 @@ def test_other_lines() -> None:
     machine = parse_machine(resources.machine_file("gt75-vfd.toml"), "vfd")
     vfd, dnc = machine.hardware.table(InverterTable), machine.hardware.table(DncModel)
     assert vfd is not None
-    assert (vfd.config.family, vfd.line.baud, vfd.line.parity, vfd.config.comm_loss) == (
+    assert (vfd.family, vfd.line.baud, vfd.line.parity, vfd.comm_loss) == (
         "delta-vfdb",
         9600,
         "N",

@@ -40,18 +40,19 @@ def test_shipped_lathe_in_model_units() -> None:
     assert x.travel == pytest.approx((-101.6, 101.6))
     assert z.travel == pytest.approx((-152.4, 152.4))
     assert (x.vmax, x.amax) == pytest.approx((127.0, 3048.0))  # 300 in/min, 120 in/s²
-    assert (x.count, machine.resolution) == pytest.approx((0.00127, 0.00127))
+    assert (x.count, machine.limits.resolution) == pytest.approx((0.00127, 0.00127))
     assert c.travel is None
     assert c.vmax == pytest.approx(1200.0)  # 200 rpm in degrees/s
-    assert machine.max_feed == 300 * 25.4 / 60  # the very number an F300 word gives
-    assert machine.manual_rapid == 100 * 25.4 / 60
+    assert machine.limits.max_feed == 300 * 25.4 / 60  # the very number an F300 word gives
+    assert machine.limits.manual_rapid == 100 * 25.4 / 60
 
 
 def test_shipped_times_spindle_and_interlocks() -> None:
     machine = load_machine(None)
     timing, spindle = machine.timing, machine.spindle
     assert (timing.commit, timing.lookahead, timing.low_water, timing.lease) == (0.03, 1.0, 0.08, 0.2)
-    assert (timing.setpoint, timing.collet_open, timing.collet_close) == (0.001, 0.25, 0.3)
+    assert timing.setpoint == 0.001
+    assert (machine.collet.open_time, machine.collet.close_time) == (0.25, 0.3)
     assert (spindle.rpm_min, spindle.rpm_max, spindle.accel, spindle.decel) == (50, 3500, 1500, 2500)
     assert (spindle.at_speed, spindle.at_speed_time, spindle.timeout) == (0.05, 0.3, 5)
     assert not machine.interlocks.spindle_with_collet_open

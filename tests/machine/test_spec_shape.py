@@ -37,9 +37,9 @@ def test_the_example_of_the_specification_loads() -> None:
     assert not machine.c_enabled
     assert (c.amax, c.following_window, c.in_position) == pytest.approx((3600.0, 5.0, 0.1))  # 600 rpm/s
     assert machine.spindle.decel == 1500
-    assert (machine.max_feed, machine.manual_rapid) == pytest.approx((127.0, 100 * 25.4 / 60))
-    assert (machine.resolution, machine.clearance) == pytest.approx((0.00127, 31.75))
-    assert (machine.timing.collet_open, machine.timing.collet_close) == (0.5, 0.5)
+    assert (machine.limits.max_feed, machine.limits.manual_rapid) == pytest.approx((127.0, 100 * 25.4 / 60))
+    assert (machine.limits.resolution, machine.limits.clearance) == pytest.approx((0.00127, 31.75))
+    assert (machine.collet.open_time, machine.collet.close_time) == (0.5, 0.5)
     assert machine.hardware.analog["spindle_pot"].switch == "spindle_auto"
 
 
@@ -71,7 +71,7 @@ def test_figures_of_slides_that_say_nothing_follow_from_their_speed_and_count() 
         # Position loop of 40 Hz, damping 1: lag 2 / (2 · 3.1416 · 40) s = 7.958 ms, at 127 mm/s, twice
         assert slide.following_window == pytest.approx(2.0213, abs=1e-4)
         assert slide.in_position == pytest.approx(4 * 0.00127)
-    assert machine.max_feed == pytest.approx(127.0)
+    assert machine.limits.max_feed == pytest.approx(127.0)
 
 
 def test_a_slow_slide_limits_feed_and_hand_rapid() -> None:
@@ -79,7 +79,7 @@ def test_a_slow_slide_limits_feed_and_hand_rapid() -> None:
         "vmax = 300", "vmax = 60", 1
     )
     machine = parse_machine(text.replace("clearance =", "#"), "t")
-    assert machine.max_feed == machine.manual_rapid == pytest.approx(25.4)  # 60 in/min
+    assert machine.limits.max_feed == machine.limits.manual_rapid == pytest.approx(25.4)  # 60 in/min
 
 
 def test_a_lathe_without_a_c_axis_needs_no_table_for_it() -> None:
@@ -122,7 +122,7 @@ def test_what_has_no_safe_default_is_refused(line: str, path: str) -> None:
 
 def test_the_shipped_lathe_leaves_nothing_to_a_default() -> None:
     machine = load_machine(None)
-    assert (machine.timing.collet_open, machine.spindle.decel) == (0.25, 2500)
+    assert (machine.collet.open_time, machine.spindle.decel) == (0.25, 2500)
 
 
 @pytest.mark.parametrize(("stated", "power"), [("", 0.0), ("power_kw = 2.2\n", 2200.0)])

@@ -68,13 +68,13 @@ def test_exact_chords_do_not_move_for_it() -> None:
 
 def test_the_file_says_it_in_its_own_unit() -> None:
     lathe = machine("0.0002")
-    assert lathe.corner_tolerance == pytest.approx(0.00508)
-    grain = MotionLimits.of(lathe.axes, lathe.timing.setpoint, lathe.corner_tolerance).grain
+    assert lathe.limits.corner_tolerance == pytest.approx(0.00508)
+    grain = MotionLimits.of(lathe.axes, lathe.timing.setpoint, lathe.limits.corner_tolerance).grain
     assert grain == pytest.approx(0.00508 / math.sqrt(2.0))
 
 
 def test_without_it_the_count_is_all() -> None:
-    assert machine().corner_tolerance == 0.0
+    assert machine().limits.corner_tolerance == 0.0
     assert limits(0.0).grain == pytest.approx(0.00127)
 
 

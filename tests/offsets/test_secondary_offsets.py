@@ -85,7 +85,7 @@ def would_become(name: str, value: str, low: str, high: str) -> str:
         (("1.5",), "D1.5 does not exist; offsets are D1…32"),
         (("",), text("offsets.nothing-entered")),
         (("1", ".5-"), ".5- is incomplete; expected a number at the end"),
-        (("1", "0,5"), ", in 0,5 is not a number; use a decimal point"),
+        (("1", "0,5"), ", in 0,5 is not a number; use a decimal point instead of a comma"),
         (("1", "1/0"), text("offsets.divides-by-zero", text="1/0")),
         (("1", "21"), would_become("D1 X", "10.50000", "-10", "10")),
         (("1", "", "-10.1"), would_become("D1 Z", "−10.10000", "-10", "10")),

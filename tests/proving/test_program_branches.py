@@ -60,11 +60,11 @@ def test_a_branch_that_leaves_the_travel_refuses_the_start_whatever_the_input_is
 
 def test_the_branch_and_its_input_are_named() -> None:
     (found,) = proved("M97I10C1P1", *SUB).errors
-    assert found.message.startswith("With input 10 on at line 4: Z would move to -9.0000 in")
+    assert found.message.startswith("If input 10 is on at line 4: Z would move to -9.0000 in")
     (found,) = proved("M97I10C0P1", *SUB, i10=True).errors
-    assert found.message.startswith("With input 10 off at line 4: ")
+    assert found.message.startswith("If input 10 is off at line 4: ")
     (found,) = proved("M95", *SUB).errors
-    assert found.message.startswith("With input 7 on at line 4: ")
+    assert found.message.startswith("If input 7 is on at line 4: ")
 
 
 def test_the_branch_that_the_inputs_give_is_told_plainly() -> None:
@@ -82,7 +82,7 @@ def test_two_inputs_that_are_harmful_only_together() -> None:
     sub = ("G90", "M30", "}1", "G91Z-4", "M99")
     assert errors(proved("M97I1C1P1", "M97I2C1P1", *sub)) == [(9, "soft-limit")]
     (found,) = proved("M97I1C1P1", "M97I2C1P1", *sub).errors
-    assert "With input 1 on at line 4 and input 2 on at line 5: " in found.message
+    assert "If input 1 is on at line 4 and input 2 is on at line 5: " in found.message
     assert errors(proved("M97I1C1P1", *sub)) == []
 
 
@@ -115,7 +115,7 @@ def test_block_delete_and_an_input_together() -> None:
     report = proved("/Z-3", "M97I1C1P1", "M30", "}1", "G91Z-4", "G90", "M99", deleted=True)
     (found,) = [each for each in report.diagnostics if each.code == "soft-limit"]
     assert (found.severity, errors(report)) == (Severity.WARNING, [])
-    assert found.message.startswith("With block delete off: With input 1 on at line 5: Z would")
+    assert found.message.startswith("With block delete off: If input 1 is on at line 5: Z would")
 
 
 def test_a_first_line_that_block_delete_takes_away() -> None:
@@ -258,7 +258,7 @@ def test_the_bar_feeders_sample_proves_and_its_end_of_bar_too() -> None:
     worse = replace(source, text=source.text.replace("M31\n", "M31\nZ9.5\n"))
     (found,) = prove(worse, setup, MACHINE).errors
     assert (found.line, found.code) == (35, "soft-limit")
-    assert found.message.startswith("With input 7 on at line 31: Z would move to 6.3000 in")
+    assert found.message.startswith("If input 7 is on at line 31: Z would move to 6.3000 in")
 
 
 # every set of answers, one after the other, against what the proof finds

@@ -109,7 +109,8 @@ def test_what_is_not_there_is_told() -> None:
     still = record_of(seconds(0.0, 3.0), spindle_turns=np.full(3001, 7.0))
     assert "does not turn" in analysed(Kind.THREAD, still, 0, {}).why
     assert (
-        "fewer than two linear axes" in analysed(Kind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, {}).why
+        "a path needs two linear axes"
+        in analysed(Kind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, {}).why
     )
     nothing = np.full(3001, np.nan)
     deaf = record_of(seconds(0.0, 3.0), spindle_turns=nothing)

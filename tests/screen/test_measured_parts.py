@@ -489,7 +489,7 @@ def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
     day.enter("0-24")
     day.run(0.05)
     ran = texts(day)["AVAILABILITY"]
-    assert re.fullmatch(r"0–24: \d+ %, \d:\d\d of .+", ran)
+    assert re.fullmatch(r"0–24: \d+ %, in cycle for \d:\d\d of .+", ran)
     # of the machine, whatever program is on the desk
     (tmp_path / "other.nc").write_text(PEG)
     day.desk.put_on_desk(tmp_path / "other.nc")

@@ -239,7 +239,7 @@ def test_no_drill_is_told_where_none_is_sold() -> None:
 @pytest.mark.parametrize(
     ("typed", "says"),
     [
-        ({"SERIES": "NPT", "SIZE": "1/4"}, "NPT cannot be tapped here"),
+        ({"SERIES": "NPT", "SIZE": "1/4"}, "NPT threads cannot be tapped with this shape"),
         ({"SIZE": "9/7"}, wording("shapes.no-such-size", series="UNC", size="9/7")),
         ({"SIZE": "1/4-20", "SHORT": 0.5}, wording("shapes.tap-stops-short", short=0.5, depth=0.5)),
         (

@@ -55,7 +55,7 @@ def test_without_what_block_delete_leaves_out_it_would_run_against_the_limit(sto
         (
             "T0\nX.5Z.4\nF5Z.3\n",
             7,
-            text("findings.cuts-after", what="the T0 on line 5"),
+            text("findings.cuts-after", what="the tool cancel (T0) on line 5"),
             "Write T and the tool number",
         ),
         (

@@ -8,181 +8,46 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import field
+from typing import Any
 
+from core.key_declaration import Range, Unit, file_key, key_table
 from core.message import Message
-from core.table_schema import (
-    Driver,
-    DriverTable,
-    Field,
-    FileReading,
-    Finding,
-    Kind,
-    TableReference,
-    Unit,
-    read_axes_and_spindle,
-)
+from core.table_schema import Driver, DriverTable, FileReading, Finding, TableReference, read_axes_and_spindle
 
 SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT = "sim", "parport", "mesa-7i76e", "mesa-7i97", "ethercat"
 KINDS = (SIM, PARPORT, MESA_STEP, MESA_SERVO, ETHERCAT)
 _AXES, _SPINDLE = "board.axis", "board.spindle"
 C = "C"
-_FIELDS = (
-    Field(
-        "kind",
-        Kind.CHOICE,
-        choices=KINDS,
-        meaning="Board for which `turndesk machine hal` writes the HAL file.",
-    ),
-    Field(
-        "address",
-        Kind.TEXT,
-        default="",
-        meaning='Address of the board: an IP address for a Mesa card, a port address such as "0x378" '
-        "for a parallel port.",
-    ),
-    Field(
-        "base_us",
-        Kind.WHOLE,
-        low=10,
-        high=500,
-        default=50,
-        meaning="Period of the base thread of a parallel port, in µs; longer than the worst latency.",
-    ),
+
+
+def _channel(*, meaning: str) -> Any:
+    """Declare a channel of the board; -1 where the file does not specify it."""
+    return file_key(Range(0, 63), default=-1, meaning=meaning)
+
+
+def _pulse(default: int, *, meaning: str) -> Any:
+    """Declare a time of a step pulse, nanoseconds."""
+    return file_key(Range(100, 1_000_000), default=default, meaning=meaning)
+
+
+def _gain(*, meaning: str) -> Any:
+    """Declare a gain of LinuxCNC's ``pid``."""
+    return file_key(Range(0.0, 100_000.0), default=0.0, meaning=meaning)
+
+
+def _pin(*, meaning: str) -> Any:
+    """Declare a pin of a parallel port."""
+    return file_key(default="", meaning=f"Parallel port: pin of {meaning}.")
+
+
+_VENDOR: Any = file_key(
+    default="", meaning="EtherCAT: vendor ID of the drive, 0x…, as `ethercat slaves -v` shows it."
 )
+_PRODUCT: Any = file_key(default="", meaning="EtherCAT: product code of the drive, 0x….")
 
 
-def _channel(key: str, meaning: str) -> Field:
-    """Return the field of a channel of the board; -1 where the file does not specify it."""
-    return Field(key, Kind.WHOLE, low=0, high=63, default=-1, meaning=meaning)
-
-
-def _pulse(key: str, default: int, meaning: str) -> Field:
-    """Return the field of a time of a step pulse, nanoseconds."""
-    return Field(key, Kind.WHOLE, low=100, high=1_000_000, default=default, meaning=meaning)
-
-
-def _gain(key: str, meaning: str) -> Field:
-    """Return the field of a gain of LinuxCNC's ``pid``."""
-    return Field(key, Kind.NUMBER, low=0.0, high=100_000.0, default=0.0, meaning=meaning)
-
-
-def _encoder_pin(signal: str) -> Field:
-    """Return the field of an encoder signal at a parallel port."""
-    meaning = f"Parallel port: pin of encoder signal {signal.upper()}."
-    return Field(f"phase_{signal}", Kind.TEXT, default="", meaning=meaning)
-
-
-_HEX = (
-    Field(
-        "vendor",
-        Kind.TEXT,
-        default="",
-        meaning="EtherCAT: vendor ID of the drive, 0x…, as `ethercat slaves -v` shows it.",
-    ),
-    Field("product", Kind.TEXT, default="", meaning="EtherCAT: product code of the drive, 0x…."),
-)
-_AXIS = (
-    _channel(
-        "channel",
-        "7I76E: step generator, 0 to 4. 7I97: analog output and encoder, 0 to 3. EtherCAT: position of the "
-        "drive on the bus.",
-    ),
-    Field(
-        "reversed",
-        Kind.FLAG,
-        default=False,
-        meaning="true: the sign of the scale of the axis is reversed; on a 7I97 that of its encoder only.",
-    ),
-    Field(
-        "mode",
-        Kind.CHOICE,
-        choices=("velocity", "position"),
-        default="velocity",
-        meaning='7I76E: "velocity" closes a position loop around the step generator; "position" sends '
-        "positions to it.",
-    ),
-    _pulse("step_ns", 5000, "Length of a step pulse, in ns."),
-    _pulse("space_ns", 5000, "7I76E: shortest time between two step pulses, in ns."),
-    _pulse("setup_ns", 10_000, "Time from a change of direction to the next step, in ns."),
-    _pulse("hold_ns", 10_000, "Time from a step to the next change of direction, in ns."),
-    Field("step", Kind.TEXT, default="", meaning="Parallel port: pin of the step signal."),
-    Field("direction", Kind.TEXT, default="", meaning="Parallel port: pin of the direction signal."),
-    Field(
-        "fault_input",
-        Kind.TEXT,
-        default="",
-        meaning="7I97: input at which the drive reports a fault. Default: none.",
-    ),
-    Field(
-        "full_speed",
-        Kind.NUMBER,
-        Unit.FEED,
-        0.1,
-        10_000.0,
-        default=0.0,
-        meaning="7I97: speed of the axis at 10 V, not below `vmax`.",
-    ),
-    Field(
-        "full_rpm",
-        Kind.NUMBER,
-        Unit.RPM,
-        0.1,
-        100_000.0,
-        default=0.0,
-        meaning="7I97: speed of the separate C drive at 10 V.",
-    ),
-    _gain("p", "P gain of the position loop, in 1/s. On a 7I76E, 0 means 1 ÷ `period_ms` of [hal]."),
-    _gain("i", "I gain of the position loop."),
-    _gain("d", "D gain of the position loop."),
-    _gain("ff2", "Acceleration feedforward (FF2 of the position loop)."),
-    *_HEX,
-)
-_TURNS = (
-    _channel(
-        "channel",
-        "7I97: analog output with its own enable, 4 or 5. EtherCAT: position of the drive on the bus.",
-    ),
-    _channel("encoder", "Encoder input of the board: 0 on a 7I76E, 0 to 5 on a 7I97."),
-    Field(
-        "reversed",
-        Kind.FLAG,
-        default=False,
-        meaning="true: the sign of the scale of the spindle encoder is reversed; on EtherCAT also that "
-        "of the speed.",
-    ),
-    Field(
-        "full_speed",
-        Kind.NUMBER,
-        Unit.RPM,
-        1.0,
-        100_000.0,
-        default=0.0,
-        meaning="Spindle speed at 10 V, or at the full PWM signal. Default: the board outputs no speed.",
-    ),
-    Field("pwm", Kind.TEXT, default="", meaning="Parallel port: pin of the PWM speed signal."),
-    Field(
-        "pwm_hz",
-        Kind.WHOLE,
-        low=10,
-        high=50_000,
-        default=1000,
-        meaning="Parallel port: frequency of the PWM signal in Hz.",
-    ),
-    *map(_encoder_pin, "abz"),
-    Field(
-        "velocity_per_rpm",
-        Kind.NUMBER,
-        low=1e-6,
-        high=1e7,
-        default=0.0,
-        meaning="EtherCAT: value of object 60FF at 1 rpm.",
-    ),
-    *_HEX,
-)
-
-
-@dataclass(frozen=True, slots=True)
+@key_table
 class BoardAxis:
     """One axis behind a board. Speeds in mm/s, pulse times in nanoseconds; gains by LinuxCNC's ``pid``.
 
@@ -191,27 +56,48 @@ class BoardAxis:
     ``step`` and ``direction`` are pins of a parallel port.
     """
 
-    channel: int
-    reversed: bool
-    mode: str
-    step_ns: int
-    space_ns: int
-    setup_ns: int
-    hold_ns: int
-    step: str
-    direction: str
-    fault_input: str
-    full_speed: float
-    full_rpm: float
-    p: float
-    i: float
-    d: float
-    ff2: float
-    vendor: str
-    product: str
+    channel: int = _channel(
+        meaning="7I76E: step generator, 0 to 4. 7I97: analog output and encoder, 0 to 3. EtherCAT: "
+        "position of the drive on the bus."
+    )
+    reversed: bool = file_key(
+        default=False,
+        meaning="true: the sign of the scale of the axis is reversed; on a 7I97 that of its encoder only.",
+    )
+    mode: str = file_key(
+        default="velocity",
+        choices=("velocity", "position"),
+        meaning='7I76E: "velocity" closes a position loop around the step generator; "position" sends '
+        "positions to it.",
+    )
+    step_ns: int = _pulse(5000, meaning="Length of a step pulse, in ns.")
+    space_ns: int = _pulse(5000, meaning="7I76E: shortest time between two step pulses, in ns.")
+    setup_ns: int = _pulse(10_000, meaning="Time from a change of direction to the next step, in ns.")
+    hold_ns: int = _pulse(10_000, meaning="Time from a step to the next change of direction, in ns.")
+    step: str = _pin(meaning="the step signal")
+    direction: str = _pin(meaning="the direction signal")
+    fault_input: str = file_key(
+        default="", meaning="7I97: input at which the drive reports a fault. Default: none."
+    )
+    full_speed: float = file_key(
+        Range(0.1, 10_000.0, Unit.FEED),
+        default=0.0,
+        meaning="7I97: speed of the axis at 10 V, not below `vmax`.",
+    )
+    full_rpm: float = file_key(
+        Range(0.1, 100_000.0, Unit.RPM), default=0.0, meaning="7I97: speed of the separate C drive at 10 V."
+    )
+    p: float = _gain(
+        meaning="P gain of the position loop, in 1/s. On a 7I76E, 0 means 1 ÷ `period_ms` of [hal]."
+    )
+    i: float = _gain(meaning="I gain of the position loop.")
+    d: float = _gain(meaning="D gain of the position loop.")
+    ff2: float = _gain(meaning="Acceleration feedforward (FF2 of the position loop).")
+    vendor: str = _VENDOR
+    product: str = _PRODUCT
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class BoardSpindle:
     """The spindle behind a board. ``full_speed`` rpm is what its drive makes of 10 V.
 
@@ -219,40 +105,61 @@ class BoardSpindle:
     are pins of a parallel port.
     """
 
-    channel: int
-    encoder: int
-    reversed: bool
-    full_speed: float
-    pwm: str
-    pwm_hz: int
-    phase_a: str
-    phase_b: str
-    phase_z: str
-    velocity_per_rpm: float
-    vendor: str
-    product: str
+    channel: int = _channel(
+        meaning="7I97: analog output with its own enable, 4 or 5. EtherCAT: position of the drive on the bus."
+    )
+    encoder: int = _channel(meaning="Encoder input of the board: 0 on a 7I76E, 0 to 5 on a 7I97.")
+    reversed: bool = file_key(
+        default=False,
+        meaning="true: the sign of the scale of the spindle encoder is reversed; on EtherCAT also that of "
+        "the speed.",
+    )
+    full_speed: float = file_key(
+        Range(1.0, 100_000.0, Unit.RPM),
+        default=0.0,
+        meaning="Spindle speed at 10 V, or at the full PWM signal. Default: the board outputs no speed.",
+    )
+    pwm: str = _pin(meaning="the PWM speed signal")
+    pwm_hz: int = file_key(
+        Range(10, 50_000), default=1000, meaning="Parallel port: frequency of the PWM signal in Hz."
+    )
+    phase_a: str = _pin(meaning="encoder signal A")
+    phase_b: str = _pin(meaning="encoder signal B")
+    phase_z: str = _pin(meaning="encoder signal Z")
+    velocity_per_rpm: float = file_key(
+        Range(1e-6, 1e7), default=0.0, meaning="EtherCAT: value of object 60FF at 1 rpm."
+    )
+    vendor: str = _VENDOR
+    product: str = _PRODUCT
 
 
-@dataclass(frozen=True, slots=True)
+@key_table
 class BoardTable:
     """What the HAL file is written for. ``address``: of an Ethernet card or a parallel port."""
 
-    kind: str
-    address: str
-    base_us: int
-    axes: Mapping[str, BoardAxis]
-    spindle: BoardSpindle
+    kind: str = file_key(choices=KINDS, meaning="Board for which `turndesk machine hal` writes the HAL file.")
+    address: str = file_key(
+        default="",
+        meaning='Address of the board: an IP address for a Mesa card, a port address such as "0x378" for a '
+        "parallel port.",
+    )
+    base_us: int = file_key(
+        Range(10, 500),
+        default=50,
+        meaning="Period of the base thread of a parallel port, in µs; longer than the worst latency.",
+    )
+    axes: Mapping[str, BoardAxis] = field(default_factory=dict)
+    spindle: BoardSpindle = field(default_factory=BoardSpindle)
 
 
 def _read(file: FileReading) -> Iterator[Finding]:
-    yield from read_axes_and_spindle(file, (_AXES, _AXIS), (_SPINDLE, _TURNS))
+    yield from read_axes_and_spindle(file, (_AXES, BoardAxis), (_SPINDLE, BoardSpindle))
 
 
-def _table(file: FileReading) -> BoardTable:
+def _parts(file: FileReading) -> dict[str, object]:
+    """The tables inside."""
     axes = {name: file.values.model(BoardAxis, f"{_AXES}.{name}") for name in file.names(_AXES)}
-    return file.values.model(
-        BoardTable, "board", axes=axes, spindle=file.values.model(BoardSpindle, _SPINDLE)
-    )
+    return {"axes": axes, "spindle": file.values.model(BoardSpindle, _SPINDLE)}
 
 
 # --- What each kind of board has to be told.
@@ -543,8 +450,8 @@ DRIVER = Driver(
     tables=(
         DriverTable(
             "board",
-            _FIELDS,
-            _table,
+            BoardTable,
+            _parts,
             ("axis", "spindle"),
             _read,
             _rules,
@@ -554,10 +461,12 @@ DRIVER = Driver(
                 TableReference(
                     "board.axis.…",
                     "Connection of one axis to the board; the last word of the heading is the axis name.",
-                    _AXIS,
+                    BoardAxis,
                 ),
                 TableReference(
-                    "board.spindle", "How the spindle and its encoder are connected to the board.", _TURNS
+                    "board.spindle",
+                    "How the spindle and its encoder are connected to the board.",
+                    BoardSpindle,
                 ),
             ),
         ),

@@ -11,8 +11,9 @@ from core.faults import code_of
 from core.ports import DriverError
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig, OutputConfig, PotConfig
-from drivers.canopen.canopen_nodes import BusConfig, CanNode
+from drivers.canopen.canopen_nodes import CanNode
 from drivers.canopen.canopen_nodes import CanTerminal as Terminal
+from drivers.canopen.canopen_table import CanopenTable
 from drivers.canopen.canopen_terminals import CanopenIO
 from drivers.clocks import StepClock
 from tests.coded import raises_code
@@ -28,7 +29,7 @@ class Bench:
     """Both ends of the bus; the machine has a guard, E-stop, coolant, collet, and a pot where asked for."""
 
     def __init__(self, inputs: int, outputs: int, words: int, *, pot: int = 0) -> None:
-        bus = BusConfig("virtual", f"foreign-{next(_channels)}")
+        bus = CanopenTable(interface="virtual", channel=f"foreign-{next(_channels)}", mode="pvt")
         self.module = ForeignModule(bus.channel, inputs, outputs, words)
         self.clock = StepClock()
         self.bus = Bus(bus, self.clock, self.module.pump)

@@ -39,9 +39,8 @@ for name in PATIENT:
 def shop() -> Iterator[tuple[CanopenDevices, BaseNode402]]:
     """X of the shipped machine under the library's master, each end with threads of its own."""
     machine = can_machine()
-    table = machine.hardware.table(CanopenTable)
-    assert table is not None
-    bus = table.bus
+    bus = machine.hardware.table(CanopenTable)
+    assert bus is not None
     peers, ended = canopen_peers(machine, RealClock()), threading.Event()
 
     def play() -> None:

@@ -22,7 +22,7 @@ def on_one_bus(there: Machine, asked: Machine) -> Machine:
     bus, own = there.hardware.table(CanopenTable), asked.hardware.table(CanopenTable)
     assert bus is not None
     assert own is not None
-    moved = dataclasses.replace(own, bus=dataclasses.replace(own.bus, channel=bus.bus.channel))
+    moved = dataclasses.replace(own, channel=bus.channel)
     tables = {**asked.hardware.tables, "canopen": moved}
     return dataclasses.replace(asked, hardware=dataclasses.replace(asked.hardware, tables=tables))
 

@@ -69,7 +69,9 @@ def test_a_spindle_that_refuses_its_stop_keeps_no_output_on(monkeypatch: pytest.
         clock.advance(0.01)
         feeder.tick()
     assert not sim.ports.io.outputs()["coolant"]
-    assert [note for note in feeder._notes if "while stopping: the inverter does not answer" in note]
+    assert [
+        note for note in feeder._notes if "was stopping the machine: the inverter does not answer" in note
+    ]
 
 
 def test_outputs_that_refuse_keep_no_spindle_turning(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -87,7 +89,7 @@ def test_outputs_that_refuse_keep_no_spindle_turning(monkeypatch: pytest.MonkeyP
         clock.advance(0.01)
         feeder.tick()
     assert sim.machine.spindle_rpm() == 0.0
-    assert [note for note in feeder._notes if "while stopping: terminal 2 does not answer" in note]
+    assert [note for note in feeder._notes if "was stopping the machine: terminal 2 does not answer" in note]
 
 
 def test_a_driver_that_cannot_be_asked_wakes_a_control_that_sleeps(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -178,8 +178,8 @@ def test_a_setpoint_at_each_sync_needs_its_time(shipped: str, expected: float) -
 @pytest.mark.parametrize(
     ("late", "expected"),
     [
-        (0.0005, "0.3 s test, the SYNC arrived in time (at most 0.5 ms late)"),
-        (0.0071, "0.3 s test, the SYNC did not arrive in time (at most 7.1 ms late)"),
+        (0.0005, "the SYNC arrived in time in a 0.3 s test (at most 0.5 ms late)"),
+        (0.0071, "0.3 s test, the SYNC did not arrive in time (up to 7.1 ms late)"),
     ],
 )
 def test_what_is_lost_without_priority_is_said_with_what_a_trial_has_found(

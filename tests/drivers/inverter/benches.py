@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from drivers.clocks import StepClock
 from drivers.inverter.inverter_attendant import Attendant
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
-from drivers.inverter.inverter_table import InverterConfig
+from drivers.inverter.inverter_table import InverterTable
 from tests.drivers.inverter.inverter_simulators import (
     HZ_PER_RPM,
     DeltaMemory,
@@ -55,9 +55,9 @@ class Bench:
         return self.inverter.rpm
 
 
-def config(family: str) -> InverterConfig:
+def config(family: str) -> InverterTable:
     """As a machine file would give it."""
-    return InverterConfig(family, 1, HZ_PER_RPM, 3500.0, 1.5, 10 / 9600)
+    return InverterTable(family=family, port="", hz_per_rpm=HZ_PER_RPM, rpm_max=3500.0)
 
 
 def bench(family: str, *, connect: bool = True) -> Bench:

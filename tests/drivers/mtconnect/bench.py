@@ -33,7 +33,7 @@ class Bench:
         self.model = devices_xml(lathe(), "bench", BEGIN)
         self.agents: list[FakeAgent] = []
         self.adapter = Adapter(
-            MtconnectTable("127.0.0.1", 0, heartbeat),
+            MtconnectTable(port=0, heartbeat=heartbeat),
             tuple(lathe().all_items()),
             lambda: Report(dict(self.values), dict(self.conditions)),
             self.clock,

@@ -259,7 +259,7 @@ def test_closing_hangs_up_on_everybody() -> None:
 
 
 def refusing(bind: str, port: int) -> str:
-    adapter = Adapter(MtconnectTable(bind, port, 10.0), (), lambda: Report({}, {}), StepClock())
+    adapter = Adapter(MtconnectTable(bind=bind, port=port), (), lambda: Report({}, {}), StepClock())
     with pytest.raises(DriverError) as caught:
         adapter.open()
     adapter.close()

@@ -31,7 +31,9 @@ class Machine:
 
 
 def adapter(machine: Machine, port: int = 0) -> Adapter:
-    return Adapter(MtconnectTable(HERE, port, 10.0), tuple(lathe().all_items()), machine.report, RealClock())
+    return Adapter(
+        MtconnectTable(bind=HERE, port=port), tuple(lathe().all_items()), machine.report, RealClock()
+    )
 
 
 def threads() -> list[str]:

@@ -1,0 +1,214 @@
+"""How a key of the machine file is declared: once, on the attribute that holds its value."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum, StrEnum
+from functools import cache
+from typing import Any, NamedTuple, TypeVar, dataclass_transform
+
+# --- Units of a machine file. The file writes its own; the model has mm, seconds, degrees, rpm.
+
+
+INCH = 25.4
+
+
+class Unit(StrEnum):
+    """What a number of the file means; the word is what a finding shows, ``len`` is the file's in or mm."""
+
+    PLAIN = ""
+    LENGTH = "len"
+    FEED = "len/min"
+    ACCEL = "len/s²"
+    MILLISECONDS = "ms"
+    SECONDS = "s"
+    PERCENT = "%"
+    DEGREES = "deg"
+    RPM = "rpm"
+    RPM_PER_SECOND = "rpm/s"
+    TURNS_PER_MINUTE = "rpm of the C axis"
+    TURNS_PER_MINUTE_SECOND = "rpm/s of the C axis"
+    DEGREES_PER_MINUTE = "deg/min"
+    DEGREES_PER_SECOND_SQUARED = "deg/s²"
+    KILOWATTS = "kW"
+
+
+# A division where there is one, so that 300 in/min gives the very number that an F300 word gives.
+_DIVISOR = {
+    Unit.FEED: 60.0,
+    Unit.DEGREES_PER_MINUTE: 60.0,
+    Unit.MILLISECONDS: 1000.0,
+    Unit.PERCENT: 100.0,
+}
+_MULTIPLIER = {Unit.TURNS_PER_MINUTE: 6.0, Unit.TURNS_PER_MINUTE_SECOND: 6.0, Unit.KILOWATTS: 1000.0}
+LENGTHS = frozenset((Unit.LENGTH, Unit.FEED, Unit.ACCEL))
+
+
+def to_model(value: float, unit: Unit, inch: bool) -> float:
+    """A number of the file in the model's unit."""
+    length = value * INCH if inch and unit in LENGTHS else value
+    return length * _MULTIPLIER.get(unit, 1.0) / _DIVISOR.get(unit, 1.0)
+
+
+def to_file(value: float, unit: Unit, inch: bool) -> float:
+    """A number of the model in the file's unit."""
+    number = value * _DIVISOR.get(unit, 1.0) / _MULTIPLIER.get(unit, 1.0)
+    return number / INCH if inch and unit in LENGTHS else number
+
+
+def word(unit: Unit, inch: bool) -> str:
+    """The unit as the file's owner would write it, with a space before it."""
+    text = unit.value.replace("len", "in" if inch else "mm")
+    return f" {text}" if text else ""
+
+
+def shown(value: float, unit: Unit, inch: bool) -> str:
+    """A number of the model in the file's unit, for a sentence."""
+    return f"{to_file(value, unit, inch):.6g}{word(unit, inch)}"
+
+
+Pair = tuple[float, float]
+Triple = tuple[float, float, float]
+Value = float | bool | str | Pair | Triple | tuple[float, ...]
+Words = str  # a list of words, kept as one text with spaces between them
+
+
+class Kind(Enum):
+    """The shapes a value may have; the text says it in a finding."""
+
+    NUMBER = "a number"
+    WHOLE = "a whole number"
+    FLAG = "true or false"
+    TEXT = "nonblank text in quotation marks"
+    PAIR = "two numbers, [low, high]"
+    TRIPLE = "three numbers, [x, y, z]"
+    NUMBERS = "one to four numbers, [first, second]"
+    CHOICE = "one of"
+    WORDS = 'a list of words, such as ["one", "another"]'  # kept as one text, with blanks between them
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """One key: kind, unit, range in the model's unit, and the default; None: the key is required.
+
+    ``attribute`` holds its value. ``derived``: the default follows from other values of the file
+    (``machine_defaults.py``). ``meaning`` is what the reference of the machine file says about the key.
+    """
+
+    key: str
+    attribute: str
+    kind: Kind
+    unit: Unit
+    low: float
+    high: float
+    default: Value | None
+    choices: tuple[str | bool, ...]
+    derived: bool
+    meaning: str
+
+
+# --- Declarations: the schema of a table follows from its class, and so does the object with its values.
+
+
+class Range(NamedTuple):
+    """The lowest and the highest value of a number, in the model's unit, and the unit in the file."""
+
+    low: float = 0.0
+    high: float = 0.0
+    unit: Unit = Unit.PLAIN
+
+
+class _Key(NamedTuple):
+    """A key before its class exists; without ``name`` it is named as its attribute."""
+
+    range: Range
+    meaning: str
+    name: str
+    default: Value | None
+    choices: tuple[str | bool, ...]
+    derived: bool
+    secret: bool
+
+
+def file_key(
+    range: Range = Range(),  # noqa: B008  immutable
+    *,
+    meaning: str,
+    name: str = "",
+    default: Value | None = None,
+    choices: tuple[str | bool, ...] = (),
+    derived: bool = False,
+    secret: bool = False,
+) -> Any:
+    """Declare a key on an attribute of a class, whose annotation is the kind of the value.
+
+    ``name`` is the key in the file if it is not the name of the attribute. A ``secret`` value is not printed.
+    The other arguments are those of ``Field``.
+    """
+    return _Key(range, meaning, name, default, choices, derived, secret)
+
+
+_KINDS = {
+    "float": Kind.NUMBER,
+    "int": Kind.WHOLE,
+    "bool": Kind.FLAG,
+    "str": Kind.TEXT,
+    "Pair": Kind.PAIR,
+    "Triple": Kind.TRIPLE,
+    "tuple[float, ...]": Kind.NUMBERS,
+    "Words": Kind.WORDS,
+}
+_Table = TypeVar("_Table")
+_declared: dict[type, Mapping[str, object]] = {}  # of each key_table, whose class has defaults instead
+
+
+@dataclass_transform(frozen_default=True, field_specifiers=(file_key, field))
+def key_table(table: type[_Table]) -> type[_Table]:
+    """Make a frozen dataclass with slots of a class that declares keys."""
+    declared = dict(vars(table))
+    for name, each in declared.items():
+        if not isinstance(each, _Key):
+            continue
+        if each.default is None:
+            setattr(table, name, field(repr=not each.secret))
+        else:
+            setattr(table, name, field(default=each.default, repr=not each.secret))
+    made = dataclass(frozen=True, slots=True)(table)
+    _declared[made] = declared
+    return made
+
+
+Schema = type | tuple[Field, ...]  # a class that declares keys, or the keys
+
+
+def keys_of(table: Schema) -> tuple[Field, ...]:
+    """Return the keys that a class declares, in their order."""
+    return table if isinstance(table, tuple) else _keys_of_class(table)
+
+
+@cache
+def _keys_of_class(table: type) -> tuple[Field, ...]:
+    return tuple(
+        _field(name, each, base.__annotations__[name])
+        for base in reversed(table.__mro__)
+        for name, each in _declared.get(base, vars(base)).items()
+        if isinstance(each, _Key)
+    )
+
+
+def _field(name: str, each: _Key, annotation: str) -> Field:
+    kind = Kind.CHOICE if each.choices else _KINDS[annotation]
+    low, high, unit = each.range
+    return Field(
+        each.name or name,
+        name,
+        kind,
+        unit,
+        low,
+        high,
+        each.default,
+        each.choices,
+        each.derived,
+        each.meaning,
+    )

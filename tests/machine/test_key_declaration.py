@@ -1,0 +1,97 @@
+"""Keys are declared on attributes: their schema, and the object that holds their values."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+
+from core.key_declaration import Kind, Pair, Range, Unit, Words, file_key, key_table, keys_of
+from core.table_schema import Values, read_table
+
+
+@key_table
+class Line:
+    """A table with a key of each form."""
+
+    port: str = file_key(meaning="Port.")
+    reply: float = file_key(
+        Range(0.01, 2.0, Unit.MILLISECONDS), name="reply_ms", default=0.2, meaning="Time."
+    )
+    parity: str = file_key(default="N", choices=("N", "E"), meaning="Parity.")
+    range: Pair = file_key(Range(0.0, 50.0, Unit.LENGTH), default=(0.0, 1.0), meaning="Range.")
+    words: Words = file_key(default="", secret=True, meaning="Words.")
+    others: tuple[str, ...] = ()
+
+
+class Plain:
+    """Keys of a table that is read into no object of its own."""
+
+    port: str = file_key(meaning="Port.")
+    count: int = file_key(Range(1, 9), derived=True, meaning="Count.")
+
+
+def found(table: object) -> list[tuple[str, str]]:
+    return [(each.path, each.code) for each in read_table(table, Line, "line", Values(True))]
+
+
+def test_the_annotation_is_the_kind() -> None:
+    kinds = [(each.key, each.kind) for each in keys_of(Line)]
+    assert kinds == [
+        ("port", Kind.TEXT),
+        ("reply_ms", Kind.NUMBER),
+        ("parity", Kind.CHOICE),
+        ("range", Kind.PAIR),
+        ("words", Kind.WORDS),
+    ]
+    assert [(each.key, each.derived) for each in keys_of(Plain)] == [("port", False), ("count", True)]
+
+
+def test_the_reader_fills_the_object_in_units_of_the_model() -> None:
+    values = Values(True)
+    table = {"port": "tty0", "reply_ms": 500, "range": [0, 1], "words": ["one", "two"]}
+    assert read_table(table, Line, "line", values) == []
+    line = values.model(Line, "line", others=("more",))
+    assert line == Line("tty0", 0.5, "N", (0.0, 25.4), "one two", ("more",))
+
+
+def test_defaults_are_those_of_the_file() -> None:
+    assert Line("tty0") == Line("tty0", 0.2, "N", (0.0, 1.0), "")
+
+
+def test_every_mistake_is_found_at_once() -> None:
+    wrong = {"prot": "tty0", "reply_ms": 5000, "parity": "O", "range": [2, 1], "words": ["a b"]}
+    assert found(wrong) == [
+        ("line.prot", "unknown-key"),
+        ("line.port", "missing"),
+        ("line.reply_ms", "wrong-value"),
+        ("line.parity", "wrong-value"),
+        ("line.range", "wrong-value"),
+        ("line.words", "wrong-value"),
+    ]
+    assert found("tty0") == [("line", "not-a-table")]
+
+
+def test_the_name_of_the_attribute_is_no_key() -> None:
+    assert ("line.reply", "unknown-key") in found({"port": "tty0", "reply": 5})
+
+
+def test_a_secret_is_not_printed_and_a_value_not_changed() -> None:
+    line = Line("tty0", words="token")
+    assert "token" not in repr(line)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        line.port = "tty1"  # type: ignore[misc]
+
+
+def test_an_annotation_that_is_no_kind_is_refused() -> None:
+    class Wrong:
+        file: Path = file_key(meaning="File.")
+
+    with pytest.raises(KeyError):
+        keys_of(Wrong)
+
+
+def test_a_required_value_is_refused_where_it_is_missing() -> None:
+    with pytest.raises(TypeError):
+        Line()  # type: ignore[call-arg]
