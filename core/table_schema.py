@@ -207,7 +207,7 @@ def read_table(
             Finding(
                 path,
                 written(table),
-                Message(("this entry must be a table, [{path}]"), path=path),
+                Message("this entry must be a table, [{path}]", path=path),
                 "not-a-table",
             )
         ]
@@ -242,7 +242,7 @@ def missing(place: str, field: Field, inch: bool | None) -> Finding:
     return Finding(
         place,
         "",
-        Message(("this value is missing; expected {field}"), field=_expected(field, inch)),
+        Message("this value is missing; expected {field}", field=_expected(field, inch)),
         "missing",
     )
 
@@ -416,7 +416,7 @@ class Driver:
 def expected_table(path: str, raw: object) -> Finding:
     """The finding about something that is no table."""
     return Finding(
-        path, written(raw), Message(("this entry must be a table, [{path}]"), path=path), "not-a-table"
+        path, written(raw), Message("this entry must be a table, [{path}]", path=path), "not-a-table"
     )
 
 

@@ -30,20 +30,16 @@ def grblhal_config(machine: Machine) -> GrblConfig:
     if model.x_mode != "G8":
         raise DriverError(
             Message(
-                (
-                    "{source}: grblhal.x_mode must be G8, because otherwise a reset would change "
-                    "the meaning of X"
-                ),
+                "{source}: grblhal.x_mode must be G8, because otherwise a reset would change "
+                "the meaning of X",
                 source=machine.source,
             )
         )
     if machine.hardware.spindle_driver not in {"grblhal", "vfd"}:
         raise DriverError(
             Message(
-                (
-                    "{source}: with backend grblhal, set spindle.driver to grblhal (the controller "
-                    "drives the spindle) or vfd (an inverter drives the spindle)"
-                ),
+                "{source}: with backend grblhal, set spindle.driver to grblhal (the controller "
+                "drives the spindle) or vfd (an inverter drives the spindle)",
                 source=machine.source,
             )
         )

@@ -81,7 +81,7 @@ def references() -> Iterator[TableReference]:
     yield TableReference("tooling", "How the tools are mounted. The table is optional.", plain["tooling"])
     yield TableReference(
         "checks",
-        ("Checks of the part that run while a program is proved. The table is optional."),
+        "Checks of the part that run while a program is proved. The table is optional.",
         plain["checks"],
     )
     yield TableReference(
@@ -119,10 +119,8 @@ def _axes() -> Iterator[TableReference]:
     )
     yield TableReference(
         "axis.A, axis.B, axis.C of a mill",
-        (
-            "A rotary axis of a mill. A mill can have at most two rotary axes, and each "
-            "axis needs a table in [kinematics]."
-        ),
+        "A rotary axis of a mill. A mill can have at most two rotary axes, and each "
+        "axis needs a table in [kinematics].",
         axis_tables.RotaryAxis,
     )
     yield TableReference(
@@ -144,13 +142,11 @@ def _signals() -> Iterator[TableReference]:
     )
     yield TableReference(
         "io.in.…",
-        (
-            "An input; the last word of the heading is its name. `estop` is required. "
-            "Other names with a predefined meaning: `start`, `hold`, `guard`, "
-            "`collet_closed`, `end_of_bar`, `part`, `probe`, `spindle_auto`, "
-            "`start_inhibit`, `wheel_…` and `jog_…`. Programs read inputs by their names "
-            "(M91 to M97)."
-        ),
+        "An input; the last word of the heading is its name. `estop` is required. "
+        "Other names with a predefined meaning: `start`, `hold`, `guard`, "
+        "`collet_closed`, `end_of_bar`, `part`, `probe`, `spindle_auto`, "
+        "`start_inhibit`, `wheel_…` and `jog_…`. Programs read inputs by their names "
+        "(M91 to M97).",
         InputModel,
     )
     yield TableReference(

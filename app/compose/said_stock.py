@@ -63,7 +63,7 @@ def said_stock(text: str, around: ProgramBefore) -> Stock | StockSpec:
     except UnicodeDecodeError as error:
         raise StockError(
             Message(
-                ("{path} is not a text file; a profile must be a CSV file with the columns z, r"), path=path
+                "{path} is not a text file; a profile must be a CSV file with the columns z, r", path=path
             ),
             "not-text",
         ) from error

@@ -202,10 +202,8 @@ def _hashes(source: Path, told: object) -> dict[str, str]:
     if isinstance(form, str) and form.startswith(_KIND) and form != FORMAT:
         raise CommandError(
             Message(
-                (
-                    "{source} was saved by another version of TurnDesk (format {form}; this "
-                    "version uses {format}); use that version"
-                ),
+                "{source} was saved by another version of TurnDesk (format {form}; this "
+                "version uses {format}); use that version",
                 source=source,
                 form=form,
                 format=FORMAT,

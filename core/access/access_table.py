@@ -61,10 +61,8 @@ class Rule:
 RULES: dict[Act, Rule] = {
     Act.WEAR: Rule(
         Level.OPERATOR,
-        (
-            "tool wear values and tool remarks; secondary offsets; DL, DR and DR2 of a "
-            "mill's tools; undoing changes to these values"
-        ),
+        "tool wear values and tool remarks; secondary offsets; DL, DR and DR2 of a "
+        "mill's tools; undoing changes to these values",
         "F8, F9, W",
         "offsets set, offsets clear D, offsets undo secondary",
     ),
@@ -73,7 +71,7 @@ RULES: dict[Act, Rule] = {
     ),
     Act.INSERTS: Rule(
         Level.OPERATOR,
-        ("replacing an insert or a tool, which resets the tool life count to zero"),
+        "replacing an insert or a tool, which resets the tool life count to zero",
         "key W; on a mill also key F8",
     ),
     Act.READINGS: Rule(Level.OPERATOR, "entering and deleting the measured values of parts", "W"),
@@ -85,10 +83,8 @@ RULES: dict[Act, Rule] = {
     ),
     Act.TOOLS: Rule(
         Level.SETUP,
-        (
-            "entering or touching off a tool's position, nose radius, tip quadrant and "
-            "master tool; editing the tools of a mill; undoing or clearing these values"
-        ),
+        "entering or touching off a tool's position, nose radius, tip quadrant and "
+        "master tool; editing the tools of a mill; undoing or clearing these values",
         "F8, F5",
         "offsets set, offsets clear, offsets undo",
     ),
@@ -102,11 +98,9 @@ RULES: dict[Act, Rule] = {
     ),
     Act.PROGRAMS: Rule(
         Level.SETUP,
-        (
-            "saving, copying, renaming, deleting, importing and receiving programs; "
-            "publishing a program from the command line; accepting another control's "
-            "version or keeping this control's own version"
-        ),
+        "saving, copying, renaming, deleting, importing and receiving programs; "
+        "publishing a program from the command line; accepting another control's "
+        "version or keeping this control's own version",
         "F3, F6, F10, X",
         "serial receive, share publish, share take, share keep, profile --out, shapes --out",
     ),

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from core.drawings.contour_walk import turned_about
-from core.geometry.contour_offset import GougeError, Offset, TrimError, trimmed_offset
+from core.geometry.contour_offset import GougeError, TrimError, pieces_beside, trimmed_offset
 from core.geometry.lines_and_arcs import Arc, Element
 
 _SPARE = 0.02  # mm: a fillet of just the nose radius leaves its centre no way, least of all in rounded words
@@ -49,13 +49,8 @@ def _reversed(elements: Sequence[Element]) -> list[Element]:
 
 def _follows(contour: Sequence[Element], nose: float) -> bool:
     """Whether nose compensation takes the contour, by the same offset that the control makes."""
-    path = Offset(nose)
     try:
-        for each in contour:
-            for _ in path.add(each):
-                pass
-        for _ in path.close():
-            pass
+        pieces_beside(contour, nose)
     except GougeError:
         return False
     return True

@@ -7,7 +7,7 @@ does not: a fillet smaller than what is left on the part, or a groove narrower t
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from math import dist, pi
 from typing import NamedTuple
@@ -133,6 +133,13 @@ class Offset:
         piece = Piece(index, element, corner)
         self._guard.path(piece)
         self._ready.append(piece)
+
+
+def pieces_beside(elements: Iterable[Element], distance_left: float) -> list[Piece]:
+    """The whole path beside a contour that is known. Raises GougeError as ``Offset`` does."""
+    offset = Offset(distance_left)
+    found = [piece for element in elements for piece in offset.add(element)]
+    return [*found, *offset.close()]
 
 
 def _middle(a: Point, b: Point) -> Point:

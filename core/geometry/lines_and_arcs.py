@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from math import atan2, cos, dist, hypot, pi, sin, sqrt
+from math import acos, atan2, cos, dist, hypot, pi, sin, sqrt
 
 FULL_TURN = 2 * math.pi
 
@@ -215,6 +215,8 @@ def arc_between(start: Point, end: Point, centre: Point, *, clockwise: bool) -> 
 
 def shifted(element: Element, x: float, z: float) -> Element:
     """A line or an arc so much further on, mm."""
+    if not x and not z:
+        return element
     start, end = (element.start[0] + x, element.start[1] + z), (element.end[0] + x, element.end[1] + z)
     if isinstance(element, Line):
         return Line(start, end)
@@ -224,6 +226,14 @@ def shifted(element: Element, x: float, z: float) -> Element:
 def left_of(direction: Point) -> Point:
     """The unit vector to the left of a way, seen from above."""
     return -direction[1], direction[0]
+
+
+def touching(point: Point, centre: Point, radius: float, *, clockwise: bool) -> Point:
+    """Where a line from a point outside a circle touches it, to go on round it in this sense."""
+    half = acos(min(1.0, radius / dist(point, centre)))
+    # In its sense the circle is met half an angle further on than where the point is seen from its centre.
+    angle = atan2(point[0] - centre[0], point[1] - centre[1]) + (half if clockwise else -half)
+    return centre[0] + radius * sin(angle), centre[1] + radius * cos(angle)
 
 
 def turn(before: Point, after: Point) -> float:

@@ -1,88 +1,13 @@
-"""Moves that end elsewhere than programmed, cut at a corner or beside it by the nose, and their text."""
+"""Moves that end elsewhere than programmed, cut at a corner or beside it by the nose; for every language."""
 
 from __future__ import annotations
 
-import re
+from abc import ABC, abstractmethod
 from dataclasses import replace
-from math import pi
 
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between
-from core.interpreter import units
 from core.interpreter.actions import SpindleRun
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.modal_state import Modal
-
-# --- as lines of the program would say them, in the mode and unit in force
-
-
-_WORD = re.compile(r"([A-Z])([-+0-9.]*)")
-_PLACE = frozenset("XZIKRC")
-_ANEW = frozenset({"G02", "G03"})
-_SAME = 1e-9  # mm
-_HALF_TURN = pi - 1e-3  # rad; a longer arc is not safely said by its R
-
-
-def move_words(modal: Modal, element: Element, named: str = "") -> str:
-    """An element in the program's frame as a move: coordinates, or distances under G91.
-
-    ``named``: letters that stand there even where nothing moves along them.
-    """
-    start, end = element.start, element.end
-    scale = units.per_unit(metric=modal.metric)
-    scale_x = scale / 2 if modal.diameter else scale
-    base_x, base_z = (modal.secondary_x, modal.secondary_z) if modal.absolute is not False else start
-    arc = isinstance(element, Arc)
-    moved_x = arc or "X" in named or abs(end[0] - start[0]) > _SAME
-    moved_z = arc or "Z" in named or abs(end[1] - start[1]) > _SAME
-    words = ""
-    if moved_x or not moved_z:
-        words += "X" + number((end[0] - base_x) / scale_x, metric=modal.metric)
-    if moved_z:
-        words += "Z" + number((end[1] - base_z) / scale, metric=modal.metric)
-    return words if isinstance(element, Line) else _arc(modal, element, words)
-
-
-def _arc(modal: Modal, arc: Arc, words: str) -> str:
-    scale = units.per_unit(metric=modal.metric)
-    code = "G02" if arc.clockwise else "G03"
-    if abs(arc.sweep) < _HALF_TURN:
-        return f"{code}{words}R{number(arc.radius / scale, metric=modal.metric)}"
-    distances = modal.diameter or modal.absolute is False
-    base_x, base_z = arc.start if distances else (modal.secondary_x, modal.secondary_z)
-    i = number((arc.centre[0] - base_x) / scale, metric=modal.metric)
-    k = number((arc.centre[1] - base_z) / scale, metric=modal.metric)
-    return f"{code}{words}I{i}K{k}"
-
-
-def with_other_words(block: Block, element: Element) -> str:
-    """The text of a block that now follows ``element``: its own modal words, feed and D, the place anew."""
-    words = [match for match in _WORD.finditer(block.text.upper()) if match[0] not in _ANEW]
-    before = "".join(word[0] for word in words if word[1] not in _PLACE and word[1] != "D")
-    offset = "".join(word[0] for word in words if word[1] == "D")
-    if offset and block.modal.absolute is False:
-        element = _without_change(block, element, {word[1]: float(word[2] or 0) for word in words})
-    return before + move_words(block.modal, element, block.text.upper()) + offset
-
-
-def _without_change(block: Block, element: Element, words: dict[str, float]) -> Element:
-    """The element whose distances lack what D adds to the way of its line: more than X and Z say."""
-    scale = units.per_unit(metric=block.modal.metric)
-    scale_x = scale / 2 if block.modal.diameter else scale
-    x = block.x - block.x0 - words.get("X", 0.0) * scale_x
-    z = block.z - block.z0 - words.get("Z", 0.0) * scale
-    return (
-        Line((element.start[0] + x, element.start[1] + z), element.end)
-        if isinstance(element, Line)
-        else element
-    )
-
-
-def number(value: float, *, metric: bool) -> str:
-    """A number of the program: five places in inch, four in metric, without needless zeros."""
-    text = f"{value:.{4 if metric else 5}f}".rstrip("0").rstrip(".")
-    if text in {"-0", ""}:
-        return "0"
-    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
 
 def element_of(block: Block) -> Element:
@@ -93,41 +18,43 @@ def element_of(block: Block) -> Element:
     return Line(start, end)
 
 
-def moved_along(block: Block, element: Element, max_rpm: float) -> Block:
-    """The block's own move along another element of its kind; its text says the new place."""
-    if (block.x0, block.z0) == element.start and (block.x, block.z) == element.end:
-        return block
-    return _along(block, element, with_other_words(block, element), max_rpm)
+class AdjustedMoves(ABC):
+    """How a language writes the blocks of such moves."""
 
+    @property
+    @abstractmethod
+    def highest_rpm(self) -> float:
+        """The speed limit of the spindle."""
 
-def inserted_after(block: Block, element: Element, max_rpm: float) -> Block:
-    """A move of its own after ``block``, of the same line, feed and state, along an element."""
-    return _along(block, element, move_words(block.modal, element), max_rpm)
+    @abstractmethod
+    def along(self, block: Block, element: Element) -> Block:
+        """The block's own move along another element of its kind."""
 
+    @abstractmethod
+    def inserted(self, block: Block, element: Element) -> Block:
+        """A move of its own after ``block``, of the same line, feed and state, along an element."""
 
-def standstill_at(block: Block, point: Point, max_rpm: float) -> Block:
-    """A block in which nothing moves, at another point."""
-    x, z = point
-    rpm = _rpm(block, x, max_rpm)
-    action = block.action
-    if isinstance(action, SpindleRun) and action.surface_speed is not None:
-        action = SpindleRun(rpm, action.surface_speed)
-    return replace(block, x0=x, z0=z, x=x, z=z, rpm=rpm, action=action)
+    def standing(self, block: Block, point: Point) -> Block:
+        """A block in which nothing moves, at another point."""
+        x, z = point
+        rpm = self._rpm(block, x)
+        action = block.action
+        if isinstance(action, SpindleRun) and action.surface_speed is not None:
+            action = SpindleRun(rpm, action.surface_speed)
+        return replace(block, x0=x, z0=z, x=x, z=z, rpm=rpm, action=action)
 
+    def _placed(self, block: Block, element: Element, text: str) -> Block:
+        (x0, z0), (x, z) = element.start, element.end
+        rpm = self._rpm(block, x)
+        if isinstance(element, Arc):
+            return replace(
+                block, kind=Kind.ARC, text=text, x0=x0, z0=z0, x=x, z=z, rpm=rpm,
+                cx=element.centre[0], cz=element.centre[1], clockwise=element.clockwise,
+            )  # fmt: skip
+        kind = Kind.FEED if block.kind is Kind.ARC else block.kind
+        return replace(block, kind=kind, text=text, x0=x0, z0=z0, x=x, z=z, rpm=rpm)
 
-def _along(block: Block, element: Element, text: str, max_rpm: float) -> Block:
-    (x0, z0), (x, z) = element.start, element.end
-    rpm = _rpm(block, x, max_rpm)
-    if isinstance(element, Arc):
-        return replace(
-            block, kind=Kind.ARC, text=text, x0=x0, z0=z0, x=x, z=z, rpm=rpm,
-            cx=element.centre[0], cz=element.centre[1], clockwise=element.clockwise,
-        )  # fmt: skip
-    kind = Kind.FEED if block.kind is Kind.ARC else block.kind
-    return replace(block, kind=kind, text=text, x0=x0, z0=z0, x=x, z=z, rpm=rpm)
-
-
-def _rpm(block: Block, x: float, max_rpm: float) -> float:
-    if block.css is None or not block.modal.spindle:
-        return block.rpm
-    return block.modal.surface_rpm_at(x, max_rpm)
+    def _rpm(self, block: Block, x: float) -> float:
+        if block.css is None or not block.modal.spindle:
+            return block.rpm
+        return block.modal.surface_rpm_at(x, self.highest_rpm)

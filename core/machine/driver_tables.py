@@ -108,7 +108,7 @@ def _backend(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
                 Message("[{path}]", path=path),
                 "",
                 Message(
-                    ('this table is missing but required by machine.backend = "{backend}"'),
+                    'this table is missing but required by machine.backend = "{backend}"',
                     backend=driver.backend,
                 ),
                 "missing",
@@ -152,10 +152,8 @@ def _orients(file: FileReading, drivers: Sequence[Driver]) -> Iterator[Finding]:
     can = [driver.spindle for driver in drivers if driver.orients]
     if word not in can:
         expected: str = Message(
-            (
-                "this value must be false, because only a spindle with spindle.driver = {can} "
-                "can be stopped at an angle"
-            ),
+            "this value must be false, because only a spindle with spindle.driver = {can} "
+            "can be stopped at an angle",
             can=" or ".join(can),
         )
         yield Finding(path, "true", expected, "broken-rule")
@@ -182,10 +180,8 @@ def _count_rates(values: Values, drivers: Sequence[Driver]) -> Iterator[Finding]
                 path,
                 "",
                 Message(
-                    (
-                        "{rate} counts/s exceeds this backend's limit of {limit}; reduce vmax or use a "
-                        "larger distance per count"
-                    ),
+                    "{rate} counts/s exceeds this backend's limit of {limit}; reduce vmax or use a "
+                    "larger distance per count",
                     rate=f"{rate:.6g}",
                     limit=f"{limit:.6g}",
                 ),
@@ -214,10 +210,8 @@ def _guard(file: FileReading) -> Iterator[Finding]:
         yield Finding(
             path,
             "true",
-            (
-                "this setting needs an input named guard for the guard switch, which is on "
-                "while the guard is closed"
-            ),
+            "this setting needs an input named guard for the guard switch, which is on "
+            "while the guard is closed",
             "broken-rule",
         )
 

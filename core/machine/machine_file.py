@@ -68,7 +68,7 @@ def text_of(path: Path) -> str:
         ) from error
     except UnicodeDecodeError as error:
         raise MachineFileError(
-            [Finding("file", "", ("this file is not UTF-8 text; save the file as UTF-8"), "not-utf8")],
+            [Finding("file", "", "this file is not UTF-8 text; save the file as UTF-8", "not-utf8")],
             str(path),
         ) from error
 

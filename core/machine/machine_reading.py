@@ -49,7 +49,7 @@ class Reading:
         self.values.found["machine.language"] = said
         if said not in spoken:
             expected = Message(
-                ("the language must be {spoken} for a {kind}"), kind=self.kind, spoken=" or ".join(spoken)
+                "the language must be {spoken} for a {kind}", kind=self.kind, spoken=" or ".join(spoken)
             )
             self.findings.append(Finding("machine.language", written(said), expected, "broken-rule"))
 
@@ -60,7 +60,7 @@ class Reading:
     def _keys(self, table: object, path: str, keys: Schema, children: tuple[str, ...] = ()) -> None:
         if table is None:
             self.findings.append(
-                Finding(f"[{path}]", "", ("this table is missing but required by TurnDesk"), "missing")
+                Finding(f"[{path}]", "", "this table is missing but required by TurnDesk", "missing")
             )
         else:
             self.findings += read_table(table, keys, path, self.values, children)
@@ -73,7 +73,7 @@ class Reading:
                 Finding(
                     path,
                     written(table),
-                    Message(("this entry must be a table, [{path}]"), path=path),
+                    Message("this entry must be a table, [{path}]", path=path),
                     "not-a-table",
                 )
             )
@@ -143,7 +143,7 @@ def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[Find
     findings = []
     for found in unknown_keys(data, list(top), ""):
         known = Message(
-            ("this version of TurnDesk supports the tables {name}"),
+            "this version of TurnDesk supports the tables {name}",
             name=", ".join(f"[{name}]" for name in top),
         )
         guess = found.expected.removeprefix("unknown key; ")

@@ -97,10 +97,8 @@ def _jog_run_on(axis: str) -> Rule:
         inch = bool(values.inch)
         far, near = shown(run_on, Unit.LENGTH, inch), shown(limit, Unit.LENGTH, inch)
         return Message(
-            (
-                "{axis} would travel {distance} at vmax after the signal of a jog key is lost, "
-                "which exceeds limits.clearance = {nearest}; reduce machine.lease_ms"
-            ),
+            "{axis} would travel {distance} at vmax after the signal of a jog key is lost, "
+            "which exceeds limits.clearance = {nearest}; reduce machine.lease_ms",
             axis=axis,
             distance=far,
             nearest=near,
@@ -185,10 +183,7 @@ def _stop_below(values: Values) -> str:
         ""
         if below < low
         else Message(
-            (
-                "the spindle counts as stopped below {below} rpm, but speeds down to {low} rpm "
-                "can be commanded"
-            ),
+            "the spindle counts as stopped below {below} rpm, but speeds down to {low} rpm can be commanded",
             below=f"{below:g}",
             low=f"{low:g}",
         )
@@ -214,7 +209,7 @@ def _slide(axis: str) -> tuple[Rule, ...]:
         _below(
             f"{path}.count",
             "limits.resolution",
-            ("one step of limits.resolution must be at least one count"),
+            "one step of limits.resolution must be at least one count",
             Unit.LENGTH,
         ),
         *_windows(axis, Unit.LENGTH),
@@ -231,19 +226,19 @@ def _windows(axis: str, unit: Unit) -> tuple[Rule, ...]:
         _below(
             arrived,
             window,
-            ("the in-position window must not be larger than the following error limit"),
+            "the in-position window must not be larger than the following error limit",
             unit,
         ),
         _below(
             arrived,
             still,
-            ("the in-position window must not be larger than the standstill tolerance"),
+            "the in-position window must not be larger than the standstill tolerance",
             unit,
         ),
         _below(
             still,
             window,
-            ("the standstill tolerance must not be larger than the following error limit"),
+            "the standstill tolerance must not be larger than the following error limit",
             unit,
         ),
     )
@@ -290,7 +285,7 @@ RULES = (
     _below(
         "machine.commit_ms",
         "machine.lease_ms",
-        ("the jog watchdog would expire before the control renews it"),
+        "the jog watchdog would expire before the control renews it",
         Unit.MILLISECONDS,
     ),
     Rule("spindle.timeout_s", ("spindle.rpm", "spindle.accel_rpm_s", "spindle.at_speed_s"), _timeout),

@@ -91,10 +91,8 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         if needed > over * (1 + 1e-9):
             far = shown(needed, Unit.LENGTH, inch)
             why = Message(
-                (
-                    "the tool travels {distance} after the touch, which exceeds setter.overtravel; "
-                    "reduce the speed"
-                ),
+                "the tool travels {distance} after the touch, which exceeds setter.overtravel; "
+                "reduce the speed",
                 distance=far,
             )
             yield Finding("setter.speed", "", why, "broken-rule")

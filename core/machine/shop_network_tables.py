@@ -129,7 +129,7 @@ def _page_rules(file: FileReading) -> Iterator[Finding]:
             yield Finding(
                 "status_page.desks",
                 HIDDEN,
-                ("each entry must be an address that begins with http://"),
+                "each entry must be an address that begins with http://",
                 "broken-rule",
             )
     for address in values.text("status_page.agents").split():
@@ -157,7 +157,7 @@ def _announce_rules(file: FileReading) -> Iterator[Finding]:
         yield Finding(
             "announce.hook",
             HIDDEN,
-            ("this value must be an address that begins with http:// or https://"),
+            "this value must be an address that begins with http:// or https://",
             "broken-rule",
         )
     topic = values.text("announce.topic")

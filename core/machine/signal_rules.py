@@ -42,10 +42,8 @@ def _needed(reading: Reading) -> Iterator[Finding]:
                 f"io.out.{name}",
                 "",
                 Message(
-                    (
-                        "this output is missing; {why}. If the machine does not have this output, "
-                        'write {{ at = "none" }}'
-                    ),
+                    "this output is missing; {why}. If the machine does not have this output, "
+                    'write {{ at = "none" }}',
                     why=why,
                 ),
                 "missing",
@@ -72,7 +70,7 @@ def _m_codes(reading: Reading) -> Iterator[Finding]:
             yield Finding(
                 path,
                 "",
-                ("this key must be the number of an M code, 0…999, without a leading zero"),
+                "this key must be the number of an M code, 0…999, without a leading zero",
                 "broken-rule",
             )
         elif int(code) in FIXED_M_CODES[_language(reading)]:
@@ -136,10 +134,8 @@ def _never_off(reading: Reading) -> Iterator[Finding]:
     for code, output, on in codes:
         if on and output not in off:
             expected = Message(
-                (
-                    "this M code switches {output} on, but no M code switches this output off; add "
-                    "an M code with on = false"
-                ),
+                "this M code switches {output} on, but no M code switches this output off; add "
+                "an M code with on = false",
                 output=output,
             )
             yield Finding(f"m_codes.{code}", "", expected, "broken-rule")

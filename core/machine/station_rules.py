@@ -47,17 +47,15 @@ def wrong_wheel(file: FileReading) -> Iterator[Finding]:
             yield Finding(
                 path,
                 "0",
-                (
-                    "this value must be a number of counts, negative if the handwheel turns in the "
-                    "opposite direction"
-                ),
+                "this value must be a number of counts, negative if the handwheel turns in the "
+                "opposite direction",
                 "broken-rule",
             )
         if values.has(path) and name != WHEEL and values.number(path) != 1:
             yield Finding(
                 path,
                 f"{values.number(path):g}",
-                ("an override potentiometer has no detents; remove this key"),
+                "an override potentiometer has no detents; remove this key",
                 "broken-rule",
             )
     selectors = [selector(axis) for axis in file.axes]

@@ -67,10 +67,8 @@ def _line_to_add(file: FileReading, drivers: Sequence[Driver], switch: str) -> s
     terminal = _free_input(file, drivers, backend) if backend is not None else "IN-…"
     key = switch if switch.replace("_", "").isalnum() else written(switch)
     return Message(
-        (
-            "this switch must be an input in [io.in]; add this line to that table: {key} = "
-            '{{ at = "{terminal}" }}'
-        ),
+        "this switch must be an input in [io.in]; add this line to that table: {key} = "
+        '{{ at = "{terminal}" }}',
         key=key,
         terminal=terminal,
     )

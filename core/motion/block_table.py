@@ -208,10 +208,8 @@ def _surface(blocks: Sequence[MotionBlock], rpm_max: float) -> tuple[FloatArray,
             if not 0.0 <= block.css < math.inf:
                 raise MotionError(
                     Message(
-                        (
-                            "Block {number}: surface speed css = {css} mm/s is not valid. Program a "
-                            "surface speed with S."
-                        ),
+                        "Block {number}: surface speed css = {css} mm/s is not valid. Program a "
+                        "surface speed with S.",
                         number=block.n,
                         css=block.css,
                     ),

@@ -50,7 +50,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         number = values.whole(path) if values.has(path) else MODULE
         if number not in {MODULE, DRIVE, ENCODER_PROFILE}:
             yield Finding(
-                path, str(number), ("the profile must be 401 (terminals), 402 (drive) or 406 (encoder)")
+                path, str(number), "the profile must be 401 (terminals), 402 (drive) or 406 (encoder)"
             )
         elif number == ENCODER_PROFILE and name != used:
             why = Message(
@@ -78,10 +78,8 @@ def _beside(values: Values) -> Iterator[Finding]:
     path = f"{ENCODER}.counts_per_rev"
     if values.has(path) and abs(values.number(path)) < _LEAST:
         expected = Message(
-            (
-                "enter at least {minimum} counts; if the encoder counts down with M03, put a "
-                "minus sign before the number"
-            ),
+            "enter at least {minimum} counts; if the encoder counts down with M03, put a "
+            "minus sign before the number",
             minimum=_LEAST,
         )
         yield Finding(path, f"{values.number(path):g}", expected)
@@ -96,7 +94,7 @@ def _counts(file: FileReading) -> Iterator[Finding]:
         yield Finding(
             f"{ENCODER}.node",
             written(node),
-            ("the encoder node must be a node of [canopen.nodes] with profile = 406"),
+            "the encoder node must be a node of [canopen.nodes] with profile = 406",
         )
     elif profile_of(file, node) == MODULE:
         yield Finding(
@@ -115,7 +113,7 @@ def _counts(file: FileReading) -> Iterator[Finding]:
             f"{ENCODER}.object",
             written(counted),
             Message(
-                ('the encoder object must be an index and sub-index, such as "{position}"'), position=POSITION
+                'the encoder object must be an index and sub-index, such as "{position}"', position=POSITION
             ),
         )
 

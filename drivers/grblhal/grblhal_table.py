@@ -87,7 +87,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         yield Finding(
             "grblhal.x_mode",
             '"G7"',
-            ('the X mode must be "G8", because a reset would change the meaning of X'),
+            'the X mode must be "G8", because a reset would change the meaning of X',
         )
 
 
@@ -122,7 +122,7 @@ def _too_small(
     if isinstance(setting, str) or setting is None or setting >= needed * (1 - 1e-6):
         return
     expected = Message(
-        ("the setting must be at least {needed} {unit} for {path}"),
+        "the setting must be at least {needed} {unit} for {path}",
         needed=f"{needed:.6g}",
         unit=unit,
         path=path,

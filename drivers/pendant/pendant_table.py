@@ -54,10 +54,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
             f"[{_PATH}]",
             "",
             Message(
-                (
-                    "this section is missing, but {used} uses the pendant. Set device to the name "
-                    "of the pendant"
-                ),
+                "this section is missing, but {used} uses the pendant. Set device to the name of the pendant",
                 used=used[0],
             ),
         )
@@ -123,10 +120,8 @@ DRIVER = Driver(
             _PATH,
             PendantModel,
             rules=_rules,
-            purpose=(
-                "A pendant, gamepad or jog dial on USB. Its buttons are inputs of [io.in] at "
-                "`pendant.…`; no button can start a cycle or switch an output."
-            ),
+            purpose="A pendant, gamepad or jog dial on USB. Its buttons are inputs of [io.in] at "
+            "`pendant.…`; no button can start a cycle or switch an output.",
         ),
     )
 )

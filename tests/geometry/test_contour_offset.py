@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
-from core.geometry.contour_offset import JOINED, WINDOW, GougeError, Offset, offset_element
+from core.geometry.contour_offset import JOINED, WINDOW, GougeError, Offset, offset_element, pieces_beside
 from core.geometry.intersections import clearance, distance
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
 from tests.geometry.contours import CONTOURS, arc, follow, polyline, sampled
@@ -19,10 +19,7 @@ pytestmark = pytest.mark.long
 
 def offset_contour(elements: list[Element], left: float) -> list[Element]:
     """The whole path beside a contour."""
-    offset = Offset(left)
-    return [piece.element for element in elements for piece in offset.add(element)] + [
-        piece.element for piece in offset.close()
-    ]
+    return [piece.element for piece in pieces_beside(elements, left)]
 
 
 def test_the_left_of_a_way_outwards_is_away_from_the_spindle() -> None:

@@ -42,6 +42,12 @@ def test_chamfers_of_a_blunt_corner_by_length() -> None:
     assert way(cut) == pytest.approx(3)
 
 
+def test_a_speed_behind_the_corner_is_not_that_of_the_move_before_it() -> None:
+    """G96 S200 at a radius of 10 is 3183 rpm, though S100 is read before the move can be cut."""
+    cut = good("G96 S200 M4 F.2\nG1 X20 Z-20 RND=4\nS100\nX60", AT)[0]
+    assert cut.rpm == pytest.approx(-200e3 / (pi * 20.0))
+
+
 def test_a_rounding() -> None:
     first, arc, last = corner("RND=4")
     assert arc.kind is Kind.ARC

@@ -64,6 +64,16 @@ def test_g41_is_the_other_side() -> None:
     assert ends([approach, bore]) == [(10.0, -R), (10.0, -20.0 - R)]
 
 
+def test_each_move_turns_at_its_own_surface_speed() -> None:
+    """G96 S200 on the cylinder of 20 is 3183 rpm, whatever comes behind it: another S, or the end."""
+    head = "T1 D1\nG96 S200 M4 F.2\nG0 X60 Z5\nG42 G1 X20 Z0\nZ-20\n"
+    slower = good(head + "X40\nS100\nX60\nG40 X80 Z5\n", with_tool())
+    ended = good(head + "X40\nG40 M30\n", with_tool())
+    for moves in (slower, ended):
+        assert moves[2].rpm == pytest.approx(-200e3 / (pi * 20.0))
+    assert slower[4].rpm == pytest.approx(-100e3 / (2.0 * pi * slower[4].x))
+
+
 def test_an_arc_of_the_contour_by_hand() -> None:
     """G3 from X20 Z0 to X40 Z-10 bulges outwards: its radius of 10 is 10 + R for the centre."""
     text = "T1 D1\nG0 X60 Z5\nG42 G1 X20 Z0 F200\nG3 X40 Z-10 CR=10\nG40 G1 X60 Z5\n"

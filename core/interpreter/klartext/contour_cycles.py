@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 
 from core.geometry.area_clearing import Cut, begun_at, clearing, walked
-from core.geometry.contour_offset import GougeError, Offset
+from core.geometry.contour_offset import GougeError, pieces_beside
 from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Point, left_of
 from core.geometry.pocket_area import AreaError, Loop, Within, follows, inset
 from core.interpreter.elementary_blocks import Block
@@ -323,13 +323,11 @@ def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
     closed = math.dist(elements[-1].end, elements[0].start) <= OPEN
     if closed:
         elements = follows(elements)
-    offset = Offset(apart if figure.side == "L" else -apart)
     try:
-        found = [piece for element in elements for piece in offset.add(element)]
-        found += offset.close()
+        beside = pieces_beside(elements, apart if figure.side == "L" else -apart)
     except GougeError as problem:
         raise told.unfit(problem) from None
-    return [piece.element for piece in found]
+    return [piece.element for piece in beside]
 
 
 def run_contour(state: State, tool: CycleTool, number: int, figures: Figures, column: int) -> Iterator[Block]:

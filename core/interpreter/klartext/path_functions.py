@@ -233,22 +233,19 @@ class PathRunner:
             raise unsupported(state.line, node.column, "LN with 3D compensation (DL, DR, DR2, RL, RR)")
 
     def _demand_same_side(self, node: Move) -> None:
-        if node.compensation in {"+", "-"} and self._side:
-            text = Message(
-                "R{compensation} is not allowed while R{side} is active.",
-                compensation=node.compensation,
-                side=self._side,
-            )
-            raise self._state.refuse(node.column, COMPENSATION, text, "Write R0 before this block.")
-        if node.compensation in {"L", "R"} and self._side and node.compensation != self._side:
-            text = Message(
-                "R{compensation} is not allowed while R{side} is active.",
-                compensation=node.compensation,
-                side=self._side,
-            )
-            raise self._state.refuse(
-                node.column, COMPENSATION, text, "Write R0 before you change the compensation side."
-            )
+        if not self._side or node.compensation in {"", "0", self._side}:
+            return
+        text = Message(
+            "R{compensation} is not allowed while R{side} is active.",
+            compensation=node.compensation,
+            side=self._side,
+        )
+        hint = (
+            "Write R0 before this block."
+            if node.compensation in {"+", "-"}
+            else "Write R0 before you change the compensation side."
+        )
+        raise self._state.refuse(node.column, COMPENSATION, text, hint)
 
     def _switched(self, node: Move) -> Iterator[Block]:
         """An L without axes that ends compensation."""

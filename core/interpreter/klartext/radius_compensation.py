@@ -10,8 +10,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from core.geometry.contour_offset import GougeError, Offset, Piece
-from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Point, left_of
+from core.geometry.contour_offset import GougeError, Piece, pieces_beside
+from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Point, left_of, touching
 from core.geometry.rotation_frames import Vector
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
@@ -30,7 +30,8 @@ class Contour:
         self._flats = [each for each in elements if each.flat is not None]
         self._pieces: dict[int, list[Piece]] = {id(each): [] for each in elements}
         self.first: Element | None = self._flats[0].flat if self._flats else None
-        self._follow(side, radius)
+        for piece in self._beside(radius if side == "L" else -radius):
+            self._pieces[id(self._flats[piece.source])].append(piece)
 
     @property
     def end(self) -> Point | None:
@@ -42,25 +43,18 @@ class Contour:
         """The direction in which it ends."""
         return self._flats[-1].end_direction if self._flats else None
 
-    def _follow(self, side: str, radius: float) -> None:
-        offset = Offset(radius if side == "L" else -radius)
-        found: list[Piece] = []
+    def _beside(self, left: float) -> list[Piece]:
         try:
-            for each in self._flats:
-                assert each.flat is not None
-                found += offset.add(each.flat)
-            found += offset.close()
+            return pieces_beside([each.flat for each in self._flats if each.flat is not None], left)
         except GougeError as problem:
             at = self._flats[min(problem.index, len(self._flats) - 1)]
             text = Message(
                 "A tool radius of {radius} mm does not fit the contour: {why}.",
-                radius=f"{radius:.10g}",
+                radius=f"{abs(left):.10g}",
                 why=problem.why,
             )
             hint = "Use a smaller tool, or change the contour."
             raise fault(at.line, at.column, RADIUS_TOO_LARGE, text, hint) from None
-        for piece in found:
-            self._pieces[id(self._flats[piece.source])].append(piece)
 
     def pieces(self, element: PathElement, here: Vector) -> Iterator[PathElement]:
         """The tool's way along one element, from where it stands; an outside corner behind it included."""
@@ -179,9 +173,7 @@ def _radius(state: State, entry: Entry) -> tuple[float, float]:
 
 def _touching(state: State, entry: Entry, centre: Point, size: float, *, clockwise: bool) -> Point:
     """Where a line from the start of the entry touches the circle, run in its sense."""
-    dx, dy = entry.start[0] - centre[0], entry.start[1] - centre[1]
-    away = math.hypot(dx, dy)
-    if away < size:
+    if math.dist(entry.start[:2], centre) < size:
         text = Message(
             "No path is possible for {form} because the tool is inside the arc of this move.",
             form=entry.node.form,
@@ -189,10 +181,7 @@ def _touching(state: State, entry: Entry, centre: Point, size: float, *, clockwi
         raise state.refuse(
             entry.node.column, INPUT_VALUE, text, "Start farther from the contour, or reduce R."
         )
-    half = math.acos(min(1.0, size / away))
-    # Counter-clockwise the circle is met half an angle further on, seen from its centre.
-    angle = math.atan2(dy, dx) + (-half if clockwise else half)
-    return centre[0] + size * math.cos(angle), centre[1] + size * math.sin(angle)
+    return touching(entry.start[:2], centre, size, clockwise=clockwise)
 
 
 def _beside(at: Vector, direction: Point, side: str, radius: float) -> Vector:

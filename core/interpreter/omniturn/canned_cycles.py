@@ -7,11 +7,11 @@ from math import hypot
 
 from core.geometry.lines_and_arcs import Arc, Line, Point, arc_length
 from core.interpreter import units
-from core.interpreter.adjusted_moves import move_words
 from core.interpreter.contour_passes import Move
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.code_rules import check_when, checked
 from core.interpreter.omniturn.feeds import check_move
+from core.interpreter.omniturn.move_words import move_words
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step

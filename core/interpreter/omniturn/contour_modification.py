@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.omniturn.corners import Corners
+from core.interpreter.omniturn.move_words import WordedMoves
 from core.interpreter.omniturn.nose_compensation import (
     Compensation,
     check_approach,
@@ -25,9 +26,9 @@ class ContourModifier:
 
     def __init__(self, state: State) -> None:
         self._state = state
-        max_rpm = state.setup.limits.max_rpm
-        self._corners = Corners(state.log, max_rpm)
-        self._nose = Compensation(state.log, max_rpm)
+        moves = WordedMoves(state.setup.limits.max_rpm)
+        self._corners = Corners(state.log, moves)
+        self._nose = Compensation(state.log, moves)
         self._count: int | None = None  # number of the last block handed out, while active
 
     def take(self, block: Block) -> Iterator[Block]:
@@ -81,7 +82,7 @@ class ContourModifier:
                 block.n = count
                 self._count = count
                 yield block
-        state.contour.active = self._corners.active or self._nose.active
+        state.contour.active = self._corners.holds or self._nose.active
         if not state.contour.active:
             state.blocks = count
             state.contour.approach = 0  # a T may have ended what had not begun

@@ -6,13 +6,16 @@ import copy
 from collections import deque
 from collections.abc import Sequence
 
-from core.geometry.lines_and_arcs import Element, Line, Point, arc_between
+from core.geometry.lines_and_arcs import Element, Point, shifted
+from core.interpreter.adjusted_moves import element_of
+from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.omniturn.arc_moves import arc_move
 from core.interpreter.omniturn.code_entry import Acts
 from core.interpreter.omniturn.code_rules import check_together
 from core.interpreter.omniturn.code_table import LETTERS
-from core.interpreter.omniturn.corners import ContourPiece, corner_size, cut_corners
-from core.interpreter.omniturn.omniturn_state import State
+from core.interpreter.omniturn.corners import ContourCorners, corner_size
+from core.interpreter.omniturn.move_words import WordedMoves
+from core.interpreter.omniturn.omniturn_state import Corner, State
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
 from core.interpreter.omniturn.straight_moves import geometry_modes, go, on_step
 from core.interpreter.omniturn.tools_and_offsets import preset
@@ -57,7 +60,7 @@ class _Reader:
         self._own.title_rapid = self._own.tool_line = 0
         self._begun = False
         self._reported = False
-        self._pieces: list[ContourPiece] = []
+        self._moves: list[tuple[Block, Corner | None]] = []
 
     def take(self, line: Statement) -> None:
         if line.flow == UNREADABLE:
@@ -99,7 +102,11 @@ class _Reader:
                 )
                 self._state.log.warn(self._made.line, self._made.code_column, "cycle-modes", text)
                 break
-        return cut_corners(self._pieces, self._state.log)
+        state = self._state
+        moves = WordedMoves(state.setup.limits.max_rpm)
+        blocks = ContourCorners(state.log, moves).cut(self._moves)
+        elements = [shifted(element_of(each), *self._shift(each)) for each in blocks]
+        return [element for element in elements if element.length > _SAME]
 
     def _tell_ignored(self, line: Statement) -> None:
         words = [line.words[letter] for letter in "TDSF" if letter in line.words and line.one_shot != 4]
@@ -117,18 +124,17 @@ class _Reader:
             self._state.log.add(found)
 
     def _move(self, line: Statement) -> None:
-        corner = None if line.entry.acts is Acts.ARC else line.words.get("C") or line.words.get("R")
+        arc = line.entry.acts is Acts.ARC
+        word = None if arc else line.words.get("C") or line.words.get("R")
         if not self._begun:
-            self._begin(line, corner)
+            self._begin(line, word)
             return
-        element = self._arc(line) if line.entry.acts is Acts.ARC else self._line(line)
-        size = 0.0
-        if corner is not None:
-            check_together(line, LETTERS[corner.letter])
-            size = corner_size(self._own, line, corner)
-        if corner is not None or element.length > _SAME:
-            metric = self._own.modal.metric
-            self._pieces.append(ContourPiece(element, line.line, corner, size, metric))
+        block, corner = arc_move(self._own, line) if arc else self._line(line), None
+        if word is not None:
+            check_together(line, LETTERS[word.letter])
+            corner = Corner(word.letter, corner_size(self._own, line, word), word.column)
+        if corner is not None or element_of(block).length > _SAME:
+            self._moves.append((block, corner))
 
     def _begin(self, line: Statement, corner: Word | None) -> None:
         """The first line is the way from the start point to the first point of the contour."""
@@ -139,25 +145,14 @@ class _Reader:
         self._line(line)
         self._begun = True
 
-    def _line(self, line: Statement) -> Line:
-        own, start = self._own, self._point()
+    def _line(self, line: Statement) -> Block:
+        own, start = self._own, (self._own.x, self._own.z, self._own.c)
         go(own, on_step(own, line, "X"), on_step(own, line, "Z"))
-        return Line(start, self._point())
+        return own.move(Kind.FEED, line.line, "", start, 0.0)
 
-    def _arc(self, line: Statement) -> Element:
-        block = arc_move(self._own, line)
-        dx, dz = self._shift()
-        start, end = (block.x0 + dx, block.z0 + dz), (block.x + dx, block.z + dz)
-        return arc_between(start, end, (block.cx + dx, block.cz + dz), clockwise=block.clockwise)
-
-    def _shift(self) -> Point:
+    def _shift(self, block: Block) -> Point:
         """From the frame at this place of the contour to that of the cycle's line."""
-        own, state = self._own, self._state
-        return own.offset_x - state.offset_x, own.offset_z - state.offset_z
-
-    def _point(self) -> Point:
-        dx, dz = self._shift()
-        return self._own.x + dx, self._own.z + dz
+        return block.offset_x - self._state.offset_x, block.offset_z - self._state.offset_z
 
 
 def _refused(

@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from math import dist
 from typing import NamedTuple
 
-from core.geometry.contour_offset import WINDOW, GougeError, Offset, Piece
+from core.geometry.contour_offset import WINDOW
 from core.geometry.intersections import distance
 from core.geometry.lines_and_arcs import SAME_POINT, Element, Line, Point
 from core.interpreter.actions import ToolChange
-from core.interpreter.adjusted_moves import element_of, inserted_after, moved_along, standstill_at
+from core.interpreter.adjusted_moves import AdjustedMoves, element_of
+from core.interpreter.contour_stage import FOLLOWED, STRAIGHT, ContourMove, ContourStage, cuts_in
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.nose_clearance import cuts_in
 from core.interpreter.omniturn.code_rules import check_when
 from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES
-from core.interpreter.omniturn.corners import STRAIGHT
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Item, State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import ProgramError, program_error
@@ -43,81 +41,131 @@ class ApproachOrDeparture(NamedTuple):
 
     def refused(self, why: str, text: str, hint: str) -> ProgramError:
         """The error to raise for this approach or departure; ``why`` ends the diagnostic's code."""
-        return program_error(self.block.line, 0, f"comp-{self.name}{why}", text, hint)
+        return _refused(self.block, f"comp-{self.name}{why}", text, hint)
+
+    def check(self, way: Line, free: Point, corner: Point, log: Log) -> None:
+        """Off the part it must begin or end R or more from it, better 2R: else a warning; and never cut it.
+
+        ``free`` is that end as programmed, ``corner`` where the contour begins or ends. Raises ProgramError.
+        """
+        if dist(free, corner) < self.radius - SAME_POINT:
+            text = Message(
+                "The {lead} move is {length} long, which is less than the nose radius of {nose}.",
+                lead=self.name,
+                length=self.block.modal.length_text(dist(free, corner)),
+                nose=self.block.modal.length_text(self.radius),
+            )
+            raise self.refused("-short", text, "Move farther away from the part.")
+        self._check_distance(min(distance(element, free) for element in self.contour), log)
+        if cuts_in(way, self.contour, self.radius):
+            text = Message(
+                "With G{code}, the tool nose cuts into the part during the {lead}.",
+                code=self.code,
+                lead=self.name,
+            )
+            template = "Choose a different path for the {lead}, or switch between G41 and G42."
+            raise _refused(self.block, "comp-gouge", text, Message(template, lead=self.name))
+
+    def _check_distance(self, off: float, log: Log) -> None:
+        if off >= 2 * self.radius - SAME_POINT:
+            return
+        length = self.block.modal.length_text
+        near = off < self.radius - SAME_POINT
+        text = Message(_NEAR[self.departs, near], value=length(off), nose=length(self.radius))
+        hint = "Start the approach, or end the departure, at least twice the nose radius away from the part."
+        if near:
+            raise self.refused("-near", text, hint)
+        log.warn(self.block.line, 0, f"comp-{self.name}-near", text, hint)
 
 
-def check_distance(lead: ApproachOrDeparture, free: Point, corner: Point, log: Log) -> None:
-    """The end off the part, as programmed, must be R or more from it, and better 2R: else a warning.
+_NEAR = {  # by whether it is a departure, and nearer than R
+    (True, True): "The departure ends {value} from the part, which is less than the nose radius of {nose}.",
+    (False, True): "The approach starts {value} from the part, which is less than the nose radius of {nose}.",
+    (True, False): "The departure ends {value} from the part, which is less than twice the nose radius of "
+    "{nose}.",
+    (False, False): "The approach starts {value} from the part, which is less than twice the nose radius of "
+    "{nose}.",
+}
 
-    ``corner`` is where the contour begins or ends. Raises ProgramError.
+
+class _Contour(ContourStage):
+    """The contour between G41 or G42 and G40.
+
+    It has the secondary offset in it, so the path has, too: an offset of the moved contour is the moved
+    offset of the contour.
     """
-    radius = lead.radius
-    nose = lead.block.modal.length_text(radius)
-    if dist(free, corner) < radius - SAME_POINT:
-        length = lead.block.modal.length_text(dist(free, corner))
+
+    def __init__(
+        self, moves: AdjustedMoves, log: Log, mark: CompensationSwitch, approach: Block, radius: float
+    ) -> None:
+        super().__init__(moves, approach, radius if mark.code == 41 else -radius)
+        self._log, self._mark = log, mark
+        self._first: list[Element] = []  # of the contour, near the approach
+        self._recent: deque[Element] = deque(maxlen=WINDOW)
+
+    def move(self, block: Block) -> Iterator[Block]:
+        """One more move; it is the departure if no other one comes. Raises ProgramError."""
+        if block.kind is not Kind.ARC and dist((block.x0, block.z0), (block.x, block.z)) < SAME_POINT:
+            self.last.after.append(block)
+            return
+        last, self.last = self.last, ContourMove(block)
+        if last is self.approach:
+            return
+        element = element_of(last.block)
+        if len(self._first) < WINDOW:
+            self._first.append(element)
+        self._recent.append(element)
+        yield from self._hand_out(self._follow(last, element))
+
+    def close(self) -> Iterator[Block]:
+        """G40: the last move departs. Raises ProgramError."""
+        if not self.count:
+            text = Message(
+                "{name} has no contour move between its approach and its departure.", name=self._mark.name
+            )
+            hint = "Write the contour between the approach and the departure."
+            raise _refused(self.last.block, "comp-empty", text, hint)
+        pieces = self._rest()
+        way = Line(pieces[-1].element.end, (self.last.block.x, self.last.block.z))
+        self._check_departure(way)  # before anything that was held comes out
+        yield from self._hand_out(pieces)
+        yield from self._leave(self.last, [way])
+
+    def _way_in(self, to: Point) -> Sequence[Element]:
+        block, mark, modal = self.approach.block, self._mark, self.approach.block.modal
+        begun = block.x0 - mark.dx + modal.secondary_x, block.z0 - mark.dz + modal.secondary_z
+        way = Line((block.x0, block.z0), to)
+        lead = ApproachOrDeparture(block, False, mark.code, self.radius, self._first)
+        lead.check(way, begun, (block.x, block.z), self._log)
+        return [way]
+
+    def _check_departure(self, way: Line) -> None:
+        block, after = self.last.block, self.last.after
+        contour = list(reversed(self._recent))
+        lead = ApproachOrDeparture(block, True, self._mark.code, self.radius, contour)
+        if any(each.moves for each in after):
+            text = "The departure, the last move before G40, has zero length."
+            raise lead._replace(block=after[-1]).refused("-short", text, "Move off the part.")
+        if block.kind not in STRAIGHT:
+            text = "The departure, the move before G40, is not a straight line."
+            raise lead.refused("", text, "Move off the part in a straight line.")
+        lead.check(way, way.end, (block.x0, block.z0), self._log)
+
+    def _gouges(self, block: Block, why: str) -> ProgramError:
         text = Message(
-            "The {lead} move is {length} long, which is less than the nose radius of {nose}.",
-            lead=lead.name,
-            length=length,
-            nose=nose,
+            "{name} with a nose radius of {nose} cannot compensate this move: {why}.",
+            name=self._mark.name,
+            nose=block.modal.length_text(self.radius),
+            why=why,
         )
-        raise lead.refused("-short", text, "Move farther away from the part.")
-    off = min(distance(element, free) for element in lead.contour)
-    shown = lead.block.modal.length_text(off)
-    hint = "Start the approach, or end the departure, at least twice the nose radius away from the part."
-    if off < radius - SAME_POINT:
-        template = (
-            "The departure ends {value} from the part, which is less than the nose radius of {nose}."
-            if lead.departs
-            else "The approach starts {value} from the part, which is less than the nose radius of {nose}."
-        )
-        raise lead.refused("-near", Message(template, value=shown, nose=nose), hint)
-    if off < 2 * radius - SAME_POINT:
-        template = (
-            "The departure ends {value} from the part, which is less than twice the nose radius of {nose}."
-            if lead.departs
-            else "The approach starts {value} from the part, which is less than twice the nose radius of "
-            "{nose}."
-        )
-        text = Message(template, value=shown, nose=nose)
-        log.warn(lead.block.line, 0, f"comp-{lead.name}-near", text, hint)
-
-
-def check_clear(lead: ApproachOrDeparture, way: Line) -> None:
-    """The nose on its way must not cut the part. Raises ProgramError."""
-    if cuts_in(way, lead.contour, lead.radius):
-        text = Message(
-            "With G{code}, the tool nose cuts into the part during the {lead}.",
-            code=lead.code,
-            lead=lead.name,
-        )
-        hint = Message(
-            "Choose a different path for the {lead}, or switch between G41 and G42.", lead=lead.name
-        )
-        raise program_error(lead.block.line, 0, "comp-gouge", text, hint)
-
-
-_FOLLOWED = STRAIGHT | {Kind.ARC}
-
-
-@dataclass(slots=True)
-class _Move:
-    """A programmed move and what stands still after it."""
-
-    block: Block
-    after: list[Block] = field(default_factory=list)
+        return _refused(block, "comp-gouge", text, "Use a smaller nose radius, or change the contour.")
 
 
 class Compensation:
-    """Takes moves and marks in order, holds them until their compensated places are sure.
+    """Takes moves and marks in order, holds them until their compensated places are sure."""
 
-    The contour has the secondary offset in it, so the path has, too: an offset of the moved contour is the
-    moved offset of the contour.
-    """
-
-    def __init__(self, log: Log, max_rpm: float) -> None:
-        self._log = log
-        self._max_rpm = max_rpm
+    def __init__(self, log: Log, moves: AdjustedMoves) -> None:
+        self._log, self._moves = log, moves
         self.drop()
 
     @property
@@ -129,165 +177,37 @@ class Compensation:
         """Forget what is held; compensation is off."""
         self._mark: CompensationSwitch | None = None
         self.radius = 0.0  # of the nose, mm; to be set when the approach comes
-        self._approach: _Move | None = None
-        self._last: _Move | None = None  # the departure, if no other move comes
-        self._moves: dict[int, _Move] = {}  # of the contour, by index
-        self._count = 0
-        self._first: list[Element] = []  # of the contour, near the approach
-        self._recent: deque[Element] = deque(maxlen=WINDOW)
-        self._at: Point | None = None  # end of what has been handed out
-        self._index = 0  # of the move whose pieces are being handed out
-        self._offset = Offset(0.0)
+        self._contour: _Contour | None = None
 
     def take(self, item: Item) -> Iterator[Block]:
         """Yields what no later item can change. Raises ProgramError where the nose cannot follow."""
+        mark, contour = self._mark, self._contour
         if isinstance(item, CompensationSwitch):
-            if self._mark is not None:
+            if mark is not None:
                 yield from self._close()
             self._mark = None if item.code == 40 else item
-        elif self._mark is None:
+        elif mark is None:
             yield item
         elif isinstance(item.action, ToolChange):
             yield from self._close()
             yield item
         elif item.action is not None:
-            yield from self._rest(item)
+            if contour is None:
+                yield item
+            else:
+                contour.last.after.append(item)
+        elif item.kind not in FOLLOWED or item.c != item.c0:
+            text = Message("{name} cannot compensate this move.", name=mark.name)
+            raise _refused(item, "comp-with", text, "Write G40 before this line.")
+        elif contour is None:
+            self._contour = _Contour(self._moves, self._log, mark, item, self.radius)
         else:
-            yield from self._move(item)
-
-    def _rest(self, block: Block) -> Iterator[Block]:
-        """A block in which nothing moves: at the compensated end of the move before it."""
-        holder = self._last or self._approach
-        if holder is None:
-            yield block
-        else:
-            holder.after.append(block)
-
-    def _move(self, block: Block) -> Iterator[Block]:
-        if block.kind not in _FOLLOWED or block.c != block.c0:
-            raise _refused(
-                block,
-                "comp-with",
-                Message("{name} cannot compensate this move.", name=self._name),
-                "Write G40 before this line.",
-            )
-        move = _Move(block)
-        if self._approach is None:
-            self._approach = move
-            self._offset = Offset(self.radius if self._code == 41 else -self.radius)
-            return
-        if block.kind is not Kind.ARC and dist((block.x0, block.z0), (block.x, block.z)) < SAME_POINT:
-            (self._last or self._approach).after.append(block)
-            return
-        last, self._last = self._last, move
-        if last is not None:
-            yield from self._follow(last)
-
-    def _follow(self, move: _Move) -> Iterator[Block]:
-        """One more move of the contour."""
-        element = element_of(move.block)
-        self._moves[self._count] = move
-        self._count += 1
-        if len(self._first) < WINDOW:
-            self._first.append(element)
-        self._recent.append(element)
-        try:
-            for piece in self._offset.add(element):
-                yield from self._hand_out(piece)
-        except GougeError as problem:
-            raise self._gouge(problem) from None
-
-    def _hand_out(self, piece: Piece) -> Iterator[Block]:
-        if self._at is None:
-            yield from self._approached(piece.element.start)
-        while self._index < piece.source:
-            yield from self._standing(self._moves.pop(self._index))
-            self._index += 1
-        make = inserted_after if piece.corner else moved_along
-        self._at = piece.element.end
-        yield make(self._moves[piece.source].block, piece.element, self._max_rpm)
-
-    def _standing(self, move: _Move) -> Iterator[Block]:
-        if self._at is not None:
-            for block in move.after:
-                yield standstill_at(block, self._at, self._max_rpm)
-
-    def _approached(self, to: Point) -> Iterator[Block]:
-        approach = self._approach
-        assert approach is not None
-        assert self._mark is not None
-        block, modal = approach.block, approach.block.modal
-        begun = (
-            block.x0 - self._mark.dx + modal.secondary_x,
-            block.z0 - self._mark.dz + modal.secondary_z,
-        )
-        way = Line((block.x0, block.z0), to)
-        lead = ApproachOrDeparture(block, False, self._code, self.radius, self._first)
-        check_distance(lead, begun, (block.x, block.z), self._log)
-        check_clear(lead, way)
-        self._at = to
-        yield moved_along(block, way, self._max_rpm)
-        yield from self._standing(approach)
+            yield from contour.move(item)
 
     def _close(self) -> Iterator[Block]:
-        """G40: the last move departs."""
-        approach, last = self._approach, self._last
-        if approach is None:
-            self.drop()
-            return
-        if last is None or not self._count:
-            text = Message(
-                "{name} has no contour move between its approach and its departure.", name=self._name
-            )
-            raise _refused(
-                (last or approach).block,
-                "comp-empty",
-                text,
-                "Write the contour between the approach and the departure.",
-            )
-        try:
-            pieces = list(self._offset.close())
-        except GougeError as problem:
-            raise self._gouge(problem) from None
-        way = Line(pieces[-1].element.end, (last.block.x, last.block.z))
-        self._check_departure(last, way)  # before anything that was held comes out
-        for piece in pieces:
-            yield from self._hand_out(piece)
-        yield from self._standing(self._moves.pop(self._index))
-        yield moved_along(last.block, way, self._max_rpm)
-        yield from last.after
+        if self._contour is not None:
+            yield from self._contour.close()
         self.drop()
-
-    def _check_departure(self, move: _Move, way: Line) -> None:
-        block = move.block
-        lead = ApproachOrDeparture(block, True, self._code, self.radius, list(reversed(self._recent)))
-        if any(each.moves for each in move.after):
-            text = "The departure, the last move before G40, has zero length."
-            raise lead._replace(block=move.after[-1]).refused("-short", text, "Move off the part.")
-        if block.kind not in STRAIGHT:
-            text = "The departure, the move before G40, is not a straight line."
-            raise lead.refused("", text, "Move off the part in a straight line.")
-        check_distance(lead, way.end, (block.x0, block.z0), self._log)
-        check_clear(lead, way)
-
-    def _gouge(self, problem: GougeError) -> ProgramError:
-        block = self._moves[problem.index].block
-        nose = block.modal.length_text(self.radius)
-        text = Message(
-            "{name} with a nose radius of {nose} cannot compensate this move: {why}.",
-            name=self._name,
-            nose=nose,
-            why=problem.why,
-        )
-        return _refused(block, "comp-gouge", text, "Use a smaller nose radius, or change the contour.")
-
-    @property
-    def _code(self) -> int:
-        return self._mark.code if self._mark is not None else 40
-
-    @property
-    def _name(self) -> str:
-        return f"G{self._code}"
 
 
 def _refused(block: Block, code: str, text: str, hint: str) -> ProgramError:

@@ -32,6 +32,11 @@ class CompensationSwitch(NamedTuple):
     dx: float
     dz: float
 
+    @property
+    def name(self) -> str:
+        """What messages call it."""
+        return f"G{self.code}"
+
 
 Item = Block | CompensationSwitch
 

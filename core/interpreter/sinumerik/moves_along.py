@@ -4,33 +4,33 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from core.geometry.lines_and_arcs import Element, Line
+from core.geometry.lines_and_arcs import Element
+from core.interpreter.adjusted_moves import AdjustedMoves
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.sinumerik.linear_moves import AxisTravel
 from core.interpreter.sinumerik.sinumerik_state import State
 
 
-def along(state: State, block: Block, element: Element) -> Block:
-    """The block's own move along an element; a rapid takes the time of its slowest axis."""
-    (x0, z0), (x, z) = element.start, element.end
-    travel = AxisTravel(x0, z0, block.c0, x, z, block.c, block.modal, block.offset_x, block.offset_z)
-    rapid = block.kind is Kind.RAPID
-    feed = travel.rapid_rate(state.setup.limits.speeds) if rapid else block.feed
-    made = replace(block, x0=x0, z0=z0, x=x, z=z, feed=feed, rpm=_rpm(state, block, x))
-    if isinstance(element, Line):
-        return made
-    cx, cz = element.centre
-    return replace(made, kind=Kind.ARC, cx=cx, cz=cz, clockwise=element.clockwise)
+class MovesAlong(AdjustedMoves):
+    """They keep their text; a rapid takes the time of its slowest axis."""
 
+    def __init__(self, state: State) -> None:
+        self._state = state
 
-def inserted(state: State, block: Block, element: Element) -> Block:
-    """What is put in behind a block: a move of X and Z alone; C has ended with the block."""
-    bent = isinstance(element, Line) and block.kind is Kind.ARC
-    straight = replace(block, kind=Kind.FEED) if bent else block
-    return replace(along(state, straight, element), c0=block.c, text=f"{block.text} ›")
+    @property
+    def highest_rpm(self) -> float:
+        """The speed limit of the spindle, that of G26 included."""
+        return self._state.highest
 
+    def along(self, block: Block, element: Element) -> Block:
+        """The block's own move along an element."""
+        made = self._placed(block, element, block.text)
+        if block.kind is not Kind.RAPID:
+            return made
+        zero = block.offset_x, block.offset_z
+        travel = AxisTravel(*element.start, block.c0, *element.end, block.c, block.modal, *zero)
+        return replace(made, feed=travel.rapid_rate(self._state.setup.limits.speeds))
 
-def _rpm(state: State, block: Block, x: float) -> float:
-    if block.css is None or not block.modal.spindle:
-        return block.rpm
-    return state.rpm_at(x)
+    def inserted(self, block: Block, element: Element) -> Block:
+        """What is put in behind a block: a move of X and Z alone; C has ended with the block."""
+        return replace(self.along(block, element), c0=block.c, text=f"{block.text} ›")

@@ -7,56 +7,25 @@ nose's centre runs its radius beside the contour, and the tip lies from it as th
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from math import acos, atan2, cos, dist, pi, sin
+from math import cos, dist, pi, sin
 from typing import NamedTuple
 
-from core.geometry.contour_offset import GougeError, Offset, Piece
 from core.geometry.intersections import clearance
-from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, Point, turn
+from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, Point, touching, turn
 from core.interpreter.actions import ProgramEnd, ToolChange
-from core.interpreter.adjusted_moves import element_of, standstill_at
+from core.interpreter.adjusted_moves import element_of
+from core.interpreter.contour_stage import FOLLOWED, STRAIGHT, ContourMove, ContourStage, cuts_in
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.nose_clearance import cuts_in
-from core.interpreter.sinumerik.moves_along import along, inserted
+from core.interpreter.sinumerik.moves_along import MovesAlong
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_alarms import fault
 from core.message import Message
 from core.tool_edges import TIP_DIRECTIONS
 
-_STRAIGHT = frozenset({Kind.FEED, Kind.RAPID})
-_FOLLOWED = _STRAIGHT | {Kind.ARC}
 _TOUCHES = 0.002  # mm
 _SHARPEST = 2.0 * pi / 3.0  # rad of a turn that G451 still goes round by the intersection
-
-
-@dataclass(slots=True)
-class _Move:
-    """A programmed move and what stands still behind it."""
-
-    block: Block
-    after: list[Block] = field(default_factory=list)
-
-
-@dataclass(slots=True)
-class _Contour:
-    """What is kept between G41 or G42 and the move behind G40; ``left`` mm to the left of it runs the centre.
-
-    ``tip`` is where the tip lies from the centre, mm: X, Z.
-    """
-
-    approach: _Move
-    left: float
-    tip: Point
-    rounded: bool
-    round_ends: bool
-    moves: list[_Move] = field(default_factory=list)
-
-    @property
-    def radius(self) -> float:
-        return abs(self.left)
 
 
 class Compensation:
@@ -97,13 +66,13 @@ class Compensation:
         """No block comes any more. Raises ProgramError where a contour is open."""
         contour, self._contour = self._contour, None
         if contour is not None:
-            raise _open(_last(contour).block)
+            raise _open(contour.last.block)
         yield from ()
 
     def _begin(self, block: Block) -> None:
         """The move that leads to the contour."""
         state, code = self._state, block.modal.nose_comp
-        if block.kind not in _STRAIGHT or self._turns(block):
+        if block.kind not in STRAIGHT or self._turns(block):
             text = Message("the first move with G{code} is not a straight line.", code=code)
             raise _fault(block, "comp-approach", text, "Approach with G0 or G1, then begin the contour.")
         if not state.modal.edge:
@@ -125,7 +94,7 @@ class Compensation:
         side = 1.0 if (code == 42) is not state.programmed.mirrored else -1.0
         z, x = TIP_DIRECTIONS[edge.quadrant]
         tip = x * edge.nose_radius, z * edge.nose_radius
-        self._contour = _Contour(_Move(block), side * edge.nose_radius, tip, state.rounded, state.round_ends)
+        self._contour = _Contour(state, block, side * edge.nose_radius, tip)
 
     def _rest(self, contour: _Contour, block: Block) -> None:
         """A block in which nothing moves: at the compensated end of the move before it."""
@@ -134,7 +103,7 @@ class Compensation:
         if isinstance(block.action, ToolChange):
             text = "T or D is programmed before the move that leaves the contour."
             raise _fault(block, "comp-with", text, "After G40, program a move before T or D.")
-        _last(contour).after.append(block)
+        contour.last.after.append(block)
 
     def _follow(self, contour: _Contour, block: Block) -> None:
         """One more move of the contour."""
@@ -146,7 +115,7 @@ class Compensation:
                 nose_comp=first.modal.nose_comp,
             )
             raise _fault(block, "comp-with", text, "Leave the contour with G40 before this block.")
-        if block.kind not in _FOLLOWED or self._turns(block):
+        if block.kind not in FOLLOWED or self._turns(block):
             template = (
                 "the C axis turns while G{code} is active."
                 if self._turns(block)
@@ -157,14 +126,15 @@ class Compensation:
             text = Message("the zero point changes while G{code} is active.", code=code)
             raise _fault(block, "comp-with", text, "Write G40 and a move before this block.")
         if (block.x, block.z) == (block.x0, block.z0) and block.kind is not Kind.ARC:
-            _last(contour).after.append(block)
+            contour.last.after.append(block)
         else:
-            contour.moves.append(_Move(block))
+            contour.last = ContourMove(block)
+            contour.moves.append(contour.last)
 
     def _close(self, contour: _Contour, block: Block) -> Iterator[Block]:
         """The contour, and the move of G40 that leaves it; the program's end leaves the nose where it is."""
         code = contour.approach.block.modal.nose_comp
-        if block.moves and (block.kind not in _STRAIGHT or self._turns(block)):
+        if block.moves and (block.kind not in STRAIGHT or self._turns(block)):
             text = "the first move with G40 is not a straight line."
             raise _fault(block, "comp-departure", text, "Leave the contour with G0 or G1.")
         if block.moves and (block.offset_x, block.offset_z) != (
@@ -176,7 +146,7 @@ class Compensation:
         if not contour.moves:
             text = Message("no contour move follows G{code}.", code=code)
             raise _fault(contour.approach.block, "comp-empty", text, "Write the contour before G40.")
-        yield from _Beside(self._state, contour, block).blocks()
+        yield from contour.close(block)
 
     def _turns(self, block: Block) -> bool:
         return block.c != block.c0 and not self._in_plane
@@ -199,61 +169,29 @@ class _End(NamedTuple):
     contour: Sequence[Element]
 
 
-class _Beside:
-    """Works out one contour."""
+class _Contour(ContourStage):
+    """What is kept between G41 or G42 and the move behind G40."""
 
-    def __init__(self, state: State, contour: _Contour, leaving: Block) -> None:
-        self._state, self._contour, self._leaving = state, contour, leaving
-        self._elements = [element_of(move.block) for move in contour.moves]
-        self._end: Point = (0.0, 0.0)  # of the tip, at the end of what has been handed out
+    def __init__(self, state: State, approach: Block, left: float, tip: Point) -> None:
+        super().__init__(MovesAlong(state), approach, left, tip)
+        self.rounded, self.round_ends = state.rounded, state.round_ends
+        self.moves: list[ContourMove] = []
+        self._elements: list[Element] = []
 
-    def blocks(self) -> Iterator[Block]:
-        contour = self._contour
-        pieces = self._pieces()
-        into = self._approach(pieces[0].element.start)
-        out = self._departure(pieces[-1].element.end)
-        yield from self._lead(contour.approach, into)
-        at = 0
-        for piece in pieces:
-            while at < piece.source:
-                yield from self._standing(contour.moves[at])
-                at += 1
-            yield from self._piece(piece)
-        yield from self._standing(contour.moves[-1])
-        if self._leaving.moves:
-            yield from self._lead(_Move(self._leaving), out)
-        else:
-            yield standstill_at(self._leaving, self._end, self._state.highest)
+    def close(self, leaving: Block) -> Iterator[Block]:
+        """The contour, and the move that leaves it. Raises ProgramError."""
+        self._elements = [element_of(move.block) for move in self.moves]
+        both = zip(self.moves, self._elements, strict=True)
+        pieces = [piece for move, element in both for piece in self._follow(move, element)]
+        pieces += self._rest()
+        beside = list(self._hand_out(pieces))
+        out = self._way_out(leaving, pieces[-1].element.end) if leaving.moves else []
+        yield from beside
+        yield from self._leave(ContourMove(leaving), out)
+        if not leaving.moves:
+            yield from self._standing(ContourMove(leaving, [leaving]))
 
-    def _pieces(self) -> list[Piece]:
-        """The way of the centre beside the contour. Raises ProgramError for a bottleneck."""
-        contour = self._contour
-        offset, found = Offset(contour.left), list[Piece]()
-        try:
-            for element in self._elements:
-                found += offset.add(element)
-            found += offset.close()
-        except GougeError as problem:
-            block = contour.moves[min(problem.index, len(contour.moves) - 1)].block
-            text = Message(
-                "a nose radius of {radius} mm does not fit this contour: {why}.",
-                radius=f"{contour.radius:g}",
-                why=problem.why,
-            )
-            raise _fault(
-                block, "comp-gouge", text, "Use a smaller nose radius, or change the contour."
-            ) from None
-        return found
-
-    def _piece(self, piece: Piece) -> Iterator[Block]:
-        block = self._contour.moves[piece.source].block
-        if not piece.corner:
-            yield self._made(along(self._state, block, self._tip(piece.element)))
-            return
-        for element in self._corner(piece.element, block):
-            yield self._made(inserted(self._state, block, self._tip(element)))
-
-    def _corner(self, element: Element, block: Block) -> Sequence[Element]:
+    def _corner(self, block: Block, element: Element) -> Sequence[Element]:
         """An outside corner: an arc about it, or under G451 the tangents to where they meet.
 
         A rapid takes the tangents too, of halves where they would meet far off.
@@ -265,25 +203,22 @@ class _Beside:
         if block.kind is Kind.RAPID and sharp:
             middle = element.point(element.length / 2.0)
             halves = element.part(element.start, middle), element.part(middle, element.end)
-            return [each for half in halves for each in self._corner(half, block)]
-        if sharp or (self._contour.rounded and block.kind is not Kind.RAPID):
+            return [each for half in halves for each in self._corner(block, half)]
+        if sharp or (self.rounded and block.kind is not Kind.RAPID):
             return [element]
         reach = element.radius * abs(sin(angle) / (1.0 + cos(angle)))
         ux, uz = element.start_direction
         meet = element.start[0] + ux * reach, element.start[1] + uz * reach
         return [Line(element.start, meet), Line(meet, element.end)]
 
-    def _approach(self, to: Point) -> list[Element]:
-        """The way of the centre to the contour, its start where the tool stands."""
-        block, first = self._contour.approach.block, self._elements[0]
+    def _way_in(self, to: Point) -> Sequence[Element]:
+        block, first = self.approach.block, self._elements[0]
         at = self._centre((block.x0, block.z0))
         return self._way(_End("approach", block, at, to, first.start, self._elements))
 
-    def _departure(self, begun: Point) -> list[Element]:
+    def _way_out(self, block: Block, begun: Point) -> Sequence[Element]:
         """The way off the contour: that to it, run backwards."""
-        block, last = self._leaving, self._elements[-1]
-        if not block.moves:
-            return []
+        last = self._elements[-1]
         at = self._centre((block.x, block.z))
         back = self._way(_End("departure", block, at, begun, last.end, self._elements[::-1]))
         return [element.reversed() for element in reversed(back)]
@@ -293,20 +228,18 @@ class _Beside:
 
         Raises ProgramError where it cuts the contour all the same.
         """
-        contour, way = self._contour, Line(end.at, end.to)
-        radius = contour.radius
+        radius, way = self.radius, Line(end.at, end.to)
         if not radius or not cuts_in(way, end.contour, radius):
-            return [way]
+            return [way] if way.length > SAME_POINT else []
         text = Message(
             "during the {end}, the nose radius of {radius} mm cuts into the contour.",
             end=end.name,
             radius=f"{radius:g}",
         )
-        if not contour.round_ends:
+        if not self.round_ends:
             hint = "Choose another point for this move, or write KONT to go around the end of the contour."
             raise _fault(end.block, "comp-gouge", text, hint)
-        away = dist(end.at, end.corner)
-        if away < radius - SAME_POINT:
+        if dist(end.at, end.corner) < radius - SAME_POINT:
             text = Message(
                 "with KONT, the distance from the {end} point to the end of the contour is "
                 "less than the nose radius.",
@@ -315,55 +248,30 @@ class _Beside:
             raise _fault(
                 end.block, f"comp-{end.name}-short", text, "Choose a point farther away from the contour."
             )
-        around = self._round(end, away)
+        around = self._round(end)
         straight = Line(end.at, around.start)
         if any(clearance(straight, each) < radius - _TOUCHES for each in end.contour):
             raise _fault(end.block, "comp-gouge", text, "Choose another point for this move.")
-        return [straight, *self._corner(around, end.block)]
+        way_round = [straight, *self._corner(end.block, around)]
+        return [element for element in way_round if element.length > SAME_POINT]
 
-    def _round(self, end: _End, away: float) -> Arc:
+    def _round(self, end: _End) -> Arc:
         """The arc about the contour's end that the way touches, and that ends beside the contour."""
-        radius, (dx, dz) = self._contour.radius, (end.at[0] - end.corner[0], end.at[1] - end.corner[1])
         # To the contour with the centre of the arc on its right is clockwise, and off it run backwards not.
-        clockwise = (self._contour.left < 0.0) is (end.name == "departure")
-        half = acos(min(1.0, radius / away))
-        # From Z+ towards X+ is clockwise: in that sense the circle is met by half an angle further on.
-        angle = atan2(dx, dz) + (half if clockwise else -half)
-        touch = end.corner[0] + radius * sin(angle), end.corner[1] + radius * cos(angle)
+        clockwise = (self.left < 0.0) is (end.name == "departure")
+        touch = touching(end.at, end.corner, self.radius, clockwise=clockwise)
         return Arc(touch, end.to, end.corner, clockwise=clockwise)
 
-    def _lead(self, move: _Move, way: Sequence[Element]) -> Iterator[Block]:
-        elements = [self._tip(element) for element in way if element.length > SAME_POINT]
-        for element in elements:
-            yield self._made(along(self._state, move.block, element))
-        if not elements:
-            self._end = self._tip_of(way[0].end) if way else self._end
-        yield from self._standing(move)
-
-    def _standing(self, move: _Move) -> Iterator[Block]:
-        for block in move.after:
-            yield standstill_at(block, self._end, self._state.highest)
-
-    def _made(self, block: Block) -> Block:
-        self._end = block.x, block.z
-        return block
-
-    def _tip(self, element: Element) -> Element:
-        """The way of the tip, where that of the centre is ``element``."""
-        start, end = self._tip_of(element.start), self._tip_of(element.end)
-        if isinstance(element, Line):
-            return Line(start, end)
-        return Arc(start, end, self._tip_of(element.centre), element.clockwise)
-
-    def _tip_of(self, point: Point) -> Point:
-        return point[0] + self._contour.tip[0], point[1] + self._contour.tip[1]
-
     def _centre(self, tip: Point) -> Point:
-        return tip[0] - self._contour.tip[0], tip[1] - self._contour.tip[1]
+        return tip[0] - self.tip[0], tip[1] - self.tip[1]
 
-
-def _last(contour: _Contour) -> _Move:
-    return contour.moves[-1] if contour.moves else contour.approach
+    def _gouges(self, block: Block, why: str) -> ProgramError:
+        text = Message(
+            "a nose radius of {radius} mm does not fit this contour: {why}.",
+            radius=f"{self.radius:g}",
+            why=why,
+        )
+        return _fault(block, "comp-gouge", text, "Use a smaller nose radius, or change the contour.")
 
 
 def _open(block: Block) -> ProgramError:

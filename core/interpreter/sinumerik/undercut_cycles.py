@@ -11,7 +11,7 @@ from math import ceil, cos, radians, sin, tan
 from typing import NamedTuple
 
 from core.geometry.chamfer_and_rounding import rounding
-from core.geometry.contour_offset import GougeError, Offset
+from core.geometry.contour_offset import GougeError, pieces_beside
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, left_of, shifted
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import (
@@ -321,10 +321,8 @@ def _of_tip(cycle: Cycle, place: Place, contour: list[Element]) -> list[Element]
     if not edge.nose_radius:
         return contour
     left = left_of((0.0, -place.side))[0] * place.out
-    offset = Offset(edge.nose_radius if left > 0.0 else -edge.nose_radius)
     try:
-        centres = [piece.element for each in contour for piece in offset.add(each)]
-        centres += [piece.element for piece in offset.close()]
+        beside = pieces_beside(contour, edge.nose_radius if left > 0.0 else -edge.nose_radius)
     except GougeError as problem:
         text = Message(
             "the nose radius {nose_radius} does not fit into this undercut: {why}.",
@@ -333,4 +331,4 @@ def _of_tip(cycle: Cycle, place: Place, contour: list[Element]) -> list[Element]
         )
         raise cycle.refused(NOSE_TOO_LARGE, text, "Use a tool with a smaller nose radius.") from None
     z, x = TIP_DIRECTIONS[edge.quadrant]
-    return [shifted(each, x * edge.nose_radius, z * edge.nose_radius) for each in centres]
+    return [shifted(each.element, x * edge.nose_radius, z * edge.nose_radius) for each in beside]
