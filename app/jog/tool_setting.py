@@ -51,7 +51,7 @@ class ToolSetting:
     _active: int = -1  # the tool that was loaded at the last look
 
     def __post_init__(self) -> None:
-        self.history = OffsetHistory(self.desk, Kind.TOOL)
+        self.history = OffsetHistory(self.desk, Kind.TOOL, keys="F8, F5")
         self.fields = ToolFields(self.history)
 
     # --- what is shown -------------------------------------------------------------------------------

@@ -68,6 +68,7 @@ class OffsetHistory:
     desk: Desk
     kind: Kind
     mode: Mode = field(default_factory=Mode)  # of the control, as it was looked at last
+    keys: str = "F5"  # that show the history from the page
     last: tuple[Change, ...] = ()  # the changes of the last step that was saved while the page was open
     listed: tuple[Change, ...] | None = None  # the history while it is looked at
     _seen: int = 0
@@ -130,7 +131,11 @@ class OffsetHistory:
             _at, which, change, _why = self.in_words(self.last[0])
             return f"{which}   {change}"
         return (
-            tr(Message("{count} offsets changed. F5: show the changes", count=len(self.last)))
+            tr(
+                Message(
+                    "{count} offsets changed. {keys}: show the changes", count=len(self.last), keys=self.keys
+                )
+            )
             if self.last
             else ""
         )

@@ -163,6 +163,15 @@ class SecondaryOffsets(OffsetTable):
         else:
             super().clear()
 
+    def undo(self) -> None:
+        """Ask about undoing the last change of the entered number, as long as no value follows it."""
+        if self.step is not Step.X or self.text or self.undo_barred():
+            super().undo()
+            return
+        number = self.number
+        self.drop()
+        self.history.answer(self.questions.undo(self.kind, number))
+
     def take_back(self) -> bool:
         """Take back the entry that was begun, and say so."""
         if self.step is Step.NUMBER and not self.text:

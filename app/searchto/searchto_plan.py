@@ -245,6 +245,8 @@ def _left_out(found: RestartPoint) -> str:
     first, last = found.left_out
     if not first:
         return ""
+    if first == last:
+        return tr(Message("LINE {line} SKIPPED. MATERIAL REMAINS", line=first))
     return tr(Message("LINES {first} TO {last} SKIPPED. MATERIAL REMAINS", first=first, last=last))
 
 

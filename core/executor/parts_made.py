@@ -29,7 +29,7 @@ class Workpiece:
         self.restarted = begin is not None
         self._begun = 0 if begin is None else begun
         self.disturbed = "" if begin is None else self.disturbed
-        self._whole = begin is None or begin.checkpoint.blocks <= self._begun
+        self._whole = begin is None or (not begin.skips_cuts and begin.checkpoint.blocks <= self._begun)
 
     def begun_to(self, block: int) -> int:
         """How many blocks are begun without a gap when what runs has come to this one."""

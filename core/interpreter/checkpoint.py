@@ -93,13 +93,15 @@ ApproachStep = Leg | AxesLeg | CTurn | FunctionStep
 class Begin(NamedTuple):
     """Where and with what a pass begins. ``single``: the text is one line of MDI, not a program.
 
-    ``approach`` comes before the line; it must end where the checkpoint stands.
+    ``approach`` comes before the line; it must end where the checkpoint stands. ``skips_cuts``: earlier cuts
+    of the part are incomplete, so the part is not counted.
     """
 
     checkpoint: Checkpoint
     line: int = 1
     single: bool = False
     approach: tuple[ApproachStep, ...] = ()
+    skips_cuts: bool = False
 
     @property
     def key(self) -> str:

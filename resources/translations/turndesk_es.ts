@@ -8540,8 +8540,8 @@
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
-      <source>{count} offsets changed. F5: show the changes</source>
-      <translation>cambiaron {count} correctores. F5: ver los cambios</translation>
+      <source>{count} offsets changed. {keys}: show the changes</source>
+      <translation>cambiaron {count} correctores. {keys}: ver los cambios</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_history.py" />
@@ -12717,6 +12717,11 @@
       <location filename="app/searchto/searchto_plan.py" />
       <source>COLLET OPEN BUT MUST BE CLOSED AT THIS LINE: RUN M12 IN MDI</source>
       <translation>PINZA ABIERTA; EN ESTA LÍNEA DEBE ESTAR CERRADA: EJECUTE M12 EN MDI</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_plan.py" />
+      <source>LINE {line} SKIPPED. MATERIAL REMAINS</source>
+      <translation>LÍNEA {line} OMITIDA. QUEDA MATERIAL</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_plan.py" />

@@ -11,6 +11,7 @@ from app.searchto.searchto_model import WAY_OUT
 from app.searchto.searchto_plan import way_out_of
 from core.executor.commands import CycleStart, FeedHold, LoadJob, Prepare, Reset
 from core.executor.job import Job, Proof, make_job
+from core.executor.parts_made import Workpiece
 from core.executor.snapshot import Snapshot, Starts, State
 from core.interpreter.checkpoint import Leg
 from core.interpreter.restart.restart_approach import Choices
@@ -330,6 +331,19 @@ def way_out_alone(rig: Rig) -> None:
     rig.post(Prepare(Starts.WAY_OUT, job, proof_of(job, report)))
     rig.post(CycleStart())
     assert not rig.shot.start_refused, rig.shot.start_refused
+
+
+def test_a_restart_that_leaves_a_cut_incomplete_makes_no_part() -> None:
+    rig = Rig()
+    broken_off(rig)
+    job = restart_job(rig, 8)
+    begin, piece = job.setup.begin, Workpiece()
+    assert begin is not None
+    piece.begin(job, begin.checkpoint.blocks)
+    assert piece.why_none == ""
+    skips = replace(job.setup, begin=begin._replace(skips_cuts=True))
+    piece.begin(replace(job, setup=skips), begin.checkpoint.blocks)
+    assert piece.why_none == text("executor.left-out")
 
 
 def test_only_the_way_out_of_a_groove_goes_along_x_first_and_starts_nothing() -> None:

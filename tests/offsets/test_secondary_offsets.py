@@ -148,7 +148,7 @@ def test_clear_asks_once_more(room: Room) -> None:
     room.desk.answer()
     room.settle(page)
     assert room.store.secondary() == {}
-    assert page.old_to_new == text("offsets.count-changed", count=2)
+    assert page.old_to_new == text("offsets.count-changed", count=2, keys="F5")
     page.undo()
     room.confirm()
     room.settle(page)
@@ -179,6 +179,23 @@ def test_undo_takes_back_secondary_offsets_only(room: Room) -> None:
     page.undo()
     assert not room.desk.asked
     assert room.desk.notice == text("offsets.no-change-to-undo", row=text("offsets.this-table"))
+
+
+def test_undo_after_a_number_is_of_this_offset_and_a_value_is_only_cancelled(room: Room) -> None:
+    page = room.page()
+    room.enter(page, "1", ".1", "", "", asked=True)
+    room.enter(page, "2", ".2", "", "", asked=True)
+    room.enter(page, "1", ".3")
+    page.undo()
+    assert not room.desk.asked
+    assert room.desk.notice == text("offsets.as-it-was", number=1)
+    room.enter(page, "1")
+    page.undo()
+    room.confirm()
+    room.settle(page)
+    assert set(room.store.secondary()) == {2}
+    assert room.desk.notice == "D1 UNDONE"
+    assert page.step is Step.NUMBER
 
 
 def test_the_history_has_time_from_to_and_reason(room: Room) -> None:

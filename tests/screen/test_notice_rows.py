@@ -48,7 +48,7 @@ def test_an_interrupted_job_and_a_full_disk_stand_on_every_page(hands: Hands, pa
         "INTERRUPTED: PIN.NC",
         text("screen.not-kept", why="the disk is full"),
     ]
-    assert rows.rows[1].figures.endswith("20 parts")
+    assert rows.rows[1].figures.startswith("NOT SAVED YET: 20 parts.")
     assert not rows.geometry().intersects(hands.frame.page.geometry())
     assert "NOT SAVED" in [lamp.word for lamp in hands.frame.strip.lamps]
     hands.machine.now = replace(hands.machine.now, interrupted=None)

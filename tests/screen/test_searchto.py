@@ -305,7 +305,7 @@ def test_another_tool_at_the_part_leaves_it_by_its_own_way_and_what_is_left_out_
     operator.key(Key.Key_F6)
     operator.type("41")
     page = found(operator)
-    assert begins(page.starts.trouble, "search.left-out", first=19, last=39)
+    assert begins(page.starts.trouble, "search.left-out", first=18, last=39)
     assert page.path.legs[1].label == "1 X"  # T1 stands on the outside
     assert model_of(operator).plan is not None
 

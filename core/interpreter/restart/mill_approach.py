@@ -65,7 +65,7 @@ def begin_on_mill(found: RestartPoint, now: MachineNow, choices: Choices, machin
     point, modal = found.checkpoint, found.checkpoint.modal
     modal = modal._replace(coolant=modal.coolant and choices.coolant)
     steps = tuple(_steps(found, now, choices, machine))
-    return Begin(point._replace(modal=modal), found.line, approach=steps)
+    return Begin(point._replace(modal=modal), found.line, approach=steps, skips_cuts=any(found.left_out))
 
 
 def why_no_way(machine: Kinematics) -> str:

@@ -132,7 +132,8 @@ def begin_at(found: RestartPoint, now: MachineNow, choices: Choices) -> Begin:
     if modal.c_locked:
         modal = modal._replace(offset_c=_near(point.c + modal.offset_c, now.at[2]) - point.c)
     modal = modal._replace(coolant=modal.coolant and choices.coolant)
-    return Begin(point._replace(modal=modal), found.line, approach=approach_steps(found, now, choices))
+    steps, skips = approach_steps(found, now, choices), any(found.left_out)
+    return Begin(point._replace(modal=modal), found.line, approach=steps, skips_cuts=skips)
 
 
 def approach_steps(found: RestartPoint, now: MachineNow, choices: Choices) -> tuple[ApproachStep, ...]:

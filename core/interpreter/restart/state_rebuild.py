@@ -9,6 +9,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import replace
+from math import hypot
 
 from core.interpreter.actions import AskInput, ProgramEnd
 from core.interpreter.checkpoint import Begin, Checkpoint
@@ -20,7 +21,7 @@ from core.interpreter.restart.cut_record import CutRecord, record_cuts
 from core.interpreter.restart.loop_passes import Visits, visits_of
 from core.interpreter.restart.restart_lines import RestartLines
 from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
-from core.interpreter.restart.restart_retract import Place, Retract, ToolPlace, retract
+from core.interpreter.restart.restart_retract import NEAR, Place, Retract, ToolPlace, retract
 from core.language.source import Source
 from core.message import Message
 
@@ -286,7 +287,7 @@ def found_on_lathe(
     line: int, point: Checkpoint, cut: CutRecord, visit: LineVisit, broken: Interruption | None
 ) -> RestartPoint | str:
     """The line with the way from its place out of the work; in words where no sure way leads there."""
-    done = broken.done if broken is not None else point.blocks
+    done = _complete_blocks(cut, broken) if broken is not None else point.blocks
     back = _retract_from(cut, point)
     if back.tool_place is ToolPlace.CLEAR or (back.known and point.blocks <= done):
         return RestartPoint(line, point, back, cut, visit, left_out=_left_out(cut, done, point.blocks))
@@ -309,6 +310,22 @@ def found_on_lathe(
         line=line,
         method=how,
     ).strip()
+
+
+def _complete_blocks(cut: CutRecord, broken: Interruption) -> int:
+    """Return the last block whose cut is complete.
+
+    The interrupted block is complete only if the tool is at its end; otherwise, a restart behind that block
+    would leave the rest of its cut in the part.
+    """
+    row = cut.row_behind(broken.block)
+    off = cut.offsets.get(broken.tool)
+    if broken.done != broken.block or row < 0 or off is None or int(cut.n[row]) != broken.block:
+        return broken.done
+    x, z = broken.at[0] - off[0], broken.at[1] - off[1]
+    feeds = bool(int(cut.how[row]) & 1)
+    at_end = hypot(x - float(cut.x[row]), z - float(cut.z[row])) <= NEAR
+    return broken.block - 1 if feeds and not at_end else broken.done
 
 
 _HOW = {

@@ -190,6 +190,22 @@ def test_a_line_behind_what_was_cut_is_refused_where_it_begins_in_metal() -> Non
     _, broken = in_the_groove()
     answer = StateRebuild(Source("PART", TWO), setup(tools=TOOLS), lambda _count: None).find(12, 0, broken)
     assert not isinstance(answer, RestartPoint)
-    uncut = text("search.uncut-line", line=11)
+    uncut = text("search.uncut-lines", first=6, last=11)
     assert answer.why == text("search.in-uncut-material", line=12, uncut=uncut)
-    assert two(9, broken).left_out == (0, 0)  # the groove itself is begun
+    assert two(9, broken).left_out == (6, 6)  # the groove is begun, but not complete
+
+
+def test_the_rest_of_an_interrupted_cut_is_left_out_unless_the_tool_is_at_its_end() -> None:
+    _, broken = in_the_groove()
+    rebuild = StateRebuild(Source("PART", TWO), setup(tools=TOOLS), lambda _count: None)
+    answer = rebuild.find(7, 0, broken)
+    assert not isinstance(answer, RestartPoint)
+    uncut = text("search.uncut-line", line=6)
+    assert answer.why == text("search.in-uncut-material", line=7, uncut=uncut)
+    now, complete = in_the_groove(0.4)
+    assert two(7, complete).left_out == (0, 0)
+    assert two(6, broken).left_out == (0, 0)
+    later = two(9, broken)
+    assert later.left_out == (6, 6)
+    assert begin_at(later, now, Choices()).skips_cuts
+    assert not begin_at(two(9, complete), now, Choices()).skips_cuts

@@ -127,6 +127,9 @@ def test_the_master_takes_all_along_or_is_set_alone(jog: JogBench) -> None:
     # the face was at −50 mm, it is at −25.4 mm now: 24.6 mm for everybody
     assert jog.store.tools()[1].z == pytest.approx(-25.4, abs=1e-9)
     assert jog.store.tools()[2].z == pytest.approx(-15.4, abs=1e-9)
+    jog.run(0.02)
+    # F5 is TOUCH X on this page: the list of changes is on the page of F8
+    assert jog.page.model.tool.old_to_new() == text("offsets.count-changed", count=2, keys="F8, F5")
     jog.type("z")
     jog.type("l")
     jog.enter("0")
