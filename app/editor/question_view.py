@@ -9,6 +9,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.sheet import Key
+from app.desk.translation import tr
 from app.editor.find_replace import Search, following, preceding
 from app.editor.text_view import TextField
 from app.screen.entry_panel import dress_line
@@ -42,6 +43,8 @@ class AskLine(Panel):
         self.answer = ""
         if entry is not None:
             self.first.setText(entry)
+        for edit, label in zip((self.first, self.second), labels, strict=False):
+            edit.setAccessibleName(tr(label))
         self.second.setVisible(len(labels) > 1)
         self.show()
         self._place()

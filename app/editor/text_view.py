@@ -127,6 +127,8 @@ class TextField(QPlainTextEdit):
             f"QScrollBar:vertical {{ width: {max(FINGER, round(3.4 * self.look.u))}px; }}"
             f"QScrollBar:horizontal {{ height: {round(2.4 * self.look.u)}px; }}"
         )
+        for part in (self, self.verticalScrollBar(), self.horizontalScrollBar()):
+            part.setAccessibleName(tr("PROGRAM"))
         self.setCursorWidth(max(2, round(0.3 * self.look.u)))
         self.setTabStopDistance(4 * QFontMetricsF(self.font()).horizontalAdvance("0"))
         self.highlighter.dress()

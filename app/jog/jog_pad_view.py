@@ -109,7 +109,7 @@ class Dial:
             self._turn((here - self._at + 180.0) % 360.0 - 180.0)
             self._at = here
 
-        return Control(box, down, along)
+        return Control(box, down, along, name="HANDWHEEL", kind="slider")
 
     def notches(self, delta: int) -> None:
         """The mouse's wheel, by Qt's figure; away from the hand is clockwise."""

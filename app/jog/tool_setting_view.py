@@ -91,8 +91,9 @@ class ToolPanel(Panel):
         self._key(painter, box, "T")
         side = room.height()
         tip = QRectF(box.right() + 0.8 * u, room.y(), side, side)
-        self._target(painter, tip, partial(self._model.ask, "quadrant"), lit=False)
         quadrant = tool.row.quadrant if tool.row else 0
+        name = f"{word('quadrant')} {quadrant or ''}"
+        self._target(painter, tip, partial(self._model.ask, "quadrant"), name, lit=False)
         draw_tip(painter, tip.adjusted(0.6 * u, 0.6 * u, -0.6 * u, -0.6 * u), quadrant)
         self._stands(painter, room.adjusted(tip.right() + 1.2 * u - room.x(), 0, 0, 0))
 
@@ -162,9 +163,11 @@ class ToolPanel(Panel):
         x = signed(2 * apart[0] if mode.diameter else apart[0], mode.metric)
         return f"T{master}   X {x}  Z {signed(apart[1], mode.metric)}"
 
-    def _target(self, painter: Painter, box: QRectF, press: Callable[[], None], *, lit: bool) -> None:
+    def _target(
+        self, painter: Painter, box: QRectF, press: Callable[[], None], name: str = "", *, lit: bool
+    ) -> None:
         painter.box(box, "lit" if lit else "frame", 0.24 if lit else 0.12, "here" if lit else "key")
-        self.place(box, press)
+        self.place(box, press, name)
 
     def _key(self, painter: Painter, box: QRectF, key: str) -> None:
         u = self.look.u

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus, Tone
@@ -20,7 +19,8 @@ from app.offsets.zero_offsets import ZeroOffsets
 from app.screen import page_table
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Panel, Shown
+from app.screen.panel import Shown
+from app.screen.row_panel import RowPanel
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
 from core.quality.tool_life import ToolLife
@@ -30,13 +30,13 @@ HEAD, HIGH = 4.0, 8.0  # units: the line of words at most, and a row
 _NAME = 0.07  # share of the width for the number
 
 
-class CellPanel(Panel):
+class CellPanel(RowPanel):
     """Each cell is a target for a finger. The chosen one is filled, the row in force has a bar.
 
     Beside the pad of a small screen stand as many columns as are wide enough, the chosen one among them.
     """
 
-    rows: Shown[Mapping[int, Row]] = Shown({})
+    stored: Shown[Mapping[int, Row]] = Shown({})
     lives: Shown[Mapping[int, ToolLife]] = Shown({})  # of the tools of a mill
     cell = Shown((0, 0))
     in_force = Shown(0)  # number of a row; 0: none
@@ -47,8 +47,6 @@ class CellPanel(Panel):
         self._kind, self._numbers, self._columns = table.kind, table.numbers, table.columns
         self._choose: Callable[[int, int], None] = table.choose
         self._wide = [_WIDE.get(name, 1.0) for name in table.columns]
-        self._top = 0
-        self._followed = (-1, 0)  # the row of the chosen cell, and how many rows there was room for
 
     def draw(self, painter: Painter) -> None:
         self.frame(painter, self._heading)
@@ -57,29 +55,11 @@ class CellPanel(Panel):
         head = min(HEAD * u, least)
         body = room.adjusted(0, head, 0, 0)
         fits = min(self.fitting(body, least, count), count)
-        self._follow(fits)
-        body = self.leaf(painter, body, (self._top, fits, count), self._leaf_by)
+        body = self.scrolled(painter, body, fits, count, self.cell[0])
         high = min(body.height() / fits, max(least, HIGH * u))
         self._head(painter, QRectF(body.x(), room.y(), body.width(), head))
-        for place in range(fits):
-            row = QRectF(body.x(), body.y() + place * high, body.width(), high - 0.5 * u)
-            self._row(painter, row, self._top + place)
-
-    def _follow(self, fits: int) -> None:
-        """To the chosen cell, where a key has moved it; a finger that leafs leaves it where it is."""
-        row, last = self.cell[0], len(self._numbers) - fits
-        if (row, fits) != self._followed:
-            self._top = min(max(self._top, row - fits + 1), row)
-        self._followed = (row, fits)
-        self._top = max(0, min(self._top, last))
-
-    def _leaf_by(self, rows: int) -> None:
-        self._top = max(0, self._top + rows)
-        self.update()
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """Three rows a notch."""
-        self._leaf_by(-round(event.angleDelta().y() / 40))
+        for number, row in self.boxes(body, high):
+            self._row(painter, row.adjusted(0, 0, 0, -0.5 * u), number)
 
     def _cells(self, row: QRectF) -> Iterator[tuple[int, QRectF]]:
         """The columns that there is room for, and where they stand in this row."""
@@ -110,7 +90,7 @@ class CellPanel(Panel):
         if number == self.in_force:
             painter.fill(QRectF(box.x(), box.y(), 0.6 * u, box.height()), "lit")
         painter.write(box.adjusted(1.6 * u, 0, 0, 0), f"{_LETTER[self._kind]}{number}", 2.4, "accent")
-        offset, size = self.rows.get(number), min(3.0, 0.5 * box.height() / u)
+        offset, size = self.stored.get(number), min(3.0, 0.5 * box.height() / u)
         for nth, (column, cell) in enumerate(self._cells(box)):
             name = self._columns[column]
             here = (row, column) == self.cell
@@ -132,7 +112,9 @@ class CellPanel(Panel):
                 raw=text,
             )
             spot = cell.united(box.adjusted(0, 0, cell.left() - box.right(), 0)) if nth == 0 else cell
-            self.place(spot, partial(self._choose, row, column))  # who touches its number means its row
+            # The number is part of the first cell: pressing it chooses the row.
+            words = f"{_LETTER[self._kind]}{number} {self._words[column]}"
+            self.place(spot, partial(self._choose, row, column), words, kind="row", on=here)
 
 
 _WIDE = {"name": 1.5, "remark": 2.0, "length": 1.25, "teeth": 0.92, "point": 0.92, "stops": 0.92}  # columns
@@ -160,7 +142,7 @@ class CellTablePage(OffsetPage):
         """The table as it is now."""
         super().refresh(snapshot, status, loaded)
         model = self.model
-        self.table.rows, self.table.cell = model.book.of(model.kind), (model.row, model.column)
+        self.table.stored, self.table.cell = model.book.of(model.kind), (model.row, model.column)
         self.table.in_force = model.in_force(snapshot)
 
 

@@ -10,7 +10,7 @@ import math
 from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, QRectF
-from PySide6.QtGui import QResizeEvent, QWheelEvent
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
@@ -27,6 +27,7 @@ from app.screen.letter_keys import LetterPad
 from app.screen.look import Look, Painter
 from app.screen.page_base import Host, KeyActions, ModelPage
 from app.screen.panel import Panel, Shown
+from app.screen.row_panel import RowPanel
 from app.screen.sheet_panel import SheetPanel
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
@@ -65,49 +66,27 @@ class EffectView(PathView):
 Entry = tuple[str, str, str, str]
 
 
-class HistoryList(Panel):
+class HistoryList(RowPanel):
     """Newest on top, two lines each."""
 
     title = "HISTORY  ·  NEWEST FIRST"
 
     entries: Shown[tuple[Entry, ...]] = Shown(())
-    top = Shown(0)
 
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(look, parent)
         self.hide()
-
-    def show_entries(self, entries: tuple[Entry, ...]) -> None:
-        """Show these changes, newest first."""
-        self.entries = entries
-        self.look_at(self.top)
-
-    @property
-    def rows(self) -> int:
-        """How many changes fit into the panel."""
-        return max(1, int((self.height() - 3.4 * self.look.u) / (ROW * self.look.u)))
-
-    def look_at(self, top: int) -> None:
-        """Scroll so that this change is the first that is shown."""
-        self.top = max(0, min(top, len(self.entries) - self.rows))
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """Three changes a notch."""
-        self.leaf_by(-round(event.angleDelta().y() / 40))
-
-    def leaf_by(self, rows: int) -> None:
-        """So many changes further down."""
-        self.look_at(self.top + rows)
 
     def draw(self, painter: Painter) -> None:
         u, room = self.look.u, self.inside()
         if not self.entries:
             head = QRectF(room.x(), room.y(), room.width(), 3 * u)
             painter.write(head, "No offset has been changed yet.", 2.0, "soft", bold=False)
-        room.setHeight(self.rows * ROW * u)
-        room = self.leaf(painter, room, (self.top, self.rows, len(self.entries)), self.leaf_by)
-        for place, entry in enumerate(self.entries[self.top : self.top + self.rows]):
-            self._entry(painter, QRectF(room.x(), room.y() + place * ROW * u, room.width(), ROW * u), entry)
+        fits = self.fitting(room, ROW * u, len(self.entries))
+        room.setHeight(fits * ROW * u)
+        room = self.scrolled(painter, room, fits, len(self.entries))
+        for number, box in self.boxes(room, ROW * u):
+            self._entry(painter, box, self.entries[number])
 
     def _entry(self, painter: Painter, row: QRectF, entry: Entry) -> None:
         u = self.look.u
@@ -191,7 +170,7 @@ class OffsetPage(ModelPage):
     def _toggle_history(self) -> None:
         self.effect_model.close()
         self.model.history.toggle()
-        self.history.look_at(0)
+        self.history.top = 0
 
     def _turn_effect(self) -> None:
         self.model.history.listed = None
@@ -200,7 +179,7 @@ class OffsetPage(ModelPage):
     def typed(self, key: str) -> bool:
         """Give figures, signs and the table's own letters to the entry; nothing while the effect is shown."""
         if self.history.isVisible() and key in {"Page up", "Page down"}:
-            self.history.leaf_by((1 if key == "Page down" else -1) * self.history.rows)
+            self.history.scroll_by((1 if key == "Page down" else -1) * self.history.rows)
             return True
         if self.effect_model.open and len(key) == 1 and self.model.takes(key):
             self.desk.say(tr("TYPE VALUES IN THE TABLE. ESC: SHOW TABLE"))
@@ -256,7 +235,7 @@ class OffsetPage(ModelPage):
         elif effect.open:
             self.effect.show_effect()
         if changes is not None:
-            self.history.show_entries(tuple(model.history.in_words(change) for change in changes))
+            self.history.entries = tuple(model.history.in_words(change) for change in changes)
         words = (model.heading, model.question, model.entered, model.old_to_new, model.foot)
         self.asked.asked = EntryWords(*words)
 

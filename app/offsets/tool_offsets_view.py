@@ -6,7 +6,6 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
@@ -18,7 +17,8 @@ from app.offsets.tool_offsets import COLUMNS, ToolOffsets
 from app.screen import page_table
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter
 from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Panel, Shown
+from app.screen.panel import Shown
+from app.screen.row_panel import RowPanel
 from app.screen.tool_tip_drawing import draw_tip
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
@@ -39,39 +39,32 @@ SHARES = {
 }
 
 
-class ToolTable(Panel):
+class ToolTable(RowPanel):
     """Draws the model; redrawn when something of it has changed."""
 
+    notch = 1
     _shown: Shown[object] = Shown(())
 
     def __init__(self, look: Look, model: ToolOffsets, parent: QWidget) -> None:
         super().__init__(look, parent)
         self._model = model
-        self.top = 0  # the first row that is shown
         self.choose: Callable[[int, int], None] = model.choose
+        self._heads: dict[str, str] = {}  # of the columns
 
     def show_tools(self) -> None:
-        """The model as it is now; the cursor is always in sight."""
+        """The model as it is now."""
         model = self._model
-        row, page = model.row, self._fit()
-        model.page = page
-        self.top = max(row - page + 1, min(self.top, row, len(model.rows) - page), 0)
         self._shown = (
             model.book.tools,
-            (model.number, model.column, self.top, model.relative, model.mode, model.opened_edge),
+            (model.number, model.column, model.relative, model.mode, model.opened_edge),
             dict(model.fields.new.values),
             tuple(change.number for change in model.history.last),
         )
 
-    def _fit(self) -> int:
-        """How many rows of a fingertip fit."""
-        u = self.look.u
-        room = self.inside().height() + 0.7 * u - HEAD * u
-        return max(1, min(len(self._model.rows), int(room / self.look.row(7.0, 9.0, touch=True))))
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """A row a notch."""
-        self._model.typed("Up" if event.angleDelta().y() > 0 else "Down")
+    def scroll_by(self, rows: int) -> None:
+        """Move the cursor, which is always visible."""
+        key = ("Up", "Down") if abs(rows) == 1 else ("Page up", "Page down")
+        self._model.typed(key[rows > 0])
 
     def draw(self, painter: Painter) -> None:
         u, model = self.look.u, self._model
@@ -83,24 +76,22 @@ class ToolTable(Panel):
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, -0.2 * u, 0.7 * u, 0.5 * u)
         body = room.adjusted(0, HEAD * u, 0, 0)
-        body = self.leaf(painter, body, (self.top, model.page, len(model.rows)), self._leaf)
+        count = len(model.rows)
+        model.page = min(count, self.fitting(body, self.look.row(7.0, 9.0, touch=True), count))
+        body = self.scrolled(painter, body, model.page, count, model.row)
         head = QRectF(body.x(), room.y(), body.width(), HEAD * u)
         columns = self._columns(head)
         self._head(painter, head, columns)
         high = body.height() / model.page
-        for place, number in enumerate(model.rows[self.top : self.top + model.page]):
-            row = QRectF(head.x(), head.bottom() + place * high, head.width(), high)
-            self._row(painter, row, number, columns)
+        for place, row in self.boxes(body, high):
+            self._row(painter, row, model.rows[place], columns)
 
     def _head(self, painter: Painter, head: QRectF, columns: dict[str, tuple[float, float]]) -> None:
         u, mode = self.look.u, self._model.mode
         for name, (left, wide) in columns.items():
             cell = QRectF(left, head.y(), wide - 0.4 * u, head.height())
-            painter.write(cell, heading(name, mode), 1.5, "soft", at=CENTRE, margin=0.2)
-
-    def _leaf(self, rows: int) -> None:
-        """A page further: the cursor goes along, and is always in sight."""
-        self._model.typed("Page down" if rows > 0 else "Page up")
+            self._heads[name] = heading(name, mode)
+            painter.write(cell, self._heads[name], 1.5, "soft", at=CENTRE, margin=0.2)
 
     def _columns(self, room: QRectF) -> dict[str, tuple[float, float]]:
         """Left edge and width of each column, pixels."""
@@ -125,13 +116,16 @@ class ToolTable(Panel):
         name = f"T{number}" if number == tool_of(number) else f"D{edge_of(number)}"
         painter.write(margin, name, 2.2 * self._scale(row), "accent", at=RIGHT)
         unset = number not in model.book.tools
-        for at, (name, (left, wide)) in enumerate(columns.items()):
+        for at, (field, (left, wide)) in enumerate(columns.items()):
             cell = QRectF(left, row.y(), wide, row.height())
-            self._cell(painter, cell, number, name)
+            self._cell(painter, cell, number, field)
             if here and at == model.column:
                 painter.box(cell.adjusted(0.2 * u, 0.1 * u, -0.2 * u, -0.1 * u), "accent", 0.24, "")
             spot = cell.united(margin) if at == 0 else cell  # who touches its number means its row
-            self.place(spot, partial(self.choose, number, at))
+            words = f"{name} {self._heads[field]}"
+            self.place(
+                spot, partial(self.choose, number, at), words, kind="row", on=here and at == model.column
+            )
         if unset and number != model.fields.new.number:
             empty = QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height())
             painter.write(

@@ -43,6 +43,7 @@ class PathView(Panel):
     keyboard; keys that mean nothing there go on to the window.
     """
 
+    part_name = "PATH"
     title = "PATH"
     keeps = False  # whether what is looked at by hand stays when the picture changes
 

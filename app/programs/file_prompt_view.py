@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QEvent, QObject, QRectF, Qt
-from PySide6.QtGui import QKeyEvent, QResizeEvent, QWheelEvent
+from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.program_folder import ListedProgram, ProgramFolders
@@ -14,16 +14,17 @@ from app.desk.prompt_line import ASK_FILE, CHOOSE_FILE, NOT_FOUND
 from app.desk.translation import tr
 from app.screen.entry_panel import dress_line
 from app.screen.look import CENTRE, RIGHT, Look, Painter, put
-from app.screen.panel import Panel
+from app.screen.row_panel import RowPanel
 from core.message import Message
 
 ROW = 6.6  # units: a fingertip
 
 
-class FilePrompt(Panel):
+class FilePrompt(RowPanel):
     """Asks for a program. Typing narrows the list; Return takes the exact name, else the marked row."""
 
     title = ASK_FILE
+    notch = 1
 
     def __init__(
         self,
@@ -31,7 +32,7 @@ class FilePrompt(Panel):
         program_folders: ProgramFolders,
         choose: Callable[[str], bool],
         closed: Callable[[], None],
-        parent: QWidget | None = None,
+        parent: QWidget,
     ) -> None:
         super().__init__(look, parent)
         self._shelf, self._choose, self._closed = program_folders, choose, closed
@@ -44,6 +45,7 @@ class FilePrompt(Panel):
         self.edit.textEdited.connect(self._typed)
         self.edit.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
         self.edit.installEventFilter(self)
+        self.dress()
         self.hide()
 
     @property
@@ -95,8 +97,8 @@ class FilePrompt(Panel):
             Qt.Key.Key_Enter: self._take,
             Qt.Key.Key_Down: lambda: self._mark(self._row + 1),
             Qt.Key.Key_Up: lambda: self._mark(self._row - 1),
-            Qt.Key.Key_PageDown: lambda: self._mark(self._row + self._rows),
-            Qt.Key.Key_PageUp: lambda: self._mark(self._row - self._rows),
+            Qt.Key.Key_PageDown: lambda: self._mark(self._row + self.rows),
+            Qt.Key.Key_PageUp: lambda: self._mark(self._row - self.rows),
         }
         action = actions.get(event.key())
         if action is None:
@@ -137,10 +139,6 @@ class FilePrompt(Panel):
 
     # --- drawing -------------------------------------------------------------------------------------
 
-    @property
-    def _rows(self) -> int:
-        return max(1, int((self.height() - 10.5 * self.look.u) / (ROW * self.look.u)))
-
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """The line to type in keeps its place under the title."""
         u = self.look.u
@@ -149,13 +147,11 @@ class FilePrompt(Panel):
 
     def dress(self) -> None:
         """Font and colours of the line to type in."""
+        self.edit.setAccessibleName(tr(ASK_FILE))
         dress_line(self.edit, self.look, 2.6, 1.0)
 
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """The wheel moves the mark."""
-        self._mark_by(-round(event.angleDelta().y() / 120))
-
-    def _mark_by(self, rows: int) -> None:
+    def scroll_by(self, rows: int) -> None:
+        """Move the mark: it is always in the middle of the list."""
         self._mark(self._row + rows)
 
     def draw(self, painter: Painter) -> None:
@@ -173,12 +169,12 @@ class FilePrompt(Panel):
 
     def _list(self, painter: Painter) -> None:
         u = self.look.u
-        first = max(0, min(self._row - self._rows // 2, len(self._entries) - self._rows))
-        room = QRectF(1.6 * u, 8.0 * u, self.width() - 3.2 * u, self._rows * ROW * u)
-        room = self.leaf(painter, room, (first, self._rows, len(self._entries)), self._mark_by)
-        for place, entry in enumerate(self._entries[first : first + self._rows]):
-            box = QRectF(room.x(), room.y() + place * ROW * u, room.width(), ROW * u)
-            marked = first + place == self._row
+        fits = max(1, int((self.height() - 10.5 * u) / (ROW * u)))
+        self.top = self._row - fits // 2  # the mark is in the middle
+        room = QRectF(1.6 * u, 8.0 * u, self.width() - 3.2 * u, fits * ROW * u)
+        room = self.scrolled(painter, room, fits, len(self._entries), self._row)
+        for number, box in self.boxes(room, ROW * u):
+            entry, marked = self._entries[number], number == self._row
             if marked:
                 painter.fill(box, "lit")
             ink, soft = ("on_lit", "on_lit") if marked else ("text", "soft")
@@ -186,7 +182,7 @@ class FilePrompt(Panel):
             painter.write(name, entry.name, 2.3, ink, bold=marked, raw=True, fit=False)
             folder, text = box.adjusted(box.width() - 30 * u, 0, -1.2 * u, 0), entry.path.parent.name
             painter.write(folder, text, 1.6, soft, at=RIGHT, bold=False, raw=True, fit=False)
-            self.place(box, partial(self._try, str(entry.path)))
+            self.place(box, partial(self._try, str(entry.path)), kind="row", on=marked)
 
     def _not_found(self, painter: Painter) -> None:
         u = self.look.u

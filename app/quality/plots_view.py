@@ -28,6 +28,8 @@ _PLOTS = 2  # of a drawing, mostly
 class PlotsPane(QWidget):
     """The plots of one drawing with their titles; drawn anew when it is another one, a size or a theme."""
 
+    part_name = "CHART"
+
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(parent)
         self.look = look

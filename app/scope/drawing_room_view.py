@@ -30,6 +30,8 @@ def _chart_class() -> type[AnalysisChart]:
 class DrawingRoom(QWidget):
     """Empty until the chart is there; then what was shown last."""
 
+    part_name = "CHART"
+
     def __init__(self, look: Look, worker: Latest, say: Callable[[str], None], parent: QWidget) -> None:
         super().__init__(parent)
         self._look = look

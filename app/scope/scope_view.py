@@ -65,6 +65,8 @@ class HeadLine(Panel):
 class CurveRoom(QWidget):
     """What takes fingers, wheel and mouse; the chart that lies in it only draws."""
 
+    part_name = "CHART"
+
     def __init__(self, look: Look, scope: Scope, parent: QWidget) -> None:
         super().__init__(parent)
         self.look, self.scope = look, scope

@@ -107,7 +107,7 @@ class Notice(Panel):
             if size <= 1.4 or (needed.height() <= room.height() and needed.width() <= room.width()):
                 break
             size *= 0.9
-        painter.drawText(room, flags, text)
+        painter.wrap(room, flags, text)
 
 
 class AlarmList(Panel):

@@ -17,6 +17,7 @@ from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen
 from PySide6.QtWidgets import QFrame, QGraphicsGridLayout, QGraphicsItem, QGraphicsView, QWidget
 
 from app.desk.formats import fixed
+from app.desk.translation import tr
 from app.screen.look import FAMILY, LEAST, Look
 from app.screen.theme import CURVES
 
@@ -184,6 +185,7 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         top = round(0.6 * _TICK * self.look.u)  # half a figure stands above the highest line
         self.ci.layout.setContentsMargins(margin, top, margin, margin)
         self.ci.layout.setSpacing(round(1.2 * self.look.u))  # figures of two axes never touch
+        self.setAccessibleName(tr("CHART"))
         self.setBackground(self.look.colour("panel"))
         for plot in self.plots:
             self._dress(plot)

@@ -11,6 +11,7 @@ from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.sheet import RefusedText
+from app.screen.letter_keys import LetterPad, Rows
 from app.screen.look import Look, Painter
 from app.screen.panel import Panel, Shown
 
@@ -95,49 +96,28 @@ def dress_line(edit: QLineEdit, look: Look, size: float, left: float) -> None:
 # --- the keys of a finger ----------------------------------------------------------------------------------
 
 
-_KEYS = (
-    ("7", "8", "9", "/"),
-    ("4", "5", "6", "*"),
-    ("1", "2", "3", "-"),
-    ("0", ".", "(", "+"),
-    ("C", "Esc", ")", "Back"),
-)
-_SHOWN = {"-": "−", "*": "×", "/": "÷", "Back": "DEL", "Enter": "ENTER"}
 _FREE = "C"  # the place that a page gives its own meaning
+_KEYS: Rows = ("789/", "456*", "123-", "0.(+", (_FREE, "Esc", ")", "Back"), ("Enter",))
+_SHOWN = {"-": "−", "*": "×", "/": "÷", "Back": "DEL", "Enter": "ENTER"}
 
 
-class KeyPad(Panel):
-    """Every key does what the key of the keyboard does."""
+class KeyPad(LetterPad):
+    """Digits and what belongs to them."""
 
+    part_name = "NUMBER PAD"
     own: Shown[tuple[str, str] | None] = Shown(None)  # a key that the page gives, and the word on it
 
     def __init__(
         self, look: Look, press: Callable[[str], None], *, own: tuple[str, str] | None, parent: QWidget
     ) -> None:
         """``own``: a key of this page and the word on it; None leaves its place empty."""
-        super().__init__(look, parent)
-        self._press, self.own = press, own
+        super().__init__(look, press, parent, _KEYS)
+        self.own = own
+        self.show()
 
-    @property
-    def least(self) -> int:
-        """Height in which every key takes a finger, pixels."""
-        return self.look.keys_high(len(_KEYS) + 1)
-
-    def draw(self, painter: Painter) -> None:
-        u = self.look.u
-        gap = 0.6 * u
-        high = (self.height() + gap) / (len(_KEYS) + 1)
-        wide = (self.width() + gap) / len(_KEYS[0])
-        for row, keys in enumerate(_KEYS):
-            for column, key in enumerate(keys):
-                box = QRectF(column * wide, row * high, wide - gap, high - gap)
-                if key != _FREE:
-                    self._key(painter, box, key, _SHOWN.get(key, key.upper()))
-                elif self.own is not None:
-                    self._key(painter, box, *self.own)
-        foot = QRectF(0, len(_KEYS) * high, self.width(), high - gap)
-        self._key(painter, foot, "Enter", _SHOWN["Enter"])
-
-    def _key(self, painter: Painter, box: QRectF, key: str, shown: str) -> None:
-        ink = "text" if key.isdigit() or key == "." else "accent"
-        self.key(painter, box, shown, 3.0, partial(self._press, key), ink=ink, margin=1.0)
+    def draw_key(self, painter: Painter, box: QRectF, key: str) -> None:
+        """Draw a key; the place of the page's own one stays empty where there is none."""
+        key, shown = (self.own or ("", "")) if key == _FREE else (key, _SHOWN.get(key, key.upper()))
+        if key:
+            ink = "text" if key.isdigit() or key == "." else "accent"
+            self.key(painter, box, shown, 3.0, partial(self._press, key), ink=ink, margin=1.0)

@@ -48,6 +48,8 @@ _ARROWS = {"Up": "↑", "Down": "↓", "Left": "←", "Right": "→"}
 class LetterPad(Panel):
     """Every key does what the key of the keyboard does; hidden until somebody asks for it."""
 
+    part_name = "KEYBOARD"
+
     def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget, rows: Rows = NAMES) -> None:
         super().__init__(look, parent)
         self._press, self._rows = press, rows
@@ -69,9 +71,10 @@ class LetterPad(Panel):
         for row, keys in enumerate(self._rows):
             wide = (self.width() + gap) / len(keys)
             for column, key in enumerate(keys):
-                self._key(painter, QRectF(column * wide, row * high, wide - gap, high - gap), key)
+                self.draw_key(painter, QRectF(column * wide, row * high, wide - gap, high - gap), key)
 
-    def _key(self, painter: Painter, box: QRectF, key: str) -> None:
+    def draw_key(self, painter: Painter, box: QRectF, key: str) -> None:
+        """Draw one key."""
         words = {"Esc": "ESC", "Back": tr("DEL"), "Enter": tr("ENTER"), " ": tr("SPACE"), **_ARROWS}
         shown = words.get(key, key)
         ink = "text" if key.isalnum() and len(key) == 1 else "accent"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from functools import cache, lru_cache
 from importlib.resources import files
-from typing import Self
+from typing import ClassVar, Self
 
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import (
@@ -146,6 +146,8 @@ def put_raw(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str)
     Its capitals are centred on the middle of ``rect``; it is elided when it is too long.
     """
     font = painter.font()
+    if Painter.notes and isinstance(painter, Painter):
+        painter.written.append((QRectF(rect), text))
     width = width_of(text, font)
     if width > rect.width() + 1:
         text = QFontMetricsF(font).elidedText(text, Qt.TextElideMode.ElideRight, rect.width())
@@ -188,9 +190,12 @@ def _metrics(family: str, pixels: int, bold: bool) -> QFontMetricsF:
 class Painter(QPainter):
     """A painter that knows colours, fonts and unit of a look."""
 
+    notes: ClassVar[bool] = False  # whether all painters note what they write, for assistive technology
+
     def __init__(self, device: QPaintDevice, look: Look) -> None:
         super().__init__(device)
         self.look = look
+        self.written: list[tuple[QRectF, str]] = []  # texts and their places, where they are noted
 
     def __enter__(self) -> Self:
         super().__enter__()
@@ -219,6 +224,11 @@ class Painter(QPainter):
         self.setPen(look.colour(ink))
         self.setFont(look.fit(text, size, room, bold=bold) if fit else look.font(size, bold=bold))
         (put_raw if raw else put)(self, rect, at, text)
+
+    def wrap(self, rect: QRectF, flags: int | Qt.AlignmentFlag | Qt.TextFlag, text: str) -> None:
+        """Draw a text of several lines in the pen and font of now."""
+        self.written.append((QRectF(rect), text))
+        self.drawText(rect, int(flags), text)
 
     def fill(self, rect: QRectF, ground: str) -> None:
         """Fill a rectangle with a colour of the palette."""

@@ -102,7 +102,8 @@ class _Tiles(Panel):
             column, row = divmod(number, rows)
             box = QRectF(room.x() + column * wide, room.y() + row * high, wide - u, tall)
             self._tile(painter, box, entry)
-            self.place(box, partial(self._press, OF_MENU.get(entry.key, entry.key)))
+            press = partial(self._press, OF_MENU.get(entry.key, entry.key))
+            self.place(box, press, barred=entry.key in self.barred)
 
     def _tile(self, painter: Painter, box: QRectF, entry: PageEntry) -> None:
         u = self.look.u

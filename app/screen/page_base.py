@@ -80,6 +80,11 @@ class Page(QWidget):
         self.host, self.look, self.desk = host, host.look, host.desk
         self.hide()
 
+    @property
+    def part_name(self) -> str:
+        """The name for assistive technology."""
+        return self.NAME
+
     def labels(self) -> tuple[str, ...]:
         """The labels of this moment; asked for once a frame."""
         return tuple(label_on(self.desk.language, label) for label in self.LABELS)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import ClassVar, Generic, TypeVar
+from typing import ClassVar, Generic, Literal, NamedTuple, TypeVar
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
 from PySide6.QtGui import (
@@ -15,18 +14,14 @@ from PySide6.QtGui import (
     QPainter,
     QPaintEvent,
     QPen,
-    QPolygonF,
     QTouchEvent,
 )
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
 from app.screen.look import CENTRE, LEFT, Look, Painter, put
-from app.screen.window_layout import FINGER
 
 Press = Callable[[], None]
-LEAF = 5.0  # units: size of the keys that leaf through a list; a fingertip at least
-NARROW = 50.0  # units: width of a list that keeps all of it for its rows
 T = TypeVar("T")
 
 
@@ -49,17 +44,36 @@ class Shown(Generic[T]):
             panel.update()
 
 
+def no_press() -> None:
+    """Do nothing: what acts while it is held or dragged is not pressed by assistive technology."""
+
+
+class Spot(NamedTuple):
+    """A target of a panel. ``name`` goes before the texts that are painted on it; see ``words_on``."""
+
+    box: QRectF
+    press: Press
+    name: str = ""
+    kind: Literal["key", "row", "lamp", "slider"] = "key"
+    on: bool = False  # a lamp that is lit, a row that has the mark
+    barred: bool = False  # pressing it would be refused now
+
+
 class Panel(QWidget):
     """Draws itself from what it shows, and only when that has changed. Never takes the keyboard."""
 
     title = ""
+    part_name = ""  # for assistive technology, where the panel has no title
+    lists = False  # its targets are the rows of a list
     ground = "ground"
     paints: ClassVar[int] = 0  # how often any of them has been
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.look = look
-        self._places: list[tuple[QRectF, Press]] = []
+        self._places: list[Spot] = []
+        self._written: list[tuple[QRectF, str]] | None = None
+        self._titled = ""
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
 
@@ -73,6 +87,7 @@ class Panel(QWidget):
             if self.title:
                 self.frame(painter, self.title)
             self.draw(painter)
+            self._written = painter.written if Painter.notes else None
 
     def draw(self, painter: Painter) -> None:
         """What a part of the page draws inside its frame."""
@@ -83,15 +98,58 @@ class Panel(QWidget):
 
     def touch(self, at: QPointF) -> bool:
         """Press whatever stands there; False when nothing does."""
-        for rect, press in self._places:
-            if rect.contains(at):
-                press()
+        for spot in self._places:
+            if spot.box.contains(at):
+                spot.press()
                 return True
         return False
 
-    def place(self, rect: QRectF, press: Press) -> None:
-        """While drawing: remember that pressing inside ``rect`` does this."""
-        self._places.append((rect, press))
+    def place(
+        self,
+        rect: QRectF,
+        press: Press,
+        name: str = "",
+        *,
+        kind: Literal["key", "row", "lamp"] = "key",
+        on: bool = False,
+        barred: bool = False,
+    ) -> None:
+        """While drawing: remember that pressing inside ``rect`` does this; see ``Spot``."""
+        self._places.append(Spot(rect, press, name, kind, on, barred))
+
+    # --- for assistive technology ---------------------------------------------------------------------
+
+    def spots(self) -> Sequence[Spot]:
+        """Return the targets as they were painted last."""
+        return self._places
+
+    def written(self) -> list[tuple[QRectF, str]]:
+        """Return the texts that were painted last, and their places.
+
+        Painters note no texts before the first call, because that takes 5 % of their time.
+        """
+        Painter.notes = True
+        if self._written is None and self.isVisible():
+            self.grab()
+        return [(box, text) for box, text in self._written or () if text]
+
+    def words_on(self, spot: Spot) -> str:
+        """Return the name of a target, and the texts that are painted on it."""
+        texts = (text for box, text in self.written() if spot.box.contains(box.center()))
+        return "  ".join((*([tr(spot.name)] if spot.name else ()), *texts))
+
+    def words_outside(self) -> str:
+        """Return all texts outside the targets, without the title."""
+        return "  ".join(
+            text
+            for box, text in self.written()
+            if text != self._titled and not any(each.box.contains(box.center()) for each in self.spots())
+        )
+
+    def words_of_name(self) -> str:
+        """Return the title, or what it shows where it has none."""
+        shown = self.words_outside() or "  ".join(text for _box, text in self.written())
+        return self._titled or tr(self.part_name) or shown
 
     def key(
         self,
@@ -110,69 +168,6 @@ class Panel(QWidget):
         painter.write(box, word, size, ink, at=CENTRE, raw=raw, margin=margin)
         self.place(box, press)
 
-    def leaf(
-        self, painter: Painter, room: QRectF, seen: tuple[int, int, int], go: Callable[[int], None]
-    ) -> QRectF:
-        """While drawing a list: two keys where not all of it fits; the room left for its rows.
-
-        ``seen``: the first row that is shown, how many fit, how many there are. ``go`` takes how many rows
-        further down: a finger has no wheel, and marking a row brings no other into sight. The keys stand at
-        the right, below a narrow list (see ``fitting``), and side by side where there is no height.
-        """
-        top, fits, count = seen
-        if count <= fits:
-            return room
-        gap, (wide, high) = 0.6 * self.look.u, self._leaf_size
-        foot = self._is_narrow(room.width())
-        beside = foot or room.height() < 2 * high + gap
-        strip = QRectF(room.right() - wide - beside * (wide + gap), room.y(), wide, room.height())
-        if foot:
-            wide = (room.width() - gap) / 2
-            strip = QRectF(room.x(), room.bottom() - high, wide, high)
-        right, down = (wide + gap, 0.0) if beside else (0.0, (strip.height() + gap) / 2)
-        for number, (sign, ends) in enumerate(((-1, top <= 0), (1, top + fits >= count))):
-            box = QRectF(strip.x(), strip.y(), wide, strip.height() if beside else down - gap)
-            box.translate(number * right, number * down)
-            painter.fill(box, "key")
-            self._triangle(painter, box, sign, "ghost" if ends else "accent")
-            self.place(box, partial(go, sign * fits))
-        left = room.adjusted(0, 0, -2 * gap, -high - gap)
-        if not foot:
-            left = room.adjusted(0, 0, strip.x() - 2 * gap - room.right(), 0)
-        self._seen_share(painter, QRectF(left.right() + gap, left.y(), 0.6 * gap, left.height()), seen)
-        return left
-
-    @property
-    def _leaf_size(self) -> tuple[float, float]:
-        """Width and least height of a key that leafs, pixels."""
-        return max(LEAF * self.look.u, float(FINGER)), max(LEAF * self.look.u, float(FINGER))
-
-    def _is_narrow(self, width: float) -> bool:
-        return width < NARROW * self.look.u
-
-    def fitting(self, room: QRectF, high: float, count: int) -> int:
-        """How many rows of this height fit, the keys of ``leaf`` counted where they stand below."""
-        fits = int(room.height() / high)
-        if fits < count and self._is_narrow(room.width()):
-            fits = int((room.height() - self._leaf_size[1] - 0.6 * self.look.u) / high)
-        return max(1, fits)
-
-    def _triangle(self, painter: Painter, box: QRectF, sign: int, ink: str) -> None:
-        at, size = box.center(), 1.2 * self.look.u
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(self.look.colour(ink))
-        tip, foot = QPointF(at.x(), at.y() + sign * size), at.y() - sign * size
-        painter.drawPolygon(QPolygonF([tip, QPointF(at.x() - size, foot), QPointF(at.x() + size, foot)]))
-
-    @staticmethod
-    def _seen_share(painter: Painter, track: QRectF, seen: tuple[int, int, int]) -> None:
-        """How much of a list is seen, and where."""
-        top, fits, count = seen
-        painter.fill(track, "key")
-        part = QRectF(track.x(), 0, track.width(), track.height() * fits / count)
-        part.moveTop(track.y() + track.height() * top / count)
-        painter.fill(part, "accent")
-
     def area(self) -> QRectF:
         """The whole widget, in pixels."""
         return QRectF(self.rect())
@@ -185,6 +180,7 @@ class Panel(QWidget):
     def frame(self, painter: Painter, title: str, colour: str = "frame", width: float = 0.16) -> None:
         """A box with its title set into the top line, as text screens drew them."""
         look, u, title = self.look, self.look.u, tr(title)
+        self._titled = title
         top = 1.0 * u
         pen = look.pen(colour, width)
         half = pen.widthF() / 2
@@ -222,15 +218,27 @@ class Control:
     along: Callable[[QPointF], None] | None = None
     up: Callable[[], None] | None = None
     always: bool = False  # it stops the machine: it acts however late the finger is seen
+    name: str = ""  # see ``Spot``
+    kind: Literal["key", "slider"] = "key"
+
+    def spot(self) -> Spot:
+        """Return it as a target for assistive technology."""
+        return Spot(self.box, no_press if self.along else self.tap, self.name, self.kind)
+
+    def tap(self) -> None:
+        """Go down in the middle and come up."""
+        self.down(self.box.center())
+        if self.up:
+            self.up()
 
     def stopping(self) -> Control:
         """The same, as one that stops the machine."""
         return replace(self, always=True)
 
 
-def pressed(box: QRectF, press: Press) -> Control:
+def pressed(box: QRectF, press: Press, name: str = "") -> Control:
     """A control that acts as it goes down, wherever in its box."""
-    return Control(box, lambda _at: press())
+    return Control(box, lambda _at: press(), name=name)
 
 
 class FingerPanel(Panel):
@@ -241,6 +249,10 @@ class FingerPanel(Panel):
         self.controls: list[Control] = []
         self._held: dict[int, Control] = {}
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
+
+    def spots(self) -> Sequence[Spot]:
+        """Return also the controls."""
+        return [*super().spots(), *(each.spot() for each in self.controls)]
 
     def stops_at(self, at: QPointF) -> bool:
         """Whether what stands there stops the machine."""

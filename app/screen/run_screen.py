@@ -12,6 +12,7 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from app.desk.desk import Desk
+from app.screen import accessible
 from app.screen.look import Look, dress, load_fonts
 from app.screen.main_window import MainWindow
 from app.screen.theme import PALETTES
@@ -105,5 +106,6 @@ def _application(theme: str) -> QApplication:
     app.setApplicationName("TurnDesk")
     app.setDesktopFileName("turndesk")  # by it a desktop finds name and icon, also under Wayland
     load_fonts()
+    accessible.install()
     dress(PALETTES[theme])
     return app

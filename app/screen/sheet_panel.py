@@ -7,7 +7,6 @@ from functools import partial
 from typing import Protocol
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.sheet import Key, Row, Sheet
@@ -15,7 +14,8 @@ from app.screen import page_table
 from app.screen.entry_panel import draw_entry_box
 from app.screen.look import LEFT, RIGHT, Look, Painter
 from app.screen.page_base import Host, ModelPage, PageModel
-from app.screen.panel import Panel, Shown
+from app.screen.panel import Shown
+from app.screen.row_panel import RowPanel
 from app.screen.tool_outline_drawing import draw_outline
 from app.screen.window_layout import FINGER
 
@@ -25,7 +25,7 @@ LAMP = 3.2
 _ROUNDING = 1e-6
 
 
-class SheetPanel(Panel):
+class SheetPanel(RowPanel):
     """Draws any sheet; a finger on a row chooses it. The mark stays in sight."""
 
     sheet = Shown(Sheet("", (), (), ()))
@@ -34,8 +34,6 @@ class SheetPanel(Panel):
         super().__init__(look, parent)
         self._choose = choose
         self.touch_entry: Callable[[], None] | None = None  # a finger on what is typed
-        self.top = 0
-        self._followed = (-1, 0)  # the mark, and how many rows there was room for
 
     def show_sheet(self, sheet: Sheet) -> None:
         """Redraw when something has changed; another list begins at its top."""
@@ -68,21 +66,20 @@ class SheetPanel(Panel):
         """How large letters are in a row, by its height."""
         return min(1.0, self._high / (TALL if self.sheet.tall else 4.2))
 
-    @property
-    def rows(self) -> int:
-        """How many rows of the table fit into the panel; none where a question needs all of it."""
+    def _fits(self) -> int:
+        """Return how many rows of the table fit; none where a question needs all of the panel."""
         fits = self._fit(len(self._notes))
         if fits < len(self.sheet.rows):
-            fits = self._fit(len(self._notes), self._leaves)
+            fits = self._fit(len(self._notes), self._below)
         return max(0 if self.sheet.question else 1, fits)
 
     def _fit(self, notes: int, below: float = 0.0) -> int:
         return int((self._room(notes) - below) / self._high)
 
     @property
-    def _leaves(self) -> float:
-        """Units that the keys of ``leaf`` take below the rows of a narrow table; else they stand beside."""
-        return self._leaf_size[1] / self.look.u + 0.6 if self._is_narrow(self.inside().width()) else 0.0
+    def _below(self) -> float:
+        """Units that the keys that scroll take below the rows of a narrow table; else they stand beside."""
+        return self.key_size[1] / self.look.u + 0.6 if self.is_narrow(self.inside().width()) else 0.0
 
     @property
     def _notes(self) -> tuple[str, ...]:
@@ -90,41 +87,19 @@ class SheetPanel(Panel):
         notes = self.sheet.notes
         return () if self.sheet.question and self._fit(len(notes)) < 1 else notes
 
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """Three rows a notch."""
-        self.leaf_by(-round(event.angleDelta().y() / 40))
-
-    def leaf_by(self, rows: int) -> None:
-        """Look further down; the mark stays where it is."""
-        self.top = max(0, min(self.top + rows, len(self.sheet.rows) - self.rows))
-        self.update()
-
-    def _follow(self) -> None:
-        """To the mark, where a key has moved it; a finger or a wheel that leafs does not."""
-        now = (self.sheet.marked, self.rows)
-        if now != self._followed and self.sheet.marked >= 0 and self.rows:
-            self.top = min(max(self.top, self.sheet.marked - self.rows + 1), self.sheet.marked)
-        self._followed = now
-        self.top = max(0, min(self.top, len(self.sheet.rows) - self.rows))
-
     def draw(self, painter: Painter) -> None:
         u, sheet = self.look.u, self.sheet
         self.frame(painter, sheet.title)
-        self._follow()
-        room = self.inside()
+        room, fits, high = self.inside(), self._fits(), self._high
         row = QRectF(room.x(), room.y(), room.width(), HEAD * u)
-        seen = (self.top, self.rows, len(sheet.rows))
-        below = self._leaves if self.rows < len(sheet.rows) else 0.0
-        body = QRectF(room.x(), row.bottom(), room.width(), (self.rows * self._high + below) * u)
-        left = self.leaf(painter, body, seen, self.leaf_by) if self.rows else body
+        below = self._below if fits < len(sheet.rows) else 0.0
+        body = QRectF(room.x(), row.bottom(), room.width(), (fits * high + below) * u)
+        left = self.scrolled(painter, body, fits, len(sheet.rows), sheet.marked)
         row.setWidth(left.width())
         self._head(painter, row)
-        for number in range(self.top, min(len(sheet.rows), self.top + self.rows)):
-            place = number - self.top
-            high = self._high * u
-            box = QRectF(left.x(), row.bottom() + place * high, left.width(), high)
+        for number, box in self.boxes(left, high * u):
             self._row(painter, box, sheet.rows[number], number == sheet.marked)
-            self.place(box, partial(self._choose, number))
+            self.place(box, partial(self._choose, number), kind="row", on=number == sheet.marked)
         self._foot(painter, room)
 
     def _columns(self, box: QRectF) -> Iterator[tuple[int, QRectF]]:

@@ -71,9 +71,10 @@ class StationDock(FingerPanel):
         spindle, feed = desk.hands.spindle_pot, desk.hands.feed_pot
         self._label(painter, self._row(26.2, 2.4), "SPINDLE SPEED", formats.percent(spindle.wanted), "text")
         keys = ("−", "+") if "," in self.mute else (",", ".")
-        self._pot(painter, self._spindle_box(), keys, spindle, desk.hands.turn_spindle_pot)
+        name = "SPINDLE SPEED"
+        self._pot(painter, self._spindle_box(), name, keys, spindle, desk.hands.turn_spindle_pot)
         self._label(painter, self._row(36.1, 2.4), "FEED RATE", formats.percent(feed.wanted), "text")
-        self._pot(painter, self._feed_box(), ("−", "+"), feed, desk.override)
+        self._pot(painter, self._feed_box(), "FEED RATE", ("−", "+"), feed, desk.override)
         self._hold(painter)
         self._start(painter)
 
@@ -136,7 +137,13 @@ class StationDock(FingerPanel):
             self.controls.append(pressed(at, press))
 
     def _pot(
-        self, painter: Painter, box: QRectF, keys: tuple[str, str], pot: Pot, turn: Callable[[int], None]
+        self,
+        painter: Painter,
+        box: QRectF,
+        name: str,
+        keys: tuple[str, str],
+        pot: Pot,
+        turn: Callable[[int], None],
     ) -> None:
         u = self.look.u
         wide = max(4.6 * u, float(FINGER))
@@ -145,7 +152,7 @@ class StationDock(FingerPanel):
         for at, key, steps in ((less, keys[0], -1), (more, keys[1], 1)):
             painter.fill(at, "key")
             painter.write(at, key, 2.8, "accent", at=CENTRE)
-            self.controls.append(pressed(at, partial(turn, steps)))
+            self.controls.append(pressed(at, partial(turn, steps), name))
         track = box.adjusted(wide + 0.5 * u, 0, -wide - 0.5 * u, 0)
         painter.box(track, "frame", 0.14, "panel")
         self._slider(painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), pot.wanted / pot.most)
@@ -153,7 +160,7 @@ class StationDock(FingerPanel):
         def slide(at: QPointF) -> None:
             pot.set(round((at.x() - track.x()) / track.width() * pot.most * 20) / 20)
 
-        self.controls.append(Control(track, slide, slide))
+        self.controls.append(Control(track, slide, slide, name=name, kind="slider"))
 
     def _slider(self, painter: Painter, inner: QRectF, share: float) -> None:
         u = self.look.u

@@ -16,6 +16,7 @@ from app.desk.machine_status import Tone
 from app.desk.prompt_line import Sort
 from app.desk.readouts import Lamp
 from app.desk.translation import tr
+from app.screen.accessible import announce
 from app.screen.keys import ANSWER, NO
 from app.screen.look import CENTRE, LEAST, LEFT, RIGHT, Look, Painter, draw_sign, put, width_of
 from app.screen.panel import Panel, Shown
@@ -93,6 +94,7 @@ class PromptLine(Panel):
     def __init__(self, look: Look, press: Callable[[str], None], parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self._press = press
+        self._announced = ""
 
     @property
     def text(self) -> str:
@@ -114,6 +116,9 @@ class PromptLine(Panel):
     def draw(self, painter: Painter) -> None:
         area = self.area()
         painter.fill(area, "panel")
+        if self.text != self._announced:
+            self._announced = self.text
+            announce(self, tr(self.text))
         if self.question and self.asked:
             area.setRight(self._targets(painter, area))  # as high as a finger needs them
         upper = QRectF(area.x(), area.y(), area.width(), PROMPT_SHARE * area.height())
@@ -170,6 +175,7 @@ class CommentLine(Panel):
 class FunctionKeys(Panel):
     """F1 to F10 with labels of up to eight characters; each is a target for a finger too."""
 
+    part_name = "FUNCTION KEYS"
     labels: Shown[tuple[str, ...]] = Shown(("",) * 10)  # an empty one is no key
     barred: Shown[frozenset[str]] = Shown(frozenset())  # keys that would be refused now: drawn dim
 
@@ -191,7 +197,7 @@ class FunctionKeys(Panel):
             painter.write(upper, f"F{number}", 1.8, "soft" if barred else "accent", at=CENTRE)
             lower = QRectF(box.x(), box.y() + 3.0 * u, box.width(), 3.2 * u)
             painter.write(lower, label, 2.1, "soft" if barred else "text", at=CENTRE, margin=1.0)
-            self.place(box, partial(self._press, number))
+            self.place(box, partial(self._press, number), barred=barred)
 
 
 # --- lit words ----------------------------------------------------------------------------------------
@@ -200,6 +206,7 @@ class FunctionKeys(Panel):
 class LampStrip(Panel):
     """A row of words. Lit is filled and dark is hollow, so that the difference needs no colour."""
 
+    part_name = "LAMPS"
     lamps: Shown[tuple[Lamp, ...]] = Shown(())
     mute: Shown[frozenset[str]] = Shown(
         frozenset()
@@ -217,7 +224,7 @@ class LampStrip(Panel):
             box = QRectF(number * wide, 0, wide - gap, self.height())
             self._lamp(painter, box, lamp)
             if lamp.key:
-                self.place(box, partial(self._press, lamp.key))
+                self.place(box, partial(self._press, lamp.key), kind="lamp", on=lamp.lit)
 
     def _lamp(self, painter: Painter, box: QRectF, lamp: Lamp) -> None:
         look, u = self.look, self.look.u

@@ -136,7 +136,7 @@ class StatePanel(Panel):
         painter.setPen(look.colour("alarm"))
         painter.setFont(look.fit(self.shown.why, 2.2, 2 * room.width(), bold=True))
         flags = int(LEFT) | 0x1000  # Qt.TextWordWrap
-        painter.drawText(QRectF(room.x(), room.y(), room.width(), 9 * u), flags, tr(self.shown.why))
+        painter.wrap(QRectF(room.x(), room.y(), room.width(), 9 * u), flags, tr(self.shown.why))
         for number, near in enumerate(self.shown.near):
             box = QRectF(room.x(), room.y() + (11 + 9.4 * number) * u, room.width(), 8.4 * u)
             self._near(painter, box, near)

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from functools import partial
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QMouseEvent, QWheelEvent
+from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import spoken, tr
 from app.screen.entry_panel import KeyPad, draw_entry
 from app.screen.look import CENTRE, LEFT, RIGHT, Look, Painter, width_of
 from app.screen.panel import Panel, Shown
+from app.screen.row_panel import RowPanel
 from app.shapes.shape_form import COLUMNS, Cell, ShapeForm
 from app.shapes.shapes_model import Shapes
 from app.shapes.sketch_view import SketchPanel
@@ -41,10 +42,11 @@ class _Line:
     cells: tuple[str, ...] = ()
 
 
-class RowsPanel(Panel):
+class RowsPanel(RowPanel):
     """Rows with a mark that stays in sight; a finger marks one, or what stands in it."""
 
-    rows: Shown[tuple[_Line, ...]] = Shown(())
+    margin = 1
+    shown: Shown[tuple[_Line, ...]] = Shown(())
     marked = Shown(0)
     column = Shown(0)
     heading = Shown("")
@@ -52,50 +54,29 @@ class RowsPanel(Panel):
 
     def __init__(self, look: Look, choose: Callable[[int, int], None], parent: QWidget) -> None:
         super().__init__(look, parent)
-        self._choose, self.top = choose, 0
-        self._seen = -1
-
-    @property
-    def _high(self) -> float:
-        """Of a row, pixels."""
-        return self.look.row(ROW, 9.0, touch=True)
-
-    @property
-    def count(self) -> int:
-        """How many rows fit."""
-        return self.fitting(self.inside(), self._high, len(self.rows))
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """Three rows a notch."""
-        self.leaf_by(-round(event.angleDelta().y() / 40))
-
-    def leaf_by(self, rows: int) -> None:
-        """Look further down; the mark stays where it is."""
-        self.top = max(0, min(self.top + rows, len(self.rows) - self.count))
-        self.update()
+        self._choose = choose
 
     def draw(self, painter: Painter) -> None:
         self.frame(painter, self.heading)
-        if self._seen != self.marked:
-            self._seen = self.marked
-            self.top = min(max(self.top, self.marked - self.count + 2), max(0, self.marked - 1))
-        self.top = max(0, min(self.top, len(self.rows) - self.count))
-        high, seen = self._high, (self.top, self.count, len(self.rows))
-        room = self.leaf(painter, self.inside(), seen, self.leaf_by)
-        for place, line in enumerate(self.rows[self.top : self.top + self.count]):
-            box = QRectF(room.x(), room.y() + place * high, room.width(), high)
-            self._row(painter, box, line, self.top + place)
+        high, room, count = self.look.row(ROW, 9.0, touch=True), self.inside(), len(self.shown)
+        room = self.scrolled(painter, room, self.fitting(room, high, count), count, self.marked)
+        for number, box in self.boxes(room, high):
+            self._row(painter, box, self.shown[number], number)
 
     def _row(self, painter: Painter, box: QRectF, line: _Line, number: int) -> None:
         u, marked = self.look.u, number == self.marked
         if marked:
             painter.fill(box, "here")
             painter.fill(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
-        self.place(box, partial(self._choose, number, -1))
         room = box.adjusted(1.0 * u, 0, -0.4 * u, 0)
         if line.cells:
             self._cells(painter, room, line, number, marked=marked)
-            return
+        else:
+            self._words(painter, room, line, marked=marked)
+        # The first place that holds a point is taken: the row goes after its cells.
+        self.place(box, partial(self._choose, number, -1), kind="row", on=marked)
+
+    def _words(self, painter: Painter, room: QRectF, line: _Line, *, marked: bool) -> None:
         label = QRectF(room.x(), room.y(), _LABEL * room.width(), room.height())
         self._label(painter, label, line, marked=marked)
         figure = QRectF(label.right(), room.y(), room.right() - label.right(), room.height())
@@ -133,15 +114,13 @@ class RowsPanel(Panel):
         wide = (room.width() - first.width()) / len(line.cells)
         for column, figure in enumerate(line.cells):
             box = QRectF(first.right() + column * wide, room.y(), wide, room.height())
-            self.place(box, partial(self._choose, number, column))
             here = marked and column == self.column
+            self.place(box, partial(self._choose, number, column), COLUMNS[column], kind="row", on=here)
             inner = box.adjusted(0.2 * u, 0, -0.2 * u, 0)
             if figure or here:
                 self._figure(painter, inner, figure, line.tone, marked=here and self.typing)
             elif marked:  # what may be typed here
                 painter.write(inner, COLUMNS[column], 1.7, "soft", at=CENTRE, raw=True, bold=False)
-        # The cells were placed behind the row: the first that holds a point is taken, so the row goes last.
-        self._places.append(self._places.pop(-1 - len(line.cells)))
 
 
 class LinesPanel(Panel):
@@ -190,7 +169,7 @@ class LinesPanel(Panel):
         flags = Qt.TextFlag.TextWordWrap | Qt.AlignmentFlag.AlignTop
         used = painter.boundingRect(room, flags, text)
         if used.height() <= room.height():
-            painter.drawText(room, flags, text)
+            painter.wrap(room, flags, text)
             return room.adjusted(0, used.height() + self.look.u, 0, 0)
         self._say_page(painter, room, flags, text)
         return room.adjusted(0, room.height(), 0, 0)
@@ -204,7 +183,7 @@ class LinesPanel(Panel):
         page = self._page % pages
         painter.save()
         painter.setClipRect(QRectF(room.x(), room.y(), room.width(), lines * line))
-        painter.drawText(room.adjusted(0, -page * lines * line, 0, whole), flags, text)
+        painter.wrap(room.adjusted(0, -page * lines * line, 0, whole), flags, text)
         painter.restore()
         foot = QRectF(room.x(), room.bottom() - 2.0 * self.look.u, room.width(), 2.0 * self.look.u)
         painter.write(foot, f"{page + 1}/{pages} ▸", 1.7, "accent", at=RIGHT, raw=True)
@@ -212,11 +191,13 @@ class LinesPanel(Panel):
     def _trouble(self, painter: Painter, room: QRectF) -> None:
         painter.setFont(self.look.font(2.0, bold=True))
         painter.setPen(self.look.colour("alarm"))
-        painter.drawText(room, Qt.TextFlag.TextWordWrap, tr(self.trouble))
+        painter.wrap(room, Qt.TextFlag.TextWordWrap, tr(self.trouble))
 
 
 class ShapesView(QWidget):
     """Rows at the left, drawing and lines at the right; the number pad takes the lines' place."""
+
+    part_name = "SHAPES"
 
     def __init__(self, look: Look, model: Shapes, press: Callable[[str], None], parent: QWidget) -> None:
         super().__init__(parent)
@@ -268,7 +249,7 @@ class ShapesView(QWidget):
         self.rows.heading = tr(
             "SHAPES  ·  IN THIS PROGRAM, BY LINE" if model.of_shapes else "CALCULATORS AND TEMPLATES"
         )
-        self.rows.rows, self.rows.marked, self.rows.column = (*shapes, *there), model.marked, 0
+        self.rows.shown, self.rows.marked, self.rows.column = (*shapes, *there), model.marked, 0
         place = model.marked
         shape = table[keys[place]] if place < len(keys) else model.listed[place - len(keys)].filled.shape
         form = ShapeForm(shape, model.new)
@@ -282,7 +263,7 @@ class ShapesView(QWidget):
         self.rows.heading = tr(form.shape.name) + (
             "" if form.instead is None else f"  ·  {form.instead.first + 1}"
         )
-        self.rows.rows, self.rows.marked, self.rows.column = tuple(lines), form.marked, form.column
+        self.rows.shown, self.rows.marked, self.rows.column = tuple(lines), form.marked, form.column
         drawn = form.sketch
         figures = tuple((dim.word, form.dimension(dim.word)) for dim in drawn.dims)
         self.sketch.shown = drawn, figures, form.word, frozenset(form.troubles)

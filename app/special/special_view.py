@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from PySide6.QtCore import QRectF
-from PySide6.QtGui import QResizeEvent, QWheelEvent
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
@@ -17,7 +17,8 @@ from app.screen.entry_panel import KeyPad
 from app.screen.letter_keys import LetterPad
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions
-from app.screen.panel import Panel, Shown
+from app.screen.panel import Shown
+from app.screen.row_panel import RowPanel
 from app.screen.sheet_panel import ListPage, SheetPanel
 from app.screen.window_layout import FINGER
 from app.special.special_functions import SpecialFunctions
@@ -29,13 +30,14 @@ from core.executor.snapshot import Snapshot
 ROW, GAP = 7.0, 0.4  # units: a row of the list with what is left free below it
 
 
-class ItemList(Panel):
+class ItemList(RowPanel):
     """The one that is shown is filled; it has a bar while the keys are its own. It stays in sight.
 
-    Rows are never lower than a fingertip: where not all fit, two keys at the foot and the wheel leaf.
+    Rows are never lower than a fingertip: where not all fit, two keys at the foot and the wheel scroll.
     """
 
     title = "SPECIAL FUNCTIONS"
+    notch = 1
     mark: Shown[object] = Shown(None)  # where it stands: redrawn when it has moved
 
     def __init__(
@@ -43,40 +45,20 @@ class ItemList(Panel):
     ) -> None:
         super().__init__(look, parent)
         self.model, self._enter = model, enter
-        self.top = 0
-        self._followed = -1
 
     @property
     def _high(self) -> float:
         """Of a row, pixels: what is touched of it is a fingertip high."""
         return max(ROW * self.look.u, FINGER + GAP * self.look.u)
 
-    @property
-    def rows(self) -> int:
-        """How many rows fit, above the keys that leaf where there are some."""
-        return self.fitting(self.inside(), self._high, len(self.model.functions))
-
-    def leaf_by(self, rows: int) -> None:
-        """So many rows down the list."""
-        self.top = max(0, min(self.top + rows, len(self.model.functions) - self.rows))
-        self.update()
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """A row a notch."""
-        self.leaf_by(-round(event.angleDelta().y() / 120))
-
     def draw(self, painter: Painter) -> None:
-        functions, rows, high = self.model.functions, self.rows, self._high
-        if self._followed != self.model.at:  # a key has moved it; a finger that leafs does not
-            self._followed = self.model.at
-            self.top = min(max(self.top, self.model.at - rows + 1), self.model.at)
-        self.top = max(0, min(self.top, len(functions) - rows))
-        room = self.leaf(painter, self.inside(), (self.top, rows, len(functions)), self.leaf_by)
-        for number in range(self.top, min(len(functions), self.top + rows)):
-            y = room.y() + (number - self.top) * high
-            box = QRectF(room.x(), y, room.width(), high - GAP * self.look.u)
+        functions, high, room = self.model.functions, self._high, self.inside()
+        fits = self.fitting(room, high, len(functions))
+        room = self.scrolled(painter, room, fits, len(functions), self.model.at)
+        for number, row in self.boxes(room, high):
+            box = row.adjusted(0, 0, 0, -GAP * self.look.u)
             self._item(painter, box, number, functions[number].name, functions[number].use)
-            self.place(box, partial(self._enter, number))
+            self.place(box, partial(self._enter, number), kind="row", on=number == self.model.at)
 
     def _item(self, painter: Painter, box: QRectF, number: int, name: str, use: str) -> None:
         u = self.look.u

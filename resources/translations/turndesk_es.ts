@@ -6845,6 +6845,11 @@
     </message>
     <message>
       <location filename="app/editor/text_view.py" />
+      <source>PROGRAM</source>
+      <translation>PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/text_view.py" />
       <source>SAMPLE</source>
       <translation>MUESTRA</translation>
     </message>
@@ -7022,11 +7027,6 @@
       <location filename="app/jobs/jobs_model.py" />
       <source>NOTE TOO LONG: {maximum} CHARACTERS AT MOST</source>
       <translation>NOTA DEMASIADO LARGA: {maximum} CARACTERES COMO MÁXIMO</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_model.py" />
-      <source>PROGRAM</source>
-      <translation>PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/jobs/jobs_model.py" />
@@ -10515,6 +10515,11 @@
     </message>
     <message>
       <location filename="app/quality/plots_view.py" />
+      <source>CHART</source>
+      <translation>GRÁFICO</translation>
+    </message>
+    <message>
+      <location filename="app/quality/plots_view.py" />
       <source>NOTHING TO DRAW YET</source>
       <translation>AÚN NO HAY NADA QUE DIBUJAR</translation>
     </message>
@@ -12229,6 +12234,11 @@
       <translation>ENTER</translation>
     </message>
     <message>
+      <location filename="app/screen/entry_panel.py" />
+      <source>NUMBER PAD</source>
+      <translation>TECLADO NUMÉRICO</translation>
+    </message>
+    <message>
       <location filename="app/screen/language.py" />
       <source>catalog turndesk_{language}.qm not found in {folder}</source>
       <translation>no se encontró el catálogo turndesk_{language}.qm en {folder}</translation>
@@ -12479,6 +12489,16 @@
       <translation>INTERR. OFF</translation>
     </message>
     <message>
+      <location filename="app/screen/row_panel.py" />
+      <source>NEXT ROWS</source>
+      <translation>FILAS SIGUIENTES</translation>
+    </message>
+    <message>
+      <location filename="app/screen/row_panel.py" />
+      <source>PREVIOUS ROWS</source>
+      <translation>FILAS ANTERIORES</translation>
+    </message>
+    <message>
       <location filename="app/screen/run_screen.py" />
       <source>SCREEN FAULT (MACHINE OK): {name}: {error}</source>
       <translation>FALLA DE LA PANTALLA (MÁQUINA OK): {name}: {error}</translation>
@@ -12542,6 +12562,16 @@
       <location filename="app/screen/station_dock.py" />
       <source>TWIST</source>
       <translation>GIRE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_bars.py" />
+      <source>FUNCTION KEYS</source>
+      <translation>TECLAS DE FUNCIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window_bars.py" />
+      <source>LAMPS</source>
+      <translation>LÁMPARAS</translation>
     </message>
     <message>
       <location filename="app/screen/window_bars.py" />
@@ -13245,6 +13275,11 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_view.py" />
+      <source>SHAPES</source>
+      <translation>FORMAS</translation>
+    </message>
+    <message>
+      <location filename="app/shapes/shapes_view.py" />
       <source>SHAPES  ·  IN THIS PROGRAM, BY LINE</source>
       <translation>FORMAS  ·  EN ESTE PROGRAMA, POR LÍNEA</translation>
     </message>
@@ -13867,11 +13902,6 @@
       <location filename="app/special/inputs_outputs.py" />
       <source>LAMP TEST: ALL TOWER LAMPS ARE ON FOR 2 SECONDS</source>
       <translation>PRUEBA DE LÁMPARAS: TODAS LAS DE LA TORRE ESTÁN ENCENDIDAS 2 SEGUNDOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/inputs_outputs.py" />
-      <source>LAMPS</source>
-      <translation>LÁMPARAS</translation>
     </message>
     <message>
       <location filename="app/special/inputs_outputs.py" />

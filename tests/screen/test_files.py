@@ -374,10 +374,10 @@ def test_a_finger_alone_begins_a_program(shop: Shop) -> None:
     table, pad = shop.programs.table, shop.programs.letters
     assert not pad.isVisible()
     table.grab()
-    entry, _press = table._places[-1]
+    entry, *_ = table._places[-1]
     QTest.mouseClick(table, Qt.MouseButton.LeftButton, pos=entry.center().toPoint())
     shop.sees(lambda: pad.isVisible() and len(pad._places) == 43)
-    for box, _press in pad._places:
+    for box, *_ in pad._places:
         assert min(box.width(), box.height()) >= FINGER - 1
         assert pad.area().adjusted(-0.1, -0.1, 0.1, 0.1).contains(box)
     assert not table.geometry().intersects(pad.geometry())
@@ -387,7 +387,7 @@ def test_a_finger_alone_begins_a_program(shop: Shop) -> None:
     assert "F3" in shop.prompt()
     keys = shop.frame.keys
     keys.grab()
-    box = next(box for box, _ in keys._places if box.center().x() > keys.width() * 0.2)
+    box = next(box for box, *_ in keys._places if box.center().x() > keys.width() * 0.2)
     QTest.mouseClick(keys, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
     shop.sees(lambda: shop.frame.title.page == page_table.EDITOR)
     shop.sees(lambda: shop.frame.keys.labels[0] == "CREATE")
@@ -402,7 +402,7 @@ def test_a_finger_takes_the_letters_away_again(shop: Shop) -> None:
     table = shop.programs.table
     for shown in (True, False):
         table.grab()
-        entry, _press = table._places[-1]
+        entry, *_ = table._places[-1]
         QTest.mouseClick(table, Qt.MouseButton.LeftButton, pos=entry.center().toPoint())
         shop.sees(partial(letters_are, shop, shown))
     assert shop.programs.record.isVisible()
@@ -410,5 +410,5 @@ def test_a_finger_takes_the_letters_away_again(shop: Shop) -> None:
 
 def touch(shop: Shop, place: int) -> None:
     pad = shop.programs.letters
-    box, _press = pad._places[place]
+    box, *_ = pad._places[place]
     QTest.mouseClick(pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))

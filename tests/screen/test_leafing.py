@@ -71,7 +71,7 @@ def leaf_keys(panel: Panel) -> list[QRectF]:
     """The two keys, up before down: the places whose press takes how many rows further."""
     panel.grab()
     found = {}
-    for box, press in panel._places:
+    for box, press, *_ in panel._places:
         if isinstance(press, partial) and press.func.__name__.endswith("_by"):
             found[press.args[0] > 0] = box
     return [found[False], found[True]]
@@ -98,7 +98,7 @@ def chosen_rows(panel: Panel, look_at: Callable[[], int], keys: list[QRectF]) ->
     for _ in range(MANY):
         panel.grab()
         before = len(found)
-        for box, _press in list(panel._places):
+        for box, *_ in list(panel._places):
             if box not in keys:
                 press(panel, box)
                 found.add(look_at())
@@ -119,7 +119,7 @@ def test_a_finger_comes_to_every_shape(above: QWidget) -> None:
     touched: list[int] = []
     panel = RowsPanel(Look(DARK, SMALL), lambda row, _column: touched.append(row), above)
     panel.resize(260, 300)
-    panel.rows = tuple(_Line(f"row {n}") for n in range(MANY))
+    panel.shown = tuple(_Line(f"row {n}") for n in range(MANY))
     assert chosen_rows(panel, lambda: touched[-1], leaf_keys(panel)) == set(range(MANY))
 
 
@@ -191,10 +191,10 @@ def test_findings_and_changes_of_offsets_are_leafed_through(above: QWidget) -> N
     found = tuple(Diagnostic(n, 1, Severity.ERROR, "unknown", f"finding {n}") for n in range(1, 6))
     findings.show_findings(Findings(diagnostics=found), 1)
     press(findings, leaf_keys(findings)[1])
-    assert findings._top == findings._rows
+    assert findings.top == findings.rows
     history = HistoryList(Look(DARK, SMALL), above)
     history.resize(500, 220)
-    history.show_entries(tuple(("now", f"D{n}", "X", "why") for n in range(MANY)))
+    history.entries = tuple(("now", f"D{n}", "X", "why") for n in range(MANY))
     press(history, leaf_keys(history)[1])
     assert history.top == history.rows
 
@@ -215,7 +215,7 @@ def test_keys_that_leaf_lie_over_no_row(above: QWidget, wide: int) -> None:
     panel.resize(wide, 300)
     panel.show_sheet(replace(sheet_of(MANY), notes=("one", "two")))
     keys = leaf_keys(panel)
-    rows = [box for box, _press in panel._places if box not in keys]
+    rows = [box for box, *_ in panel._places if box not in keys]
     assert len(rows) == panel.rows > 1
     assert not [row for row in rows for key in keys if row.intersects(key)]
     assert all(panel.area().contains(key) for key in keys)
@@ -242,7 +242,7 @@ def test_keys_that_leaf_stand_side_by_side_where_there_is_no_height(above: QWidg
     panel.resize(500, 110)
     panel.show_sheet(sheet_of(MANY))
     panel.grab()
-    first, second = (box for box, _ in panel._places[:2])
+    first, second = (box for box, *_ in panel._places[:2])
     assert first.y() == second.y()
     assert first.right() < second.x()
     assert min(first.height(), second.height()) >= FINGER
@@ -285,7 +285,7 @@ def test_a_finger_comes_to_every_tool_of_a_mill(above: QWidget) -> None:
     panel = CellPanel(Look(DARK, SMALL), cast("CellTable", table), above)
     panel.resize(500, 300)
     assert chosen_rows(panel, lambda: chosen[-1], leaf_keys(panel)) == set(range(MANY))
-    assert all(box.height() >= FINGER for box, _press in panel._places)
+    assert all(box.height() >= FINGER for box, *_ in panel._places)
 
 
 @pytest.mark.parametrize(("wide", "shown"), [(788, 12), (605, 10), (350, 5)])
@@ -304,12 +304,12 @@ def test_cells_of_a_mills_tools_take_a_finger_beside_the_pad(above: QWidget, wid
         panel.cell = (0, column)
         panel.grab()
         chosen.clear()
-        for _box, press in panel._places:
+        for _box, press, *_ in panel._places:
             press()
         assert column in chosen
         assert len(chosen) == 2 * len(set(chosen)) >= 2 * shown
         assert sorted(set(chosen)) == list(range(min(chosen), max(chosen) + 1))
-        assert all(box.width() >= FINGER for box, _press in panel._places)
+        assert all(box.width() >= FINGER for box, *_ in panel._places)
     assert len(names) == 12
 
 
@@ -319,7 +319,7 @@ def test_tiles_of_the_main_menu_fit_a_finger(above: QWidget) -> None:
     panel.resize(858, 360)  # as at 1024x600
     panel.grab()
     assert len(panel._places) == len(entries)
-    assert all(box.height() >= FINGER for box, _press in panel._places)
+    assert all(box.height() >= FINGER for box, *_ in panel._places)
 
 
 def test_a_finger_comes_to_every_special_function(above: QWidget) -> None:
@@ -330,4 +330,4 @@ def test_a_finger_comes_to_every_special_function(above: QWidget) -> None:
     panel = ItemList(Look(DARK, SMALL), cast("SpecialFunctions", model), entered.append, above)
     panel.resize(218, 360)  # as at 1024x600
     assert chosen_rows(panel, lambda: entered[-1], leaf_keys(panel)) == set(range(MANY))
-    assert all(box.height() >= FINGER for box, _press in panel._places)
+    assert all(box.height() >= FINGER for box, *_ in panel._places)

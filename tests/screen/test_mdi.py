@@ -210,7 +210,7 @@ def test_a_line_is_typed_by_a_finger_alone(at_mdi: Operator) -> None:
     keys = dict(zip(chain(*LINES), page.letters._places, strict=True))
     assert keys.keys() >= set("()/}=+~")  # without them no loop, no function in parentheses
     for key in (*"G91X.1F50", "Back", "Back", "8", "Enter"):
-        box, press = keys[key]
+        box, press, *_ = keys[key]
         assert min(box.width(), box.height()) >= 42  # 9 mm
         press()
     at_mdi.mdi.line.worker.settle(60.0)

@@ -129,7 +129,7 @@ def test_a_row_with_a_key_stays_a_fingertip_high(hands: Hands, monkeypatch: pyte
     rows.grab()
     assert len(rows.rows) == 2
     assert rows._places
-    for box, _press in rows._places:
+    for box, *_ in rows._places:
         assert box.height() >= FINGER
         assert rows.area().contains(box)
     with_key, read = rows._high_of(rows.rows[0]), rows._high_of(rows.rows[1])

@@ -148,6 +148,7 @@ def test_the_history_is_looked_through(hands: Hands, store: Store) -> None:
     hands.sees(page.history.isVisible)
     assert len(page.history.entries) == 40
     assert page.history.entries[0][3] == "change 39"
+    hands.sees(lambda: page.history.rows > 1)
     hands.key(Key.Key_PageDown)
     assert page.history.top == page.history.rows
     hands.key(Key.Key_Escape)
@@ -290,7 +291,7 @@ def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
     assert page.table.near == 0
     point, two, enter = 13, 9, 20  # places on the pad, row by row
     for key in (point, two, enter, enter, enter):
-        spot, _press = page.pad._places[key]
+        spot, *_ = page.pad._places[key]
         QTest.mouseClick(page.pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, spot.center().toTuple())))
     yes(hands.window)
     hands.sees(lambda: 17 in page.table.offsets)
@@ -300,8 +301,8 @@ def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
 def touch(hands: Hands, panel: Panel, place: int) -> None:
     """A finger in the middle of a place, which is large enough for one; then what is shown now."""
     hands.window.grab()
-    assert all(min(box.width(), box.height()) >= FINGER for box, _press in panel._places)
-    box, _press = panel._places[place]
+    assert all(min(box.width(), box.height()) >= FINGER for box, *_ in panel._places)
+    box, *_ = panel._places[place]
     QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))
     hands.window.grab()
 
@@ -384,7 +385,7 @@ def test_fingers_leaf_through_the_tools_and_choose_a_cell(hands: Hands, store: S
     hands.sees(lambda: (tools_of(hands).model.number, table.top) == (6, 1))
     touch(hands, table, 2 + 8 * 4 + 4)  # the last row that is shown, wear X
     hands.sees(lambda: tools_of(hands).asked.asked.question == "T6  WEAR X Ø?")
-    number, _press = table._places[2 + 8 * 1]
+    number, *_ = table._places[2 + 8 * 1]
     QTest.mouseClick(
         table, Qt.MouseButton.LeftButton, pos=QPoint(int(number.left()) + 9, int(number.center().y()))
     )

@@ -59,7 +59,7 @@ def test_a_bar_is_said_by_fingers(day: Day) -> None:
     day.sees(lambda: not shown.pad.isHidden())
     shown.pad.repaint()
     for key in ("1", "Enter"):
-        box = next(box for box, press in shown.pad._places if key in getattr(press, "args", ()))
+        box = next(box for box, press, *_ in shown.pad._places if key in getattr(press, "args", ()))
         QTest.mouseClick(shown.pad, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
     day.sees(lambda: shown.model.kept.stock == "bar:1")
     day.sees(lambda: not day.desk.session.now.busy)

@@ -91,7 +91,7 @@ def test_fingers_play_and_step_and_go_along_the_line(view: PathView) -> None:
     shown(view, SHAFT)
     player = view.player
     assert player is not None
-    words = {press.__name__: rect for rect, press in view._places if hasattr(press, "__name__")}
+    words = {press.__name__: rect for rect, press, *_ in view._places if hasattr(press, "__name__")}
     QTest.mouseClick(view, LEFT, pos=words["play_or_pause"].center().toPoint())
     assert player.playing
     assert player.t == 0.0

@@ -134,18 +134,18 @@ def test_a_finger_marks_a_line_or_types_its_number(operator: Operator) -> None:
     operator.key(Key.Key_F6)
     page = page_of(operator)
     page.listing.grab()
-    assert all(box.height() >= FINGER for box, _press in page.listing._places)
+    assert all(box.height() >= FINGER for box, *_ in page.listing._places)
     press(page.listing, page.listing._places[3][0])
     assert model_of(operator).cursor.line == page.listing.top + 4
     page.asked.grab()
-    entry, _press = page.asked._places[0]
+    entry, *_ = page.asked._places[0]
     assert entry.height() >= FINGER
     press(page.asked, entry)
     assert page.pad.isVisible()
     page.pad.grab()
     keys = dict(zip("789/456*123-0.(+", page.pad._places, strict=False))
     for figure in "12":
-        box, _press = keys[figure]
+        box, *_ = keys[figure]
         assert min(box.width(), box.height()) >= FINGER
         press(page.pad, box)
     press(page.pad, page.pad._places[-1][0])  # RETURN

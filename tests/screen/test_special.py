@@ -442,13 +442,14 @@ def test_the_list_has_rows_of_a_fingertip_and_leafs(hands: Hands) -> None:
     page = hands.frame.page
     assert isinstance(page, SpecialPage)
     items, count = page.items, len(page.model.functions)
-    assert items.rows < count
-    items.leaf_by(items.rows)
+    items.grab()  # drawn
+    assert 1 < items.rows < count
+    items.scroll_by(items.rows)
     assert items.top == min(items.rows, count - items.rows)
-    items.leaf_by(99)
+    items.scroll_by(99)
     assert items.top == count - items.rows
     assert not page.model.inside
-    items.leaf_by(-99)
+    items.scroll_by(-99)
     assert items.top == 0
     hands.type("10")
     assert not page.model.inside

@@ -51,7 +51,7 @@ def opened(hands: Hands, number: int = 1) -> ToolShapePage:
 def touch(hands: Hands, panel: Panel, place: int) -> None:
     """A finger in the middle of a place, which is large enough for one; then what is shown now."""
     hands.window.grab()
-    box, _press = panel._places[place]
+    box, *_ = panel._places[place]
     assert isinstance(panel, KeyPad) or min(box.width(), box.height()) >= FINGER
     QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))
     hands.window.grab()

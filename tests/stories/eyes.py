@@ -197,7 +197,7 @@ def _targets(panel: Panel) -> list[tuple[float, float, float, float]]:
     if not panel.isVisible():
         return []
     corner = panel.mapToGlobal(QPoint(0, 0))
-    boxes = [box for box, _press in panel._places]
+    boxes = [box for box, *_ in panel._places]
     boxes += [each.box for each in panel.controls] if isinstance(panel, FingerPanel) else []
     return [(corner.x() + box.x(), corner.y() + box.y(), box.width(), box.height()) for box in boxes]
 

@@ -21,7 +21,7 @@ KEYS = [key for row in PROGRAMS for key in row]
 def touch(writer: Writer, panel: Panel, place: int) -> None:
     """A finger in the middle of a place."""
     writer.window.grab()
-    box, _press = panel._places[place]
+    box, *_ = panel._places[place]
     assert min(box.width(), box.height()) >= FINGER
     QTest.mouseClick(panel, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, box.center().toTuple())))
 

@@ -135,7 +135,7 @@ def test_a_finger_opens_types_and_writes(writer: Writer) -> None:
     writer.key(Key.Key_F2)
     writer.sees(lambda: writer.text().startswith("G90"))
     writer.type("d")
-    writer.sees(lambda: len(writer.editor.shapes.rows.rows) > 4)
+    writer.sees(lambda: len(writer.editor.shapes.rows.shown) > 4)
     writer.key(Key.Key_F9)
     writer.sees(writer.editor.shapes.pad.isVisible)
     touch(writer, writer.editor.shapes.pad, 2)
@@ -170,14 +170,14 @@ def test_rows_and_keys_fit_a_finger_on_the_smallest_screen(writer: Writer) -> No
     assert not view.sketch.isVisible()  # under the keys there is no room for it
     for panel in (view.rows, view.pad):
         panel.grab()
-        for box, _ in panel._places:
+        for box, *_ in panel._places:
             assert min(box.width(), box.height()) >= FINGER - 1
             assert panel.area().contains(box)
     writer.key(Key.Key_F9)
     writer.sees(view.sketch.isVisible)
     view.sketch.grab()
     assert view.sketch._places
-    for box, _ in view.sketch._places:
+    for box, *_ in view.sketch._places:
         assert min(box.width(), box.height()) >= FINGER
         assert view.sketch.area().contains(box)
 
@@ -187,7 +187,7 @@ def test_the_places_over_the_text_open_what_stands_on_them(writer: Writer) -> No
     head = writer.editor.head
     head.grab()
     keyboard, shapes, sums = range(3)
-    assert len({box.x() for box, _ in head._places}) == len(head._places) == 3
+    assert len({box.x() for box, *_ in head._places}) == len(head._places) == 3
     touch(writer, head, shapes)
     assert (writer.editor.mode, writer.editor.shapes.model.of_shapes) == (Mode.SHAPES, True)
     writer.editor.shapes.refresh()
@@ -198,7 +198,7 @@ def test_the_places_over_the_text_open_what_stands_on_them(writer: Writer) -> No
     assert (writer.editor.mode, writer.editor.shapes.model.of_shapes) == (Mode.SHAPES, False)
     writer.editor.shapes.refresh()  # the list of before stood there, and another form was opened by a touch
     assert writer.editor.shapes.rows.heading == wording("editor.calculators")
-    assert "TRIANGLE" in writer.editor.shapes.rows.rows[0].label
+    assert "TRIANGLE" in writer.editor.shapes.rows.shown[0].label
     assert begins(writer.editor.shapes.model.prompt(), "editor.calculators-prompt")
     touch(writer, head, shapes)
     touch(writer, head, keyboard)
@@ -233,7 +233,7 @@ def test_findings_fit_a_finger_on_the_smallest_screen(qtbot: QtBot) -> None:
     panel.show_findings(Findings(diagnostics=tuple(found)), 4)
     panel.grab()
     assert len(panel._places) == ROWS + 2
-    for box, _ in panel._places:
+    for box, *_ in panel._places:
         assert box.height() >= FINGER
         assert panel.area().contains(box)
 
@@ -267,7 +267,7 @@ def test_labels_that_are_long_take_two_lines_and_are_never_cut(qtbot: QtBot) -> 
         drawn.append(text)
         write(painter, rect, text, *rest, **more)
 
-    panel.rows = (_Line(wording("editor.wall-leans"), "0"), _Line("TOOL", "1"))
+    panel.shown = (_Line(wording("editor.wall-leans"), "0"), _Line("TOOL", "1"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Painter, "write", writing)
         panel.grab()
@@ -288,14 +288,14 @@ def test_what_is_unsaid_or_turned_is_not_drawn_as_typed(qtbot: QtBot) -> None:
     panel.typing = True
 
     def image(figure: str) -> QImage:
-        panel.rows = (_Line("DIAMETER", figure),)
+        panel.shown = (_Line("DIAMETER", figure),)
         return panel.grab().toImage()
 
     assert image("?") == image("")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(shapes_view, "_TURN", "none")
         typed = image("◂ INCH ▸")
-    panel.rows = ()
+    panel.shown = ()
     assert image("◂ INCH ▸") != typed
 
 

@@ -276,7 +276,7 @@ def test_a_finger_and_a_key_at_once(jog: JogBench) -> None:
 def test_a_finger_that_asks_for_something_while_a_key_is_held(jog: JogBench) -> None:
     at = moving(jog)
     jog.window.grab()
-    box, _press = jog.page.tool._places[0]  # the tool's number
+    box, *_ = jog.page.tool._places[0]  # the tool's number
     QTest.mouseClick(jog.page.tool, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
     assert jog.page.model.tool.asked
     stands(jog, at)
@@ -285,7 +285,7 @@ def test_a_finger_that_asks_for_something_while_a_key_is_held(jog: JogBench) -> 
 def test_a_finger_on_a_lamp_while_a_key_is_held(jog: JogBench) -> None:
     at = moving(jog)
     jog.window.grab()
-    box, _press = jog.frame.strip._places[0]  # single block
+    box, *_ = jog.frame.strip._places[0]  # single block
     QTest.mouseClick(jog.frame.strip, Qt.MouseButton.LeftButton, pos=box.center().toPoint())
     stands(jog, at)
 

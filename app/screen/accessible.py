@@ -1,0 +1,216 @@
+"""What assistive technology, and a test, can read of the painted parts of the screen and press on them.
+
+Qt gives every stock widget a name and a role. A ``Panel`` paints its texts and its targets, so that it
+provides them here: the panel itself, and one child for each target.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from PySide6.QtCore import QObject, QPoint, QRect
+from PySide6.QtGui import (
+    QAccessible,
+    QAccessibleActionInterface,
+    QAccessibleAnnouncementEvent,
+    QAccessibleInterface,
+)
+from PySide6.QtWidgets import QAccessibleWidget, QWidget
+from shiboken6 import VoidPtr, isValid
+
+from app.desk.translation import tr
+from app.screen.panel import Panel, Spot, no_press
+
+Role, Text = QAccessible.Role, QAccessible.Text
+Maybe = Any  # or None, which Qt takes and its stubs do not
+_ROLES = {"key": Role.Button, "row": Role.ListItem, "lamp": Role.CheckBox, "slider": Role.Slider}
+
+
+def install() -> None:
+    """Make Qt ask here first for the accessible interface of a widget."""
+    QAccessible.installFactory(_interface_of)
+
+
+def _interface_of(kind: str, shown: QObject) -> QAccessibleInterface | None:
+    """Return the interface of a widget; Qt has one for each widget of a more special kind than QWidget."""
+    if kind != "QWidget" or not isinstance(shown, QWidget):
+        return None
+    return AccessiblePanel(shown) if isinstance(shown, Panel) else AccessiblePart(shown)
+
+
+def announce(shown: QWidget, text: str) -> None:
+    """Let a screen reader, if there is one, say a text that has appeared."""
+    if QAccessible.isActive() and text:
+        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(shown, text))
+
+
+class AccessiblePart(QAccessibleWidget):
+    """A page or another widget that holds panels.
+
+    Without a ``part_name`` it has the name of the widget that holds it.
+    """
+
+    def __init__(self, part: QWidget, role: QAccessible.Role = Role.Grouping) -> None:
+        super().__init__(part, role)
+        self._part = part
+
+    def text(self, kind: QAccessible.Text) -> str:
+        """Return the name in the language of the operator."""
+        part: QWidget | None = self._part if kind is Text.Name else None
+        while part is not None:
+            name: str = getattr(part, "part_name", "") or part.accessibleName() or part.windowTitle()
+            if name:
+                return tr(name)
+            part = part.parentWidget()
+        return super().text(kind)
+
+
+class AccessiblePanel(AccessiblePart):
+    """A panel: its title, all texts that it shows as the description, and its targets."""
+
+    def __init__(self, panel: Panel) -> None:
+        super().__init__(panel, Role.List if panel.lists else Role.Grouping)
+        self._panel = panel
+        self._spots: dict[int, AccessibleSpot] = {}
+
+    def text(self, kind: QAccessible.Text) -> str:
+        """Return the title, or for the description all texts outside the targets."""
+        if kind is Text.Name:
+            return self._panel.words_of_name() or super().text(kind)
+        return self._panel.words_outside() if kind is Text.Description else super().text(kind)
+
+    def childCount(self) -> int:
+        """Return the number of child widgets and targets."""
+        return super().childCount() + len(self._panel.spots())
+
+    def child(self, index: int) -> Maybe:
+        """Return a child: the widgets first, then the targets."""
+        number = index - super().childCount()
+        if number < 0:
+            return super().child(index)
+        if number >= len(self._panel.spots()):
+            return None
+        if number not in self._spots:
+            self._spots[number] = AccessibleSpot(self._panel, number)
+            QAccessible.registerAccessibleInterface(self._spots[number])
+        return self._spots[number]
+
+    def indexOfChild(self, child: QAccessibleInterface) -> int:
+        """Return the index of a child, or -1."""
+        if isinstance(child, AccessibleSpot):
+            return super().childCount() + child.number
+        return super().indexOfChild(child)
+
+    def childAt(self, x: int, y: int) -> Maybe:
+        """Return the child at a position on the screen."""
+        for index in range(self.childCount()):
+            child = self.child(index)
+            if child is not None and child.rect().contains(x, y):
+                return child
+        return None
+
+
+class _Press(QAccessibleActionInterface):
+    """Presses a target as a finger does."""
+
+    def __init__(self, spot: AccessibleSpot) -> None:
+        super().__init__()
+        self._spot = spot
+
+    def actionNames(self) -> list[str]:
+        """Return the one action, where there is one."""
+        held = self._spot.isValid() and self._spot.spot.press is no_press
+        return [] if held else [QAccessibleActionInterface.pressAction()]
+
+    def doAction(self, _name: str) -> None:
+        """Press the target."""
+        if self._spot.isValid():
+            self._spot.spot.press()
+
+    def keyBindingsForAction(self, _name: str) -> list[str]:
+        """Return no keys: the texts name them."""
+        return []
+
+
+class AccessibleSpot(QAccessibleInterface):
+    """One target of a panel, by its number: after each painting it is what the panel shows there."""
+
+    def __init__(self, panel: Panel, number: int) -> None:
+        super().__init__()
+        self._panel, self.number = panel, number
+        self._press = _Press(self)
+
+    @property
+    def spot(self) -> Spot:
+        """The target as it was painted last."""
+        return self._panel.spots()[self.number]
+
+    def isValid(self) -> bool:
+        """Return whether the panel still shows so many targets."""
+        return isValid(self._panel) and self.number < len(self._panel.spots())
+
+    def object(self) -> Maybe:
+        """Return None: a target is not a widget."""
+        return None
+
+    def parent(self) -> Maybe:
+        """Return the panel."""
+        return QAccessible.queryAccessibleInterface(self._panel) if isValid(self._panel) else None
+
+    def child(self, _index: int) -> Maybe:
+        """Return None: a target has no children."""
+        return None
+
+    def childAt(self, _x: int, _y: int) -> Maybe:
+        """Return None: a target has no children."""
+        return None
+
+    def childCount(self) -> int:
+        """Return 0: a target has no children."""
+        return 0
+
+    def indexOfChild(self, _child: QAccessibleInterface) -> int:
+        """Return -1: a target has no children."""
+        return -1
+
+    def text(self, kind: QAccessible.Text) -> str:
+        """Return the texts that are painted on the target."""
+        return self._panel.words_on(self.spot) if kind is Text.Name and self.isValid() else ""
+
+    def setText(self, _kind: QAccessible.Text, _text: str) -> None:
+        """Leave the text as it is: the panel paints it."""
+
+    def rect(self) -> QRect:
+        """Return the place on the screen."""
+        if not self.isValid():
+            return QRect()
+        return self.spot.box.toRect().translated(self._panel.mapToGlobal(QPoint()))
+
+    def role(self) -> QAccessible.Role:
+        """Return the role of what is pressed here."""
+        return _ROLES[self.spot.kind] if self.isValid() else Role.NoRole
+
+    def state(self) -> QAccessible.State:
+        """Return whether it is lit, selected or disabled."""
+        state = QAccessible.State()
+        if not self.isValid():
+            state.invalid = True
+            return state
+        spot = self.spot
+        state.disabled, state.invisible = spot.barred, not self._panel.isVisible()
+        state.checkable = spot.kind == "lamp"
+        state.checked = spot.on and spot.kind == "lamp"
+        state.selectable = spot.kind == "row"
+        state.selected = spot.on and spot.kind == "row"
+        return state
+
+    def actionInterface(self) -> QAccessibleActionInterface:
+        """Return what presses the target."""
+        return self._press
+
+    def interface_cast(self, kind: QAccessible.InterfaceType) -> Maybe:
+        """Return the interface that assistive technology asks for.
+
+        For no interface Qt needs a null pointer: it would take None for the address of an interface.
+        """
+        return self._press if kind is QAccessible.InterfaceType.ActionInterface else VoidPtr(0)
