@@ -20,7 +20,7 @@ from core.interpreter.interpretation import Interpretation
 from core.interpreter.job_setup import Setup
 from core.interpreter.restart.cut_record import CutRecord, record_cuts
 from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
-from core.interpreter.restart.restart_retract import Retract, ToolPlace
+from core.interpreter.restart.restart_retract import NEAR, Retract, ToolPlace
 from core.interpreter.restart.state_rebuild import found_on_lathe
 from core.message import Message
 
@@ -29,6 +29,7 @@ Watch = Callable[[float], None]
 _ASIDE = 7.3  # mm, degrees: the other start; no program's words fall together with it
 _SAME = 1e-6
 _TRIED = 5  # lines on each side of one that is not good
+_SLIDES = 3  # of a mill: X, Y and Z come before its rotary axes
 _WATCHED = 2000  # blocks between two looks at whether the work is still wanted
 
 
@@ -104,9 +105,8 @@ class ProgramSearch:
             return not left
 
         run.stop_before = stop
-        done = broken.done if broken is not None else 0
         for block in self._watched(run.blocks(to_first_error=True)):
-            stand.see(block, done if broken is not None else block.n)
+            stand.see(block, uncut=broken is not None and _is_uncut(block, broken))
         stand.failed = run.failed or not run.stopped_before
         stand.waits = run.waits_for
         if not stand.failed and not stand.waits:
@@ -244,14 +244,14 @@ class _Stand:
     turned: bool = False  # rotary axes turn in one of them: heights tell nothing
     left_out: tuple[int, int] | None = None
 
-    def see(self, block: Block, done: int) -> None:
-        """The next block of the pass."""
+    def see(self, block: Block, *, uncut: bool) -> None:
+        """Note the next block of the pass; ``uncut``: its cut was not begun or is incomplete."""
         if block.swivel is not None:
             self.length = block.swivel.system.tool_length
         if not block.moves:
             return
         self.cutting = not block.rapid
-        if self.cutting and block.n > done:
+        if self.cutting and uncut:
             first = self.left_out[0] if self.left_out is not None else block.line
             self.left_out = first, block.line
             if block.travel is not None:
@@ -262,6 +262,15 @@ class _Stand:
     def above(self, point: Checkpoint) -> bool:
         """Whether the place was reached by rapid and is no lower than where what is left out would begin."""
         return not (self.cutting or self.turned) and point.at[2] - self.length >= self.top - _SAME
+
+
+def _is_uncut(block: Block, broken: Interruption) -> bool:
+    """Return whether the cut of a block was not begun, or was interrupted before its end."""
+    if block.n != broken.block or block.travel is None:
+        return block.n > broken.done
+    offs = [end - at for end, at in zip(block.travel.end, broken.at, strict=False)]
+    turned = [(each + 180.0) % 360.0 - 180.0 for each in offs[_SLIDES:]]  # whole turns make no difference
+    return block.n > broken.done or any(abs(each) > NEAR for each in (*offs[:_SLIDES], *turned))
 
 
 def _at(point: Checkpoint) -> tuple[float, ...]:

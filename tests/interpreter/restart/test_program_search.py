@@ -247,7 +247,8 @@ def test_a_line_that_needs_where_the_slides_stood_is_refused() -> None:
 def test_a_line_in_metal_that_was_never_cut_is_refused_and_one_above_it_warned_of() -> None:
     of = mill()
     first = next(each for each in whole(of) if each.line == 9)  # the plunge of the first pass
-    broken = Interruption(first.n, 5, STANDS, first.n)
+    assert first.travel is not None
+    broken = Interruption(first.n, 5, first.travel.end, first.n)
     reading, setup = of
     search = ProgramSearch(reading, setup, lambda _count: None)
     found = search.find(10, 2, broken)
@@ -258,6 +259,9 @@ def test_a_line_in_metal_that_was_never_cut_is_refused_and_one_above_it_warned_o
     above = search.find(7, 2, broken)
     assert isinstance(above, RestartPoint)
     assert above.left_out == (10, 10)
+    half_cut = search.find(7, 2, broken._replace(at=STANDS))
+    assert isinstance(half_cut, RestartPoint)
+    assert half_cut.left_out == (9, 10)
 
 
 def test_on_a_lathe_what_was_left_out_is_no_matter_of_heights() -> None:
