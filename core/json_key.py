@@ -22,6 +22,14 @@ class Key(NamedTuple):
     meaning: str
 
 
+class Output(NamedTuple):
+    """What one command prints with ``--json``."""
+
+    command: str
+    purpose: str
+    keys: tuple[Key, ...]
+
+
 def keys(text: str) -> tuple[Key, ...]:
     """Return the keys of a table of text: ``name | type | unit | meaning``.
 

@@ -66,9 +66,15 @@ def test_no_model_knows_a_view_or_the_screen(imports: dict[str, set[str]]) -> No
 
 
 def test_only_composing_knows_drivers(imports: dict[str, set[str]]) -> None:
-    others = (m for m in imports if not m.startswith(("app.compose", "drivers")))
+    others = (m for m in imports if not m.startswith(("app.compose", "app.extras", "drivers")))
     known = {m: sorted(name for name in imports[m] if name.split(".")[0] == "drivers") for m in others}
     assert {module: names for module, names in known.items() if names} == {}
+
+
+def test_only_the_commands_of_optional_features_know_the_command_line(imports: dict[str, set[str]]) -> None:
+    extras = {m: used for m, used in imports.items() if m.startswith("app.extras.")}
+    known = {m for m, used in extras.items() if any(name.startswith("app.cli") for name in used)}
+    assert {m for m in known if not m.endswith("_command")} == set()
 
 
 def test_no_modules_import_each_other_in_a_circle(imports: dict[str, set[str]]) -> None:

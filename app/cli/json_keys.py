@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-from core.json_key import Key, below, keys, row_keys
+from app.compose.extra import extras, insert_after
+from core.json_key import Key, Output, below, keys, row_keys
 from core.quality.capability import Capability
 from core.quality.stops import ReasonShare
 from core.records.record import Channel
@@ -13,15 +12,6 @@ from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.part_cycles import CycleRow, StopRow
 from core.store.store_rows import EventRow, MillRow, PresetRow, SecondaryRow, ShapeRow, ToolRow, ZeroRow
 from core.store.tool_lives import InsertChange, LifeRow
-
-
-class Output(NamedTuple):
-    """What one command prints with ``--json``."""
-
-    command: str
-    purpose: str
-    keys: tuple[Key, ...]
-
 
 DIAGNOSTIC = keys(
     """
@@ -568,88 +558,6 @@ problems | list | | Damage to the store, as sentences; if there is any, the exit
 """
     ),
 )
-_VERSION = keys(
-    """
-id | string | | ID of the version.
-desk | string | | Machine that saved the version.
-saved | string | UTC | Time at which it was saved.
-size | integer | bytes | Size of the program.
-why | string | | Reason for saving.
-follows | list | | IDs of the versions on which it is based.
-"""
-)
-_SHARED = (
-    *keys(
-        """
-place | string | | The shared location.
-desk | string | | Name of this machine in the list of machines.
-trouble | string or null | | Why the shared location does not respond; null if it responds.
-waiting | integer | | Versions that are not yet published.
-programs | list | | Shared programs.
-programs[].program | string | | File name of the program.
-programs[].state | string | | same, newer (a newer version exists on another machine), both (changed here
-    and on another machine) or new (not on this machine).
-programs[].here | object or null | | Version on this machine; null if not available.
-"""
-    ),
-    *below("programs[].here.", _VERSION),
-    *keys(
-        "programs[].elsewhere | list | | Newest versions of other machines that this machine does not have."
-    ),
-    *below("programs[].elsewhere[].", _VERSION),
-    *keys(
-        """
-programs[].elsewhere[].on | list | | Machines that have this version.
-programs[].versions | integer | | Number of known versions.
-desks | list | | Machines that share programs.
-desks[].desk | string | | Name of the machine.
-desks[].told | string | UTC | Time of its last report.
-desks[].has | object | | Its programs.
-desks[].has.* | string | | ID of the version, by program.
-strays | list | | Files in the shared location that are not versions.
-not_shared | object | | Programs that are not shared.
-not_shared.* | string | | Reason, by program.
-"""
-    ),
-)
-SHARE_STATUS = Output("share status --json, share publish --json", "One object.", _SHARED)
-SHARE_BEGIN = Output("share begin --json", "One object.", keys("place | string | | The shared location."))
-SHARE_COMPARE = Output(
-    "share compare PROGRAM --json",
-    "One object.",
-    (
-        *keys("version | object | | The version that is compared."),
-        *below("version.", _VERSION),
-        *keys(
-            """
-changes | list | | Lines of the comparison.
-changes[].sign | string | | + (added), − as a hyphen (removed) or a space (unchanged).
-changes[].here | integer or null | | Line in the local program; null if the local program does not contain it.
-changes[].there | integer or null | | Line in the other version; null if that version does not contain it.
-changes[].text | string | | Text of the line.
-"""
-        ),
-    ),
-)
-SHARE_TAKE = Output(
-    "share take PROGRAM --json",
-    "One object.",
-    (
-        *keys("taken | object | | The version that was copied."),
-        *below("taken.", _VERSION),
-        *keys("file | string | | File name in the program folder."),
-    ),
-)
-SHARE_KEEP = Output(
-    "share keep PROGRAM --json",
-    "One object.",
-    keys(
-        """
-kept | string | | File name of the program.
-trouble | string | | Why the version is not published yet; empty if it is published.
-"""
-    ),
-)
 SHAPES = Output(
     "shapes FORM.toml --json",
     "One object.",
@@ -780,9 +688,20 @@ left_out.* | integer | | Number, by kind.
 """
     ),
 )
-OUTPUTS = (
+_OWN_OUTPUTS = (
     *(PROVE, EXPAND_OMNITURN, EXPAND_SINUMERIK, EXPAND_KLARTEXT, TRACE, RUN, MACHINE_CHECK, MACHINE_HAL),
     *(ALARMS, OFFSETS_SHOW, OFFSETS_HISTORY, PARTS, SHIFT, JOBS, STORE_VERIFY),
-    *(SHARE_BEGIN, SHARE_STATUS, SHARE_COMPARE, SHARE_TAKE, SHARE_KEEP),
     *(SHAPES, SHAPES_LIST, SCOPE, ACCESS_LIST, ACCESS_TABLE, PROFILE, PROFILE_LIST),
+)
+OUTPUTS = tuple(
+    insert_after(
+        _OWN_OUTPUTS,
+        lambda output: output.command,
+        [
+            (each, after)
+            for extra in extras().values()
+            for after, outputs in extra.json_outputs().items()
+            for each in reversed(outputs)
+        ],
+    )
 )

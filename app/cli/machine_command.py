@@ -73,7 +73,8 @@ Rows = Sequence[tuple[str, str, str, str]]  # name, where it hangs, state, detai
 
 def check(file: str | None, *, json_wanted: bool) -> int:
     """Validates, connects and reports; answers the exit status."""
-    from app.compose.machine_answers import NOT_CHECKED, check_ports
+    from app.compose.check_rows import NOT_CHECKED
+    from app.compose.machine_answers import check_ports
     from app.compose.machine_files import named_machine
     from core.table_schema import MachineFileError
 

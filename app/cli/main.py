@@ -11,10 +11,12 @@ import os
 import sys
 import threading
 from collections.abc import Sequence
+from types import ModuleType
 
 from app.cli import dropped_interrupt
 from app.cli.command_parser import Parser, add_screen_options, settled
 from app.cli.crash_report import report_crash, report_thread
+from app.compose.extra import command_modules, extras, insert_after
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.data_folder import DataFolderError, check_data_folder
@@ -35,7 +37,6 @@ COMMANDS = (
     "alarms",
     "parts",
     "jobs",
-    "share",
     "shift",
     "scope",
     "setup",
@@ -54,8 +55,20 @@ _FULL = (errno.ENOSPC, errno.EDQUOT)
 WITHOUT = "prove, expand, trace and run --headless do not need a screen"
 
 
-def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
-    """The parser with these subcommands."""
+def all_commands() -> Sequence[str]:
+    """Return every subcommand in the order of the help, with those of the optional features."""
+    added = [pair for extra in extras().values() for pair in extra.commands.items()]
+    return insert_after(COMMANDS, str, added)
+
+
+def _module_of(command: str) -> ModuleType:
+    """Import the module of a subcommand."""
+    own = command in COMMANDS
+    return importlib.import_module(f"app.cli.{command}_command" if own else command_modules()[command])
+
+
+def build_parser(commands: Sequence[str] | None = None) -> argparse.ArgumentParser:
+    """Return the parser with these subcommands; None: with all of them."""
     parser = Parser(
         prog="turndesk",
         description="Operator screen for OmniTurn-style lathes. Run turndesk without a command to open "
@@ -65,14 +78,17 @@ def build_parser(commands: Sequence[str] = COMMANDS) -> argparse.ArgumentParser:
     subparsers = parser.add_subparsers(
         title="commands", metavar="COMMAND", dest="command", parser_class=Parser
     )
-    for name in commands:
-        importlib.import_module(f"app.cli.{name}_command").add_parser(subparsers)
+    for name in all_commands() if commands is None else commands:
+        _module_of(name).add_parser(subparsers)
     return parser
 
 
 def _commands_for(argv: Sequence[str]) -> Sequence[str]:
     """Only the command that is asked for is imported; help and mistakes see all of them."""
-    return (argv[0],) if argv and argv[0] in COMMANDS else COMMANDS
+    if argv and argv[0] in COMMANDS:
+        return (argv[0],)
+    commands = all_commands()
+    return (argv[0],) if argv and argv[0] in commands else commands
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -142,7 +158,7 @@ def _dispatch(args: argparse.Namespace) -> int:
         sys.stdout.write(f"turndesk {version('turndesk')}\n")
         return EXIT_OK
     if args.command:
-        status: int = importlib.import_module(f"app.cli.{args.command}_command").run(args)
+        status: int = _module_of(args.command).run(args)
         return status
     return _screen(args)
 

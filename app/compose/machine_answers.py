@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Container, Iterator
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from collections.abc import Iterator
 
 from app.compose.backend_entry import backend_of, has_inverter, played
 from app.compose.backends import connect, real_time
+from app.compose.check_rows import FAILED, MISSING, NOT_CHECKED, Answers, Row
+from app.compose.extra import extras
 from app.compose.page_server import listening_at
 from app.compose.pendant_wire import wired
-from app.compose.sharing_desk import place_of
 from app.compose.shop_floor import try_shop_floor
 from core.key_declaration import Unit, shown
 from core.machine.machine_model import Axis, Machine
-from core.machine.sharing_table import SharingTable
 from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, broker_of
 from core.message import Message
 from core.ports import Clock, DriverError, MachinePorts, StationState
-from core.sharing.sharing_errors import SharingError
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.clocks import RealClock, StepClock
 from drivers.grblhal.grblhal_config import HARDWARE
@@ -29,48 +26,10 @@ from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.pendant.pendant_station import PendantStation
 from drivers.pendant.pendant_table import PendantModel
 
-MISSING, NOT_CHECKED = "missing", "not checked"
-FAILED = (
-    "fault",
-    "no answer",
-    "wrong",
-    MISSING,
-)  # states that are trouble; an E-stop that is pressed is none
 _SETTLED = 0.3  # s in which pots and inputs have been heard that are told only now and then
 _LONGEST = 3.0  # s for inputs that are read in turns
 _LOOK = 0.02  # s
 _BROKER_PATIENCE = 2.0  # s
-
-
-class Row(NamedTuple):
-    """One thing of the machine: where it hangs, how it is, and what it says."""
-
-    name: str
-    at: str
-    state: str
-    detail: str
-
-    @property
-    def verdict(self) -> str:
-        """Return ``ok``, ``FAIL`` where it is not as the machine file has it, or ``not checked``."""
-        if self.state in FAILED:
-            return "FAIL"
-        return NOT_CHECKED if self.state == NOT_CHECKED else "ok"
-
-    def checked(self, measured: Container[str]) -> Row:
-        """Return the row as ``not checked`` if it is not one of the ``measured`` rows and does not fail."""
-        if self.name in measured or self.state in FAILED:
-            return self
-        return self._replace(state=NOT_CHECKED, detail=self.detail or self.state)
-
-
-@dataclass(slots=True)
-class Answers:
-    """What answered; ``warnings``: worth knowing although nothing is broken; ``trouble``: what is."""
-
-    rows: list[Row] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
-    trouble: list[str] = field(default_factory=list)
 
 
 def check_ports(machine: Machine) -> Answers:
@@ -89,7 +48,8 @@ def check_ports(machine: Machine) -> Answers:
         answers.trouble.append(str(error))
     _ask_shop_floor(machine, answers)
     _ask_office(machine, answers)
-    _ask_sharing(machine, answers)
+    for extra in extras().values():
+        extra.check(machine, answers)
     return answers
 
 
@@ -137,22 +97,6 @@ def _ask_office(machine: Machine, answers: Answers) -> None:
             answers.trouble.append(why)
         else:
             answers.rows.append(Row("announce", told.mqtt, "ok", told.topic))
-
-
-def _ask_sharing(machine: Machine, answers: Answers) -> None:
-    """Whether the place of shared programs is there and laid out."""
-    table = machine.hardware.table(SharingTable)
-    if table is None:
-        return
-    place = place_of(table)
-    try:
-        found = place.look({})
-    except SharingError as error:
-        answers.rows.append(Row("sharing", place.name, "no answer", str(error)))
-        answers.trouble.append(str(error))
-    else:
-        desks = ", ".join(sorted(each.desk for each in found.desks)) or ("no control shares programs yet")
-        answers.rows.append(Row("sharing", place.name, "ok", desks))
 
 
 def _ask_nodes(machine: Machine, clock: Clock, answers: Answers) -> None:

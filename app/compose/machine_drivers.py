@@ -2,14 +2,8 @@
 
 from __future__ import annotations
 
-from core.machine import (
-    backup_table,
-    machine_file,
-    serial_table,
-    setter_table,
-    sharing_table,
-    shop_network_tables,
-)
+from app.compose.extra import extras
+from core.machine import backup_table, machine_file, serial_table, setter_table, shop_network_tables
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.table_schema import Driver, Finding, MachineFileError, written
@@ -37,7 +31,7 @@ DRIVERS: tuple[Driver, ...] = (
     mtconnect_table.DRIVER,
     shop_network_tables.DRIVER,
     backup_table.DRIVER,
-    sharing_table.DRIVER,
+    *(table for extra in extras().values() for table in extra.machine_tables()),
 )
 
 

@@ -15,6 +15,7 @@ from app.compose.backends import connect
 from app.compose.desk_functions import furnish
 from app.compose.desk_quality import give_quality
 from app.compose.error_log import Log
+from app.compose.extra import extras
 from app.compose.jobs_desk import give_jobs
 from app.compose.journal import Journal
 from app.compose.kinematics_chain import kinematics_of
@@ -23,7 +24,6 @@ from app.compose.machine_setup import read_machine
 from app.compose.machine_status import AGENTS, keep_status
 from app.compose.office import open_office
 from app.compose.scope_desk import give_scope
-from app.compose.sharing_desk import give_sharing, open_sharing
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import (
     drawer,
@@ -82,12 +82,12 @@ SUPERVISED = {
     "pendant": "PENDANT CONNECTION",
     "status-page": "STATUS PAGE",
     "announcer": "MQTT AND WEBHOOK",
-    "sharing": "PROGRAM SHARING",
     "inverter": "INVERTER CONNECTION",
     "recorder": "SCOPE RECORDER",
     "paho-mqtt-client-": "MQTT BROKER CONNECTION",  # the name that paho gives its thread
     "web-hook": "WEBHOOK",
     WATCHDOG: "CONTROL WATCHDOG",
+    **{name: what for extra in extras().values() for name, what in extra.threads.items()},
 }
 EXECUTOR_CLOSES = 12.0  # s: drives that come on are waited for, then the machine is halted
 STORE_CLOSES = 15.0  # s: a slow disk takes what waits in memory
@@ -172,7 +172,8 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> list[Callab
         open_ones.append(keep_status(desk.lathe, snapshot, data_folder()))
         open_ones.append(_daily_backup(desk, desk.lathe, journal))
     open_ones.append(open_office(desk, desk.lathe, journal, tell))
-    open_ones.append(open_sharing(desk, journal))
+    started = [extra.start(desk, journal, tell) for extra in extras().values()]
+    open_ones += [close for close in started if close is not None]
     return open_ones
 
 
@@ -336,7 +337,8 @@ def _desk(
     give_quality(desk, machine, journal)
     alone = workshop(machine, offsets, left=left, pictures=False)
     give_jobs(desk, machine, alone, shapes_at_hand, kept, journal)
-    give_sharing(desk, machine, journal)
+    for extra in extras().values():
+        extra.attach(desk, machine, journal)
     return desk
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 from PySide6.QtWidgets import QWidget
 
+from app.compose.extra import extras, insert_after
+from app.desk.page_description import LATHES, MILLS, PageEntry
 from app.screen.page_base import Host, Page
 
 MENU, AUTOMATIC, EDITOR, MDI, JOG = "MAIN MENU", "AUTOMATIC", "EDITOR", "MDI", "JOG"
@@ -17,12 +18,9 @@ ZERO, MILL_TOOLS, PRESETS = "ZERO OFFSETS", "TOOL TABLE", "PRESETS"
 PROGRAMS, SHAPE, PART = "PROGRAMS", "TOOL SHAPE", "PART"
 SCOPE, ANALYSES, DRIVE_TEST = "SCOPE", "ANALYSES", "DRIVE TEST"
 MEASURED, JOBS = "MEASURED PARTS", "JOBS"
-SHARED = "SHARED PROGRAMS"
 
 
-_OMNITURN, _LATHES = frozenset({"omniturn"}), frozenset({"omniturn", "sinumerik"})
-_MILLS = frozenset({"klartext"})
-_ALL = _LATHES | _MILLS
+_OMNITURN = frozenset({"omniturn"})
 _PATH = (
     "app.path.path_pane_view.Panes",
     "app.path.path_marks_view.Button",
@@ -35,25 +33,7 @@ _PATH = (
 _ANALYSIS = ("app.scope.analyses_chart_view.AnalysisChart",)
 
 
-@dataclass(frozen=True, slots=True)
-class PageEntry:
-    """One page. ``view`` and ``model`` are dotted names of classes: imported when the page is first opened.
-
-    The model is the one that is attached to the desk; a view without one makes what it needs of the desk. A
-    page without a key is not in the main menu. ``later`` are dotted names of what it imports once it is open.
-    """
-
-    name: str
-    view: str
-    model: str = ""
-    key: str = ""
-    label: str = ""
-    use: str = ""
-    languages: frozenset[str] = _ALL  # of the machines that have it
-    later: tuple[str, ...] = ()
-
-
-PAGES = (
+_OWN_PAGES = (
     PageEntry(
         AUTOMATIC,
         "app.automatic.automatic_view.AutomaticPage",
@@ -95,7 +75,7 @@ PAGES = (
         "F8",
         "TOOLS",
         "T1…T32: tool offset and nose radius",
-        _LATHES,
+        LATHES,
     ),
     PageEntry(
         MILL_TOOLS,
@@ -104,7 +84,7 @@ PAGES = (
         "F8",
         "TOOLS",
         "L, R, R2, oversizes, teeth, tool life; touch off the tool length",
-        _MILLS,
+        MILLS,
     ),
     PageEntry(
         SECCMP,
@@ -122,7 +102,7 @@ PAGES = (
         "F9",
         "PRESETS",
         "workpiece position: X Y Z, rotary axes, basic rotation",
-        _MILLS,
+        MILLS,
     ),
     PageEntry(
         ZERO,
@@ -131,7 +111,7 @@ PAGES = (
         "G",
         "ZERO",
         "G54…G59: zero offsets for SINUMERIK programs",
-        _LATHES,
+        LATHES,
     ),
     PageEntry(
         SPECIAL,
@@ -148,7 +128,7 @@ PAGES = (
         "B",
         "PART",
         "program findings, stock, checks turned off",
-        _LATHES,
+        LATHES,
     ),
     PageEntry(
         SCOPE,
@@ -177,14 +157,6 @@ PAGES = (
         "next job, number of parts, setup requirements",
     ),
     PageEntry(
-        SHARED,
-        "app.sharing.sharing_view.SharedProgramsPage",
-        "app.sharing.sharing_model.SharingModel",
-        "X",
-        "SHARED",
-        "programs from other TurnDesk controls; newer versions are copied on request",
-    ),
-    PageEntry(
         ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses", later=_ANALYSIS
     ),
     PageEntry(
@@ -198,6 +170,13 @@ PAGES = (
     PageEntry(
         SEARCHTO, "app.searchto.searchto_view.SearchtoPage", "app.searchto.searchto_model.SearchtoModel"
     ),
+)
+PAGES = tuple(
+    insert_after(
+        _OWN_PAGES,
+        lambda entry: entry.name,
+        [(page, page.after) for extra in extras().values() for page in extra.pages],
+    )
 )
 IN_MENU = tuple(entry for entry in PAGES if entry.key)
 

@@ -42,7 +42,6 @@ COMPOSED = (
     "gauge_wire.py",
     "journal.py",
     "screen_desk.py",
-    "sharing_desk.py",
     "simulated_backend.py",
     "desk_functions.py",
     "stored_offsets.py",
@@ -62,12 +61,12 @@ ROOMS = (
         "app/programs",
         "app/quality",
     ),
-    *("app/scope", "app/screen", "app/searchto", "app/shapes", "app/sharing"),
+    *("app/scope", "app/screen", "app/searchto", "app/shapes", "app/extras"),
     *("app/special", "app/transfer"),
     "app/working_plane",
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
-    *("core/drawings", "core/quality", "core/records", "core/shapes", "core/sharing", "core/access"),
+    *("core/drawings", "core/quality", "core/records", "core/shapes", "core/extras", "core/access"),
     "app/shopfloor",
 )
 # Where much is told to programs: what is marked alone.
@@ -89,7 +88,8 @@ APART = frozenset(
             "run_without_screen.py",
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
-        *("shared_database.py", "sharing/version_record.py"),
+        *("shared_database.py", "sharing/version_record.py", "share_command.py", "place_answer.py"),
+        *("sharing_table.py", "sharing_check.py", "sharing/extra.py"),
         *("screen/pdf_pages.py", "shapes/sinumerik_lines.py", "shapes/bar_lines.py"),
         *("shapes/live_lines.py", "shapes/sinumerik_live_lines.py"),
         *(

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
-from collections.abc import Collection, Iterable
 from datetime import UTC, datetime, timedelta
 from functools import partial
 from pathlib import Path
@@ -18,7 +16,7 @@ from app.cli.json_page import document, main
 from app.shopfloor import json_keys as floor_keys
 from core.access.access_table import Level
 from core.access.pins import hashed
-from core.json_key import Key, found_in, implied, is_of_type, keys, row_keys
+from core.json_key import keys, row_keys
 from core.store import measured_parts, part_cycles, people, tool_lives
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.part_cycles import CycleRow, StopRow
@@ -27,33 +25,14 @@ from core.store.store_export import EVENTS, RUNS, TABLES
 from core.store.store_rows import EventRow, Kind, utc
 from core.store.table_keys import RUNS_FILE
 from core.store.table_keys import TABLES as PUBLIC
-from tests.cli.conftest import Told, Turndesk
+from tests.cli.conftest import Turndesk
+from tests.cli.json_output import declared_alone, whole
 from tests.cli.test_profile import SHEET
-from tests.cli.test_share import Shop, shop
 from tests.drawings.hand import chain, dxf
 
-__all__ = ["shop"]
 PAGE = Path(__file__).parents[2] / "docs" / "json.md"
 PROGRAMS = Path(resources.__file__).parent / "programs"
 HEAD = "G90G94F300\nM03S600\nT1\n"
-
-
-def declared_alone(values: Iterable[object], declared: Collection[Key], never: Collection[str] = ()) -> None:
-    """The values together have exactly the declared keys but ``never``, with values of the declared types."""
-    named, seen = {key.name: key for key in declared}, set[str]()
-    above = implied(declared)
-    for value in values:
-        for path, each in found_in(value, declared):
-            assert path in named or path in above, f"{path} is not declared"
-            if path in named:
-                assert is_of_type(each, named[path]), f"{path} is {each!r}, not {named[path].type}"
-                seen.add(path)
-    assert set(named) - seen == set(never)
-
-
-def whole(told: Told, status: int = 0) -> Any:
-    assert told.status == status, told.err
-    return json.loads(told.out)
 
 
 def test_the_page_is_up_to_date() -> None:
@@ -76,7 +55,7 @@ def test_every_command_with_json_is_on_the_page() -> None:
     folder = Path(json_keys.__file__).parent
     commands = {
         path.stem.removesuffix("_command")
-        for path in folder.glob("*_command.py")
+        for path in (*folder.glob("*_command.py"), *folder.parent.glob("extras/*/*_command.py"))
         if '"--json"' in path.read_text("utf-8") or "add_program_options" in path.read_text("utf-8")
     }
     assert commands == {each.command.split()[0] for each in json_keys.OUTPUTS}
@@ -302,24 +281,6 @@ def test_exported_files_have_the_declared_columns(turndesk: Turndesk, filled: Pa
 
 
 # --- Shared programs, drawings, shapes, scope.
-
-
-def test_share(shop: Shop) -> None:
-    begun = whole(shop.share(1, "begin", "--json"))
-    declared_alone([begun], json_keys.SHARE_BEGIN.keys)
-    shop.program(1, "CAP.NC").write_text("G00 X1\nM30\n")
-    shop.program(1, "LARGE.NC").write_bytes(b"(X)\n" * (9 * 2**20))
-    shared = [whole(shop.share(1, "publish", "--json"))]
-    (shop.folder / "shop" / "stray.txt").write_text("X")
-    taken = whole(shop.share(2, "take", "CAP.NC", "--json"))
-    declared_alone([taken], json_keys.SHARE_TAKE.keys)
-    for number in (1, 2):
-        shop.program(number, "CAP.NC").write_text(f"G00 X1{number}\nM30\n")
-        shop.share(number, "publish")
-    shared.append(whole(shop.share(1, "status", "--json")))
-    declared_alone(shared, json_keys.SHARE_STATUS.keys)
-    declared_alone([whole(shop.share(1, "compare", "CAP.NC", "--json"))], json_keys.SHARE_COMPARE.keys)
-    declared_alone([whole(shop.share(1, "keep", "CAP.NC", "--json"))], json_keys.SHARE_KEEP.keys)
 
 
 def test_shapes(turndesk: Turndesk, tmp_path: Path) -> None:

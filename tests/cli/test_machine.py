@@ -12,7 +12,7 @@ from app.cli.machine_command import summary, table
 from app.cli.main import main
 from app.compose import simulated_backend
 from app.compose.backend_entry import Backend, backend_of
-from app.compose.machine_answers import FAILED, Row
+from app.compose.check_rows import FAILED, Row
 from app.compose.machine_files import shipped_machine
 from drivers.simulated.simulated_machine import SimIO
 

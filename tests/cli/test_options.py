@@ -5,13 +5,14 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator
+from importlib import import_module
 from io import BytesIO, TextIOWrapper
 from pathlib import Path
 
 import pytest
 
 from app.cli.command_parser import BEFORE
-from app.cli.main import COMMANDS, build_parser, main
+from app.cli.main import build_parser, main
 from core.coded_error import CodedError
 from core.message import Message
 from tests.cli.conftest import Turndesk
@@ -48,7 +49,7 @@ def parsers() -> Iterator[tuple[str, argparse.ArgumentParser]]:
             for word, sub in each.choices.items():
                 yield from below(f"{name} {word}".strip(), sub)
 
-    return below("", build_parser(COMMANDS))
+    return below("", build_parser())
 
 
 def options() -> list[tuple[str, str]]:
@@ -118,12 +119,6 @@ COVERED = {
                       "--tool", "--groove-tool", "--comp", "--tools", "--machine", "--out", "--json")},
     **{("shapes", option): "tests/cli/test_shapes.py"
        for option in ("--list", "--out", "--tools", "--machine", "--json")},
-    **{(f"share {action}", option): "tests/cli/test_share.py"
-       for action in ("begin", "status", "publish", "compare", "take", "keep")
-       for option in ("--machine", "--json")},
-    ("share publish", "--claim"): "tests/cli/test_share.py",
-    ("share compare", "--id"): "tests/cli/test_share.py",
-    ("share take", "--id"): "tests/cli/test_share.py",
     ("setup save", "--machine"): "tests/cli/test_setup.py",
     ("setup load", "--check"): "tests/cli/test_setup.py",
     ("setup desktop", "--autostart"): "tests/cli/test_setup.py",
@@ -131,8 +126,8 @@ COVERED = {
     **{(command, "--as"): "tests/cli/test_access.py"
        for command in ("prove", "run", "offsets set", "offsets clear", "offsets undo", "store restore",
                        "store import", "setup load", "machine accept", "jobs add", "jobs move", "jobs remove",
-                       "jobs clear", "access add", "access pin", "access remove", "share begin",
-                       "share publish", "share take", "share keep", "serial receive", "profile", "shapes")},
+                       "jobs clear", "access add", "access pin", "access remove", "serial receive",
+                       "profile", "shapes")},
     **{("access " + action, "--json"): "tests/cli/test_access.py" for action in ("list", "table")},
     ("access add", "--level"): "tests/cli/test_access.py",
     ("serial receive", "--out"): "tests/drivers/transfer",
@@ -140,6 +135,8 @@ COVERED = {
     ("serial send", "--wait"): "tests/drivers/transfer",
     ("serial send", "--leader"): "tests/drivers/transfer",
 }  # fmt: skip
+for each in sorted((Path(__file__).parents[1] / "extras").glob("*/options.py")):
+    COVERED |= import_module(f"tests.extras.{each.parent.name}.options").COVERED
 
 
 def test_every_option_of_every_command_is_in_the_table() -> None:

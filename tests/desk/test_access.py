@@ -20,12 +20,12 @@ from app.desk.access import Access
 from app.desk.access_reset import WAIT
 from app.desk.desk import Desk
 from app.editor.editor import Editor
+from app.extras.sharing.sharing import Sharing
+from app.extras.sharing.sharing_model import SharingModel
 from app.offsets.offset_history import OffsetHistory
 from app.offsets.offset_questions import OffsetQuestions
 from app.programs.program_list import ProgramList
 from app.quality.parts_watch import PartsWatch
-from app.sharing.sharing import Sharing
-from app.sharing.sharing_model import SharingModel
 from app.special.access_levels import AccessLevels
 from app.special.inputs_outputs import InputsOutputs
 from app.special.inputs_outputs import Kind as Shown
@@ -44,7 +44,7 @@ from core.access.access_table import RULES, Act, Level
 from core.access.pins import Hashed, PinError, WrongPins, check_pin, hashed, is_pin, wait_after
 from core.executor.executor import Executor
 from core.executor.snapshot import State
-from core.sharing.shared_folder import SharedFolder
+from core.extras.sharing.shared_folder import SharedFolder
 from core.store import database
 from core.store.people import PersonRow
 from core.store.store import Store
@@ -75,7 +75,7 @@ BEHIND_A_RULE = {
     "compose/journal.py": "does what pages ask that have asked",
     "compose/kept_stock.py": "asked by part_options.py and part_sheet.py",
     "compose/setup_file.py": "asked by setup_command.py",
-    "compose/sharing_desk.py": "asked by share_command.py",
+    "extras/sharing/sharing_desk.py": "asked by share_command.py",
     "desk/access.py": "asked by access_levels.py",
     "desk/persistence.py": "as journal.py",
     "desk/screen_settings.py": "asked by desk.py",

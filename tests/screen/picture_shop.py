@@ -9,9 +9,9 @@ import ezdxf
 from app.compose.journal import Journal
 from app.compose.workshop import samples
 from app.desk.desk import Desk
-from app.sharing.sharing import Sharing
-from app.sharing.sharing_model import SharingModel
-from core.sharing.shared_folder import SharedFolder
+from app.extras.sharing.sharing import Sharing
+from app.extras.sharing.sharing_model import SharingModel
+from core.extras.sharing.shared_folder import SharedFolder
 from core.store.store import Store
 
 DRAWING = "spigot.dxf"

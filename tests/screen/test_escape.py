@@ -50,7 +50,7 @@ KEYS = {
     Key.Key_Q: page_table.SCOPE,
     Key.Key_W: page_table.MEASURED,
     Key.Key_J: page_table.JOBS,
-    Key.Key_X: page_table.SHARED,
+    Key.Key_X: "SHARED PROGRAMS",
 }
 
 

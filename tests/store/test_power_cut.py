@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.compose.sharing_desk import claim, home_of
 from app.desk.latest import Latest
 from app.editor.document import Document
 from app.editor.drafts import Drafts
 from app.editor.versions import NoArchive
+from app.extras.sharing.sharing_desk import claim, home_of
 from app.programs.whole_file import FileError, write_new, write_out, write_whole
 from app.quality.parts_book import PartsData
 from app.quality.readings_file import write_readings

@@ -1,0 +1,94 @@
+"""Optional features: the table in which they are registered, and what a feature can add to TurnDesk.
+
+The code of a feature is in ``core/extras/NAME`` (without Qt), ``app/extras/NAME`` and ``tests/extras/NAME``.
+``app.extras.NAME.extra`` contains ``EXTRA``, a subclass of ``Extra`` that overrides what the feature adds.
+No module outside a feature imports it. If its folders are deleted, TurnDesk works without the feature.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, TypeVar
+
+if TYPE_CHECKING:
+    from app.compose.check_rows import Answers
+    from app.compose.journal import Journal
+    from app.desk.desk import Desk
+    from app.desk.page_description import PageEntry
+    from core.json_key import Output
+    from core.machine.machine_model import Machine
+    from core.table_schema import Driver
+
+NAMES = ("sharing",)
+"""All optional features, in the order in which they are loaded."""
+
+Tell = Callable[[str], None]
+Close = Callable[[], None]
+T = TypeVar("T")
+
+
+class Extra:
+    """What an optional feature adds. A feature overrides only the parts that it has.
+
+    ``commands`` maps each subcommand to the subcommand that it follows in the help. Its module is
+    ``app.extras.NAME.SUBCOMMAND_command``. ``threads`` maps each supervised thread to what an operator
+    misses when the thread ends.
+    """
+
+    commands: Mapping[str, str] = {}
+    pages: Sequence[PageEntry] = ()
+    threads: Mapping[str, str] = {}
+
+    def machine_tables(self) -> Sequence[Driver]:
+        """Return the tables that this feature adds to the machine file."""
+        return ()
+
+    def attach(self, desk: Desk, machine: Machine, journal: Journal | None) -> None:
+        """Attach the models of this feature to the desk; without a ``journal`` nothing is saved."""
+
+    def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
+        """Start the threads of this feature, and return a function that ends them.
+
+        ``tell`` reports a reason why the feature cannot run to the prompt line and to the event log.
+        """
+
+    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+        """Return the declared outputs of --json of this feature, by the output that they follow."""
+        return {}
+
+    def check(self, machine: Machine, answers: Answers) -> None:
+        """Add the rows of this feature to ``turndesk machine check``."""
+
+
+@cache
+def extras() -> Mapping[str, Extra]:
+    """Return the optional features that are installed, by name."""
+    found = {}
+    for name in NAMES:
+        if find_spec(f"app.extras.{name}") is not None:
+            found[name] = import_module(f"app.extras.{name}.extra").EXTRA
+    return found
+
+
+def command_modules() -> Mapping[str, str]:
+    """Return the module of each subcommand that an optional feature adds."""
+    return {
+        command: f"app.extras.{name}.{command}_command"
+        for name, extra in extras().items()
+        for command in extra.commands
+    }
+
+
+def insert_after(items: Iterable[T], name_of: Callable[[T], str], added: Iterable[tuple[T, str]]) -> list[T]:
+    """Return ``items`` with each pair of ``added`` inserted after the item that the pair names.
+
+    If there is no item of that name, the addition becomes the last one.
+    """
+    found = list(items)
+    for item, after in added:
+        names = [name_of(each) for each in found]
+        found.insert(names.index(after) + 1 if after in names else len(found), item)
+    return found

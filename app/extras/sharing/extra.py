@@ -1,0 +1,63 @@
+"""Registers the sharing of programs with other machines."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from app.compose.extra import Close, Extra, Tell
+from app.desk.page_description import PageEntry
+
+if TYPE_CHECKING:
+    from app.compose.check_rows import Answers
+    from app.compose.journal import Journal
+    from app.desk.desk import Desk
+    from core.json_key import Output
+    from core.machine.machine_model import Machine
+    from core.table_schema import Driver
+
+
+class Sharing(Extra):
+    """The page SHARED PROGRAMS, ``turndesk share``, and [sharing] of the machine file."""
+
+    commands = {"share": "jobs"}
+    pages = (
+        PageEntry(
+            "SHARED PROGRAMS",
+            "app.extras.sharing.sharing_view.SharedProgramsPage",
+            "app.extras.sharing.sharing_model.SharingModel",
+            "X",
+            "SHARED",
+            "programs from other TurnDesk controls; newer versions are copied on request",
+            after="JOBS",
+        ),
+    )
+    threads = {"sharing": "PROGRAM SHARING"}
+
+    def machine_tables(self) -> Sequence[Driver]:
+        from core.extras.sharing.sharing_table import DRIVER
+
+        return (DRIVER,)
+
+    def attach(self, desk: Desk, machine: Machine, journal: Journal | None) -> None:
+        from app.extras.sharing.sharing_desk import attach_sharing
+
+        attach_sharing(desk, machine, journal)
+
+    def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
+        from app.extras.sharing.sharing_desk import start_sharing
+
+        return start_sharing(desk, journal)
+
+    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+        from app.extras.sharing.share_json_keys import OUTPUTS
+
+        return {"store verify --json": OUTPUTS}
+
+    def check(self, machine: Machine, answers: Answers) -> None:
+        from app.extras.sharing.sharing_check import check_sharing
+
+        check_sharing(machine, answers)
+
+
+EXTRA = Sharing()

@@ -1,0 +1,319 @@
+"""Programs of this desk shared with others: publishing what is here, learning what is there, taking it.
+
+The store of this machine is the truth: every version is kept in it before anybody else hears of it, and
+what a place away cannot take waits there. Nothing of another desk comes into the program folder unasked.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+
+from app.extras.sharing.program_files import FilesOfMachine, SharedFile
+from app.programs.whole_file import FileError, write_new, write_whole
+from core.coded_error import CodedError, error_code
+from core.extras.sharing import shared_versions
+from core.extras.sharing.shared_place import Found, Published, SharedPlace
+from core.extras.sharing.shared_versions import Family, SharedVersion, key_of
+from core.extras.sharing.sharing_errors import Cause, SharingError
+from core.extras.sharing.version_record import MOST_BYTES, DeskState, new_version
+from core.input_file import input_bytes
+from core.message import Message
+from core.store import program_records
+from core.store.store import Store
+from core.store.store_errors import StoreError
+from core.store.store_rows import utc_now
+
+_AT_ONCE, _BYTES_AT_ONCE = 200, 8 * 2**20  # versions that are published together
+
+
+class TakeError(CodedError):
+    """A version was not taken, and the program is as it was; the sentence says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shared:
+    """All that is known after a look, one immutable object. ``trouble``: why the place was of no use."""
+
+    families: Mapping[str, Family] = field(default_factory=dict)
+    states: Mapping[str, str] = field(default_factory=dict)  # how each stands, see ``Family.state``
+    holders: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # desks that have a version, by id
+    desks: tuple[DeskState, ...] = ()
+    strays: tuple[str, ...] = ()
+    refused: Mapping[str, str] = field(default_factory=dict)  # files of this machine that are not shared
+    waiting: int = 0  # versions that the place does not have yet
+    trouble: str = ""
+
+    def who_has(self, version: str) -> tuple[str, ...]:
+        """The desks that have this version in their program folder, by name."""
+        return self.holders.get(version, ())
+
+
+class Sharing:
+    """``look`` and all that takes or keeps wait for disk and network: they are called on workers only."""
+
+    def __init__(
+        self, place: SharedPlace, desk: str, home: str, folder: Path, store: Callable[[], Store]
+    ) -> None:
+        self.place, self.desk, self.home = place, desk, home
+        self.now = Shared()
+        self._files, self._store = FilesOfMachine(folder), store
+        self._lock = threading.Lock()  # one pass, or one taking, at a time
+
+    # --- a pass ----------------------------------------------------------------------------------------
+
+    def look(self, *, settled: bool = False) -> Shared:
+        """Learn, keep what has changed here, publish. What is in the way stands in ``trouble``."""
+        with self._lock:
+            found, trouble = None, ""
+            try:
+                store = self._store()
+                try:
+                    found = self._learn(store)
+                except SharingError as error:
+                    trouble = str(error)
+                self._note(store, settled=settled)
+                if found is not None:
+                    trouble = self._publish(store, found)
+                self._tell(store, found, trouble)
+            except StoreError as error:  # a restore may close this store at any moment
+                self.now = replace(self.now, trouble=str(error))
+            return self.now
+
+    def peek(self) -> Shared:
+        """What a look would find; nothing is kept of it, here or there. Raises StoreError."""
+        with self._lock:
+            store, found, trouble = self._store(), None, ""
+            fresh: Sequence[SharedVersion] = ()
+            try:
+                with store.read() as connection:
+                    known = {each.id: each for each in shared_versions.all_versions(connection)}
+                found = self.place.look(known)
+                fresh = found.fresh
+            except SharingError as error:
+                trouble = str(error)
+            self._tell(store, found, trouble, fresh)
+            return self.now
+
+    def _learn(self, store: Store) -> Found:
+        with store.read() as connection:
+            known = {each.id: each for each in shared_versions.all_versions(connection)}
+        found = self.place.look(known)
+
+        def learn(connection: sqlite3.Connection) -> None:
+            shared_versions.add(connection, found.fresh)
+            shared_versions.set_there(connection, found.there)
+
+        store.write(learn).result()
+        return found
+
+    def _note(self, store: Store, *, settled: bool) -> None:
+        """What the files hold now becomes versions; a program that is gone is not here any more."""
+        files = self._files.look(settled=settled)
+        store.write(partial(self._noted, files)).result()
+
+    def _noted(self, files: Mapping[str, SharedFile], connection: sqlite3.Connection) -> None:
+        families = shared_versions.families(connection)
+        for key, file in files.items():
+            self._note_file(connection, file, families.get(key, Family()))
+        for key, family in families.items():
+            if family.here and key not in self._files.present:
+                shared_versions.set_here(connection, key, "")
+
+    def _note_file(self, connection: sqlite3.Connection, file: SharedFile, family: Family) -> None:
+        here = family.versions.get(family.here)
+        if here is not None and here.text == file.digest:
+            return
+        version = family.of_text(file.digest)
+        if version is None:
+            try:
+                text = input_bytes(file.path, MOST_BYTES)
+            except OSError:
+                return  # it has gone between two looks
+            follows = (family.here,) if here is not None else ()
+            version = new_version(file.name, text, follows, self.desk, utc_now(), "saved")
+            program_records.save(connection, file.name, text, "shared")
+            shared_versions.add(connection, [version])
+        shared_versions.set_here(connection, key_of(file.name), version.id)
+
+    def _publish(self, store: Store, found: Found) -> str:
+        """Why it was not done; empty: the place has all that there is."""
+        others = [each for each in found.desks if each.home != self.home]
+        if any(key_of(each.desk) == key_of(self.desk) for each in others):
+            return str(Cause.NAME_TAKEN.error(self.place.name, self.desk))
+        state = self._state(store)
+        mine = next((each for each in found.desks if each.home == self.home), None)
+        told = mine is not None and (mine.desk, dict(mine.has)) == (state.desk, dict(state.has))
+        try:
+            for batch in self._batches(store):
+                self.place.put(batch, state)
+                versions = [each.version for each in batch]
+                store.write(partial(_published, versions)).result()
+                told = True
+            if not told:
+                self.place.put([], state)
+        except SharingError as error:
+            return str(error)
+        return ""
+
+    @staticmethod
+    def _batches(store: Store) -> Iterator[Sequence[Published]]:
+        with store.read() as connection:
+            waiting = shared_versions.unpublished(connection)
+        batch, size = list[Published](), 0
+        for version in waiting:
+            with store.read() as connection:
+                text = shared_versions.text_of(connection, version.text)
+            if text is None:
+                continue
+            batch.append(Published(version, text))
+            size += len(text)
+            if len(batch) >= _AT_ONCE or size >= _BYTES_AT_ONCE:
+                yield batch
+                batch, size = [], 0
+        if batch:
+            yield batch
+
+    def _state(self, store: Store) -> DeskState:
+        with store.read() as connection:
+            families = shared_versions.families(connection)
+        has = {
+            each.versions[each.here].program: each.here
+            for each in families.values()
+            if each.here in each.versions
+        }
+        return DeskState(self.home, self.desk, utc_now(), has)
+
+    def _tell(
+        self, store: Store, found: Found | None, trouble: str, fresh: Sequence[SharedVersion] = ()
+    ) -> None:
+        with store.read() as connection:
+            families = shared_versions.families(connection, fresh)
+            waiting = len(shared_versions.unpublished(connection))
+        desks = self.now.desks
+        if found is not None:
+            desks = (*(each for each in found.desks if each.home != self.home), self._state(store))
+        strays = found.strays if found is not None else self.now.strays
+        states = {key: family.state for key, family in families.items()}
+        refused = dict(self._files.refused)
+        self.now = Shared(families, states, _holders(desks), desks, strays, refused, waiting, trouble)
+
+    # --- what the operator asks for --------------------------------------------------------------------
+
+    def text(self, version: SharedVersion) -> bytes:
+        """Of the store where it is kept, else of the place. Raises SharingError and StoreError."""
+        with self._store().read() as connection:
+            text = shared_versions.text_of(connection, version.text)
+        return self.place.text(version) if text is None else text
+
+    def text_here(self, key: str) -> bytes:
+        """What this machine has of a program; empty: nothing. Raises StoreError."""
+        family = self.now.families.get(key, Family())
+        here = family.versions.get(family.here)
+        if here is None:
+            return b""
+        with self._store().read() as connection:
+            return shared_versions.text_of(connection, here.text) or b""
+
+    def take(self, version: SharedVersion) -> str:
+        """The version into the program folder; answers the file's name. What was there stays a version.
+
+        Where both were changed, what comes of it follows both: every desk sees that it is settled.
+        Raises TakeError, SharingError and StoreError; the program is then as it was.
+        """
+        text = self.text(version)
+        with self._lock:
+            store = self._store()
+            self._note(store, settled=False)
+            family = _family(store, version.key)
+            if version.id == family.here:
+                raise TakeError(
+                    Message("{program} is already the selected version", program=version.program),
+                    "already-current",
+                )
+            name = self._free_name(version)
+            taken = version
+            if not family.newer(version):
+                follows = (family.here, version.id)
+                why = Message("copied from {machine}", machine=version.desk)
+                taken = new_version(name, text, follows, self.desk, utc_now(), why)
+            store.write(partial(_keep, name, taken, text)).result()
+            try:
+                target = self._files.folder / name
+                (write_whole if family.here else write_new)(target, text)
+            except FileError as error:
+                store.write(lambda c: shared_versions.withdraw(c, taken)).result()
+                raise TakeError(str(error), error_code(error)) from error
+            # Behind the file: a power cut between them leaves a text that the next look knows.
+            store.write(lambda c: shared_versions.set_here(c, version.key, taken.id)).result()
+            self._tell(store, None, self.now.trouble)
+            return name
+
+    def keep(self, key: str) -> None:
+        """What is here stands against all that was changed elsewhere. Raises TakeError and StoreError."""
+        with self._lock:
+            store = self._store()
+            self._note(store, settled=False)
+            family = _family(store, key)
+            here, others = family.versions.get(family.here), [each.id for each in family.elsewhere]
+            if here is None or not others:
+                raise TakeError(
+                    "no decision is necessary, because no other control has changed this program",
+                    "nothing-to-settle",
+                )
+            follows = (here.id, *others)
+            with store.read() as connection:
+                text = shared_versions.text_of(connection, here.text)
+            if text is None:
+                raise TakeError(
+                    Message(
+                        "the text of {program} differs from the saved version; save the program again",
+                        program=here.program,
+                    ),
+                    "damaged-text",
+                )
+            kept = new_version(here.program, text, follows, self.desk, utc_now(), "kept")
+            store.write(partial(_kept, kept)).result()
+            self._tell(store, None, self.now.trouble)
+
+    def _free_name(self, version: SharedVersion) -> str:
+        """Of the file here that has the name in any letters; else that of the version. Raises TakeError."""
+        names = [each for each in self._files.refused if key_of(each) == version.key]
+        if names:
+            raise TakeError(
+                Message("{names}: {refused}", names=names[0], refused=self._files.refused[names[0]]),
+                "refused-name",
+            )
+        file = self._files.look(settled=False).get(version.key)
+        return file.name if file is not None else version.program
+
+
+def _holders(desks: Sequence[DeskState]) -> dict[str, tuple[str, ...]]:
+    found: dict[str, set[str]] = {}
+    for desk in desks:
+        for version in desk.has.values():
+            found.setdefault(version, set()).add(desk.desk)
+    return {version: tuple(sorted(names)) for version, names in found.items()}
+
+
+def _family(store: Store, key: str) -> Family:
+    with store.read() as connection:
+        return shared_versions.families(connection).get(key, Family())
+
+
+def _keep(name: str, version: SharedVersion, text: bytes, connection: sqlite3.Connection) -> None:
+    program_records.save(connection, name, text, Message("shared by {machine}", machine=version.desk))
+    shared_versions.add(connection, [version])
+
+
+def _published(versions: Sequence[SharedVersion], connection: sqlite3.Connection) -> None:
+    shared_versions.published(connection, versions)
+
+
+def _kept(version: SharedVersion, connection: sqlite3.Connection) -> None:
+    shared_versions.add(connection, [version])
+    shared_versions.set_here(connection, version.key, version.id)

@@ -1,0 +1,372 @@
+"""The page of shared programs: what is newer elsewhere, whose, on which machine; taken when asked. No Qt."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from textwrap import wrap
+
+from app.desk.desk import Desk
+from app.desk.formats import NOTHING, local_time
+from app.desk.latest import Latest
+from app.desk.machine_status import Tone
+from app.desk.prompt_line import UNDER_WAY
+from app.desk.sheet import STEPS, Key, Row, Sheet
+from app.desk.translation import tr
+from app.editor.versions import NoArchive, VersionHistory, lines_of
+from app.extras.sharing.sharing import Shared, Sharing
+from core.access.access_table import Act
+from core.extras.sharing.shared_versions import Family, SharedVersion, key_of
+from core.message import Message, join_messages
+from core.store.store_rows import VersionRow
+
+NO_PLACE = (
+    "NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER OR A "
+    "DATABASE UNDER [sharing] IN THE MACHINE FILE"
+)
+NOTHING_YET = "NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER"
+MARK_ONE = "SELECT A PROGRAM FIRST"
+BUSY = "STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE"
+_STATES = {
+    "new": ("NOT ON THIS CONTROL", Tone.READY),
+    "newer": ("NEWER VERSION ON ANOTHER CONTROL", Tone.PAUSE),
+    "both": ("CHANGED HERE AND ON ANOTHER CONTROL", Tone.ALARM),
+    "same": ("UP TO DATE", Tone.RUN),
+}
+_ORDER = tuple(_STATES)
+_WIDE = 110  # letters of a note
+_PATIENCE = 30.0  # s: a place that takes longer is told
+
+
+@dataclass(slots=True)
+class VersionsElsewhere(VersionHistory):
+    """The newest versions of a program on other desks; ``changes`` lead from what is here to the marked."""
+
+    def heading(self) -> str:
+        """What the lines of the comparison are."""
+        return "CHANGES IF YOU USE THE SELECTED VERSION"
+
+    def words(self) -> str:
+        """What is to be said of the marked version."""
+        if self.trouble:
+            return self.trouble
+        if not self.rows:
+            return "READING" if self.worker.busy else "NO OTHER CONTROL HAS A NEWER VERSION"
+        if self.text is None:
+            return "COMPARING"
+        return "" if self.changes else "SAME TEXT AS ON THIS CONTROL"
+
+    def between(self, marked: str, now: str) -> tuple[str, str]:
+        """From the text here to the marked one."""
+        return now, marked
+
+
+@dataclass(slots=True)
+class NewestElsewhere:
+    """What ``VersionsElsewhere`` reads: the versions of the last look, numbered from 1."""
+
+    sharing: Sharing
+
+    def of(self, key: str) -> Sequence[SharedVersion]:
+        """Those that this machine does not have."""
+        return self.sharing.now.families.get(key, Family()).elsewhere
+
+    def versions(self, name: str) -> Sequence[VersionRow]:
+        """With the desk that made each, and the desks that have it."""
+        return [self._row(number, each) for number, each in enumerate(self.of(name), 1)]
+
+    def text_of(self, name: str, version: int) -> bytes:
+        """Raises SharingError and StoreError."""
+        return self.sharing.text(self.of(name)[version - 1])
+
+    def save_version(self, _name: str, _text: bytes, _why: str) -> int:
+        """Nothing is kept from here."""
+        return 0
+
+    def _row(self, number: int, version: SharedVersion) -> VersionRow:
+        on = ", ".join(self.sharing.now.who_has(version.id))
+        who = (
+            join_messages("  ·  ", (version.desk, tr(Message("AVAILABLE ON {desks}", desks=on))))
+            if on
+            else version.desk
+        )
+        return VersionRow(number, version.text, version.saved, who, version.size)
+
+
+@dataclass(slots=True)
+class SharingModel:
+    """``sharing`` None: the machine file names no place. ``look_now`` wakes the thread that looks.
+
+    ``silent_for``: the seconds that it has waited for the place.
+    """
+
+    desk: Desk
+    sharing: Sharing | None = None
+    look_now: Callable[[], None] = lambda: None
+    silent_for: Callable[[], float] = lambda: 0.0
+    marked: int = 0
+    worker: Latest = field(default_factory=lambda: Latest("sharing-page"))
+    elsewhere: VersionsElsewhere = field(init=False)
+    _seen: tuple[object, str] = (None, "")  # what the comparison was made of
+    _of: tuple[Shared | None, tuple[tuple[str, Family], ...], tuple[Row, ...]] = (None, (), ())  # as sorted
+
+    def __post_init__(self) -> None:
+        archive = NewestElsewhere(self.sharing) if self.sharing is not None else NoArchive()
+        self.elsewhere = VersionsElsewhere(archive, self.worker)
+
+    # --- what is shown -------------------------------------------------------------------------------
+
+    @property
+    def shared(self) -> Shared:
+        """What the last look has found."""
+        return self.sharing.now if self.sharing is not None else Shared()
+
+    @property
+    def programs(self) -> tuple[tuple[str, Family], ...]:
+        """What wants a hand first, then by name."""
+        shared = self.shared
+        if shared is not self._of[0]:
+            states = shared.states
+            order = sorted(shared.families.items(), key=lambda each: (_ORDER.index(states[each[0]]), each[0]))
+            rows = tuple(self._row(key, family) for key, family in order)
+            self._of = shared, tuple(order), rows
+        return self._of[1]
+
+    @property
+    def program(self) -> tuple[str, Family] | None:
+        """The marked one, with its key."""
+        programs = self.programs
+        return programs[self.marked] if self.marked < len(programs) else None
+
+    @property
+    def version(self) -> SharedVersion | None:
+        """The marked version of another desk."""
+        here, number = self.program, self.elsewhere.number
+        if here is None or self.elsewhere.name != here[0] or not 0 < number <= len(here[1].elsewhere):
+            return None
+        return here[1].elsewhere[number - 1]
+
+    def look(self) -> None:
+        """Once a frame: the answers of the worker; another program, or another look, is compared anew."""
+        self.worker.poll()
+        self.marked = max(0, min(self.marked, len(self.shared.families) - 1))
+        key = self.program[0] if self.program is not None else ""
+        now = self.program[1] if self.program is not None else None
+        if (now, key) == self._seen or self.sharing is None:
+            return
+        self._seen = now, key
+        sharing = self.sharing
+        self.worker.queue(
+            lambda: lines_of(sharing.text_here(key)),
+            lambda text: self.elsewhere.look(key, text),
+            self.desk.refuse,
+        )
+
+    def sheet(self) -> Sheet:
+        """Programs, how each stands, whose is the newest elsewhere, where it is."""
+        rows = self._of[2] if self.programs else ()
+        notes = wrap(self._silence() or tr(self.shared.trouble), _WIDE)
+        notes += [f"{name}: {why}" for name, why in list(self.shared.refused.items())[:2]]
+        if self.sharing is None:
+            notes = [NO_PLACE]
+        elif not rows and not notes:
+            notes = [NOTHING_YET]
+        waiting = (
+            tr(Message("{count} WAITING TO BE SHARED", count=self.shared.waiting))
+            if self.shared.waiting
+            else ""
+        )
+        where = self.sharing.place.name if self.sharing is not None else ""
+        title = join_messages("  ·  ", filter(None, (tr("SHARED PROGRAMS"), where, waiting)))
+        return Sheet(
+            title,
+            ("PROGRAM", "STATE", "BY", "SAVED", "AVAILABLE ON"),
+            (0.24, 0.26, 0.14, 0.16, 0.2),
+            rows,
+            self.marked if rows else -1,
+            notes=tuple(notes),
+            raw=frozenset({0, 2, 3, 4}),
+        )
+
+    def _silence(self) -> str:
+        """That the place does not answer: a look waits for it, and so would all that is asked for now."""
+        seconds = self.silent_for()
+        if self.sharing is None or seconds < _PATIENCE:
+            return ""
+        words = tr("{name}: NO RESPONSE FOR {seconds} S. PROGRAMS STAY LOCAL FOR NOW")
+        return tr(Message(words, name=self.sharing.place.name, seconds=f"{seconds:.0f}"))
+
+    def _row(self, key: str, family: Family) -> Row:
+        state = self.shared.states[key]
+        words, tone = _STATES[state]
+        here = family.versions.get(family.here)
+        shown = family.elsewhere[0] if family.elsewhere else here
+        if shown is None:
+            return Row((NOTHING,) * 5)
+        on = ", ".join(self.shared.who_has(shown.id)) or NOTHING
+        saved = local_time(shown.saved, seconds=False)
+        return Row(((here or shown).program, words, shown.desk, saved, on), state != "same", tone)
+
+    def prompt(self) -> str:
+        """What the keys do now."""
+        if self.sharing is None:
+            return NO_PLACE
+        if self.version is None:
+            return "UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC"
+        if not self._both:
+            return "F2: USE SELECTED VERSION (ASKS FIRST)   ESC: AUTOMATIC"
+        return "F2: USE SELECTED VERSION   F3: KEEP LOCAL VERSION   ESC: BACK"
+
+    # --- keys ----------------------------------------------------------------------------------------
+
+    def keys(self) -> Mapping[str, Key]:
+        """Function keys of this moment."""
+        return {
+            "F2": Key("USE", self.take, barred=self.version is None or self.program is None),
+            "F3": Key("KEEP", self.keep, barred=not self._both),
+            "F4": Key("VERSION", self.next_version),
+            "F5": Key("REFRESH", self.ask_for_a_look, barred=self.sharing is None),
+        }
+
+    def take(self) -> None:
+        """The marked version into the program folder; asked first where a program is replaced."""
+        version, here = self.version, self.program
+        if version is None or here is None:
+            self.desk.say(MARK_ONE if here is None else "NO OTHER CONTROL HAS A NEWER VERSION")
+        elif self.desk.refused(Act.PROGRAMS):
+            return
+        elif why := self._silence() or self._in_use(version.key):
+            self.desk.say(why)
+        elif here[1].here:
+            words = tr("Y: USE {name} FROM {desk} (LOCAL VERSION STAYS STORED)   N: CANCEL")
+            self.desk.ask(
+                tr(Message(words, name=version.program, desk=version.desk)), lambda: self._take(version)
+            )
+        else:
+            self._take(version)
+
+    def _take(self, version: SharedVersion) -> None:
+        # It was started meanwhile, or the level has fallen back.
+        why = self._in_use(version.key) or self.desk.access.refusal(Act.PROGRAMS)
+        if why or self.sharing is None:
+            self.desk.say(why)
+            return
+        sharing = self.sharing
+        done = tr(
+            Message("{name} IS NOW THE VERSION FROM {machine}", name=version.program, machine=version.desk)
+        )
+        change = Message(
+            "program {program}: version from {machine} now in use",
+            program=version.program,
+            machine=version.desk,
+        )
+        self._work(lambda: sharing.take(version), done, change)
+
+    @property
+    def _both(self) -> bool:
+        """Whether the marked program was changed here and on another desk."""
+        here = self.program
+        return here is not None and self.shared.states.get(here[0]) == "both"
+
+    def keep(self) -> None:
+        """What is here stands against what was changed elsewhere, after asking."""
+        here = self.program
+        if here is None or not self._both:
+            self.desk.say("NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM")
+            return
+        if self.desk.refused(Act.PROGRAMS):
+            return
+        key, name = here[0], here[1].versions[here[1].here].program
+        words = tr("Y: KEEP LOCAL {name}, STORE OTHER VERSIONS   N: CANCEL")
+        self.desk.ask(tr(Message(words, name=name)), lambda: self._keep(key, name))
+
+    def _keep(self, key: str, name: str) -> None:
+        if self.sharing is not None and not self.desk.refused(Act.PROGRAMS):
+            sharing = self.sharing
+            said = tr(Message("{name}: LOCAL VERSION RETAINED", name=name))
+            self._work(
+                lambda: sharing.keep(key), said, Message("program {name}: local version retained", name=name)
+            )
+
+    def _work(self, work: Callable[[], object], words: str, change: str) -> None:
+        if self.worker.busy or self._silence():
+            self.desk.say(self._silence() or BUSY)
+            return
+
+        who = self.desk.access.who  # who has asked, though another signs in meanwhile
+
+        def done(_answer: object) -> None:
+            self.desk.done(words)
+            self.desk.access.persistence.note_change(change, who)
+            self.look_now()
+
+        self.worker.queue(work, done, self.desk.refuse)
+
+    def _in_use(self, key: str) -> str:
+        """Why a program stays as it is; empty when it may be replaced."""
+        snapshot, loaded = self.desk.snapshot(), self.desk.session.now
+        if snapshot.interrupted is not None and key_of(snapshot.interrupted.program) == key:
+            words = tr("{name} WAS INTERRUPTED. FINISH OR CANCEL THE RUN FIRST")
+            return tr(Message(words, name=snapshot.interrupted.program))
+        names = [Path(snapshot.program).name, loaded.name]
+        if loaded.source is not None:
+            names += [each.name for each in loaded.source.subprograms]
+        used = next((name for name in names if key_of(name) == key), "")
+        if used and snapshot.state in UNDER_WAY:
+            return tr(Message("{name} IS RUNNING. LET IT FINISH FIRST", name=used))
+        return ""
+
+    def next_version(self) -> None:
+        """Where several desks have changed it: the next of their versions."""
+        count = len(self.elsewhere.rows)
+        if count:
+            self.desk.clear()
+            self.elsewhere.mark((self.elsewhere.marked + 1) % count)
+
+    def ask_for_a_look(self) -> None:
+        """Now, and not with the next look."""
+        if self.sharing is None:
+            self.desk.say(NO_PLACE)
+        elif self._silence():
+            self.desk.say(self._silence())
+        else:
+            self.desk.done("CHECKING …")
+            self.look_now()
+
+    def typed(self, key: str) -> bool:
+        """Arrows mark programs, Return takes."""
+        if key in STEPS and self.programs:
+            self.choose(self.marked + STEPS[key])
+        elif key == "Enter":
+            self.take()
+        else:
+            return False
+        return True
+
+    def takes(self, _key: str) -> bool:
+        """Nothing is typed here."""
+        return False
+
+    def choose(self, row: int) -> None:
+        """Mark a program."""
+        self.desk.clear()
+        self.marked = max(0, min(len(self.programs) - 1, row))
+
+    def opened(self) -> None:
+        """The page comes up: what is new is looked for."""
+        self.look_now()
+
+    def escape(self) -> bool:
+        """One step back; False when the page may be left."""
+        if not self.desk.notice:
+            return False
+        self.desk.clear()
+        return True
+
+    def leave(self) -> None:
+        """Nothing is half done."""
+
+    def close(self) -> None:
+        """The worker ends; what was taken is taken."""
+        self.worker.close()

@@ -1,0 +1,70 @@
+"""X, SHARED: programs and how they stand above, what taking the marked version would change below."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QWidget
+
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.desk.sheet import Key
+from app.editor.versions_view import VersionList
+from app.extras.sharing.sharing_model import SharingModel
+from app.screen.page_base import Host, KeyActions
+from app.screen.sheet_panel import ListPage, SheetPanel
+from core.executor.snapshot import Snapshot
+
+LIST = 0.5  # share of the height
+
+
+class SharedProgramsPage(ListPage):
+    """The model decides; this shows it and hands the keys on."""
+
+    NAME = "SHARED PROGRAMS"
+    model: SharingModel
+
+    def __init__(self, host: Host, model: SharingModel, parent: QWidget) -> None:
+        super().__init__(host, model, parent)
+        self.table = SheetPanel(self.look, self._chosen, self)
+        self.versions = VersionList(self.look, model.elsewhere, self)
+        self.versions.title = "VERSIONS ON OTHER CONTROLS"
+        self.versions.show()
+
+    def page_keys(self) -> Mapping[str, Key]:
+        """Return those of the model."""
+        return self.model.keys()
+
+    def labels(self) -> tuple[str, ...]:
+        """Those of the model, and looking further down in the comparison."""
+        return self.labels_of({"F6": "UP", "F8": "DOWN"}, self.page_keys())
+
+    def key_actions(self) -> KeyActions:
+        """The function keys."""
+        keys = self.page_keys()
+        scroll = {"F6": partial(self._scroll, -1), "F8": partial(self._scroll, 1)}
+        return {**scroll, **{name: partial(self._do, name) for name in keys}}
+
+    def _do(self, name: str) -> None:
+        self.page_keys()[name].action()
+
+    def _scroll(self, pages: int) -> None:
+        self.versions.look_at(pages * self.versions.lines)
+
+    def _chosen(self, row: int) -> None:
+        self.model.choose(row)
+
+    def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: Loaded) -> None:
+        """List and comparison of this moment."""
+        self.model.look()
+        self.table.show_sheet(self.model.sheet())
+        self.versions.refresh()
+
+    def resizeEvent(self, _event: QResizeEvent) -> None:
+        """List over comparison."""
+        gap = max(4, round(0.7 * self.look.u))
+        high = round(LIST * (self.height() - gap))
+        self.table.setGeometry(0, 0, self.width(), high)
+        self.versions.setGeometry(0, high + gap, self.width(), self.height() - high - gap)

@@ -1,0 +1,172 @@
+"""Programs shared in a PostgreSQL database: rows are added in one transaction, and never changed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
+
+from core.extras.sharing.connection_string import parsed, shown, with_tls
+from core.extras.sharing.shared_place import Found, Published, database_at
+from core.extras.sharing.shared_versions import SharedVersion
+from core.extras.sharing.sharing_errors import Cause, SharingError
+from core.extras.sharing.version_record import (
+    FORMAT,
+    LONGEST_RECORD,
+    LONGEST_STATE,
+    MOST_BYTES,
+    DeskState,
+    RecordError,
+    checked_text,
+    read_state,
+    read_version,
+    written,
+)
+
+if TYPE_CHECKING:
+    import psycopg
+
+_LAYOUT = """
+CREATE SCHEMA IF NOT EXISTS turndesk;
+CREATE TABLE IF NOT EXISTS turndesk.layout (format integer PRIMARY KEY);
+CREATE TABLE IF NOT EXISTS turndesk.versions (
+    id text PRIMARY KEY, record bytea NOT NULL, program_text bytea NOT NULL
+);
+CREATE TABLE IF NOT EXISTS turndesk.desks (home text PRIMARY KEY, state bytea NOT NULL);
+"""
+_ADD = "INSERT INTO turndesk.versions VALUES (%s, %s, %s) ON CONFLICT DO NOTHING"
+_TELL = "INSERT INTO turndesk.desks VALUES (%s, %s) ON CONFLICT (home) DO UPDATE SET state = excluded.state"
+# Longer values than ours come cut off, so that they are strays.
+_DESKS = "SELECT home, substr(state, 1, %s) FROM turndesk.desks"
+_LIMITS = {
+    "connect_timeout": 5,
+    "application_name": "turndesk",
+    "options": "-c statement_timeout=30s -c lock_timeout=10s -c synchronous_commit=on",
+    "keepalives_idle": 10,
+    "tcp_user_timeout": 15_000,  # ms: a network that has gone is noticed
+}
+_AT_ONCE = 500  # records a question
+# What a server says that is asked but refuses to begin: libpq hands on its sentence and no code. It may try
+# twice, with TLS and without: the cause that stands first here is the one to remove.
+_AT_THE_DOOR: tuple[tuple[Cause, tuple[str, ...]], ...] = (
+    (Cause.WRONG_PASSWORD, ("authentication failed", "no password supplied")),
+    (Cause.NOT_TRUSTED, ("certificate", "ssl error")),
+    (Cause.NO_TLS, ("does not support ssl",)),
+    (Cause.TLS_ONLY, ("no encryption",)),
+    (Cause.NO_RIGHT, ("no pg_hba.conf entry", "permission denied")),
+    (Cause.NOT_THERE, ("does not exist",)),
+    (Cause.FULL, ("no space left",)),
+)
+# By the server's error codes, the first letters of them.
+_CODES: tuple[tuple[Cause, tuple[str, ...]], ...] = (
+    (Cause.NO_RIGHT, ("42501", "28", "25006")),
+    (Cause.NOT_BEGUN, ("42P01", "3F000")),
+    (Cause.OTHER, ("42", "22")),
+    (Cause.FULL, ("53100",)),
+    (Cause.NOT_THERE, ("3D000",)),
+)
+
+
+class SharedDatabase:
+    """``conninfo`` is what libpq takes: ``host=shop-pc dbname=shop user=lathe3``, or an address.
+
+    A connection is made for each call and ended by it: a server that is started anew, or killed, costs one
+    look and nothing else.
+    """
+
+    def __init__(self, conninfo: str) -> None:
+        self.name, self._conninfo = database_at("([sharing] postgresql in the machine file)"), conninfo
+        with suppress(SharingError):  # told by whoever asks the database
+            self.name = database_at(shown(with_tls(parsed(conninfo))))
+
+    def begin(self) -> None:
+        """Schema and tables, in one transaction."""
+        with self._asked(demand=False) as connection:
+            connection.execute(_LAYOUT)
+            connection.execute(
+                "INSERT INTO turndesk.layout SELECT %s WHERE NOT EXISTS (SELECT 1 FROM turndesk.layout)",
+                (FORMAT,),
+            )
+            self._demand(connection)
+
+    def look(self, known: Mapping[str, SharedVersion]) -> Found:
+        """Ids of all, records of those that are not known."""
+        with self._asked() as connection:
+            there = {str(row[0]) for row in connection.execute("SELECT id FROM turndesk.versions")}
+            wanted, fresh, strays = sorted(there - known.keys()), list[SharedVersion](), list[str]()
+            for first in range(0, len(wanted), _AT_ONCE):
+                query = "SELECT id, substr(record, 1, %s) FROM turndesk.versions WHERE id = ANY(%s)"
+                some = wanted[first : first + _AT_ONCE]
+                for name, record in connection.execute(query, (LONGEST_RECORD, some)):
+                    try:
+                        fresh.append(read_version(name, bytes(record)))
+                    except RecordError:
+                        strays.append(name)
+            desks = self._desks(connection, strays)
+        return Found(frozenset(there - set(strays)), tuple(fresh), desks, tuple(strays))
+
+    def put(self, versions: Sequence[Published], state: DeskState) -> None:
+        """All in one transaction: back when the server has it on its disk."""
+        with self._asked() as connection:
+            rows = [(each.version.id, written(each.version), each.text) for each in versions]
+            if rows:
+                connection.cursor().executemany(_ADD, rows)
+            connection.execute(_TELL, (state.home, state.written()))
+
+    def text(self, version: SharedVersion) -> bytes:
+        """One row."""
+        query = "SELECT substr(program_text, 1, %s) FROM turndesk.versions WHERE id = %s"
+        with self._asked() as connection:
+            row = connection.execute(query, (MOST_BYTES + 1, version.id)).fetchone()
+        try:
+            return checked_text(version, bytes(row[0]) if row is not None else b"")
+        except RecordError as error:
+            raise Cause.DAMAGED.error(self.name, error) from error
+
+    @staticmethod
+    def _desks(connection: psycopg.Connection, strays: list[str]) -> tuple[DeskState, ...]:
+        found = []
+        for home, state in connection.execute(_DESKS, (LONGEST_STATE,)):
+            try:
+                found.append(read_state(home, bytes(state)))
+            except RecordError:
+                strays.append(home)
+        return tuple(found)
+
+    def _demand(self, connection: psycopg.Connection) -> None:
+        row = connection.execute("SELECT max(format) FROM turndesk.layout").fetchone()
+        number = row[0] if row is not None else None
+        if number is None:
+            raise Cause.NOT_BEGUN.error(self.name)
+        if number != FORMAT:
+            raise Cause.NEWER.error(self.name, number)
+
+    @contextmanager
+    def _asked(self, *, demand: bool = True) -> Iterator[psycopg.Connection]:
+        """One transaction on a connection of its own; what the server refuses comes as SharingError."""
+        values: dict[str, Any] = with_tls(parsed(self._conninfo))
+        import psycopg  # noqa: PLC0415  optional, and only for those who share so
+
+        try:
+            with psycopg.connect(**{**values, **_LIMITS}) as connection:
+                if demand:
+                    self._demand(connection)
+                yield connection
+        except psycopg.Error as error:
+            raise self._refusal(error.sqlstate or "", str(error)) from error
+
+    def _refusal(self, code: str, told: str) -> SharingError:
+        lines = [line for line in told.splitlines() if line.strip()] or ["it failed"]
+        for cause, begins in _CODES if code else ():
+            if code.startswith(begins):
+                return cause.error(self.name, _bare(lines[0]))
+        for cause, signs in _AT_THE_DOOR if not code else ():
+            said = next((line for line in lines if any(sign in line.lower() for sign in signs)), "")
+            if said:
+                return cause.error(self.name, _bare(said))
+        return Cause.AWAY.error(self.name, _bare(lines[0]))
+
+
+def _bare(line: str) -> str:
+    """The cause alone, of a connection that was not made."""
+    return line.rpartition(" failed: ")[2].removeprefix("FATAL:")

@@ -1,0 +1,131 @@
+"""The record of a shared version and of what a desk has: how they are written, and what is no good one."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from hashlib import sha256
+
+from core.coded_error import CodedError
+from core.extras.sharing.shared_versions import SharedVersion
+from core.message import Message
+from core.store.program_records import check_name
+from core.store.store_errors import StoreError
+
+FORMAT = 1
+MOST_BYTES = 32 * 1024 * 1024  # of a program: more is not shared
+LONGEST_STATE = 4 * 1024 * 1024  # bytes of what a desk says it has
+LONGEST_RECORD = 64 * 1024
+_TEXTS = ("program", "text", "desk", "saved", "why")
+_HEX = frozenset("0123456789abcdef")
+
+
+class RecordError(CodedError):
+    """It is no record of ours: garbage, half written, or damaged."""
+
+
+def new_version(
+    program: str, text: bytes, follows: tuple[str, ...], desk: str, saved: str, why: str
+) -> SharedVersion:
+    """The version that a text becomes; its id follows from all the rest."""
+    bare = SharedVersion("", program, sha256(text).hexdigest(), len(text), follows, desk, saved, why)
+    return bare._replace(id=sha256(written(bare)).hexdigest())
+
+
+def written(version: SharedVersion) -> bytes:
+    """The record as bytes, always the same for the same version; its id is their SHA-256."""
+    values = version._asdict()
+    del values["id"]
+    return _plain({"format": FORMAT, **values})
+
+
+def read_version(name: str, record: bytes) -> SharedVersion:
+    """The version whose record is kept under this id. Raises RecordError."""
+    if sha256(record).hexdigest() != name:
+        raise RecordError("the record does not match the checksum in the record name", "not-as-published")
+    values = _object(record)
+    texts = [values.get(key) for key in _TEXTS]
+    size, follows = values.get("size"), values.get("follows")
+    if values.get("format") != FORMAT or not isinstance(size, int) or not isinstance(follows, list):
+        raise RecordError(
+            "the record is in a format that this TurnDesk version does not support", "not-this-format"
+        )
+    if not all(isinstance(each, str) and each.isprintable() for each in texts) or not all(
+        map(is_id, follows)
+    ):
+        raise RecordError("the record is not a valid version record", "not-a-version")
+    program, text, desk, saved, why = map(str, texts)
+    try:
+        check_name(program)
+    except StoreError as error:
+        raise RecordError(str(error), "invalid-name") from error
+    if not is_id(text) or not 0 <= size <= MOST_BYTES:
+        raise RecordError("the version record has an invalid text ID or size", "not-a-text")
+    return SharedVersion(name, program, text, size, tuple(follows), desk, saved, why)
+
+
+def checked_text(version: SharedVersion, text: bytes) -> bytes:
+    """The text, when it is that of the version. Raises RecordError."""
+    if sha256(text).hexdigest() != version.text:
+        raise RecordError(
+            Message(
+                "the text of {program} from {machine} does not match the checksum in the version record",
+                program=version.program,
+                machine=version.desk,
+            ),
+            "text-not-as-published",
+        )
+    return text
+
+
+# --- what a desk has ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class DeskState:
+    """Which version of each program a desk has: ids by name. ``home`` tells desks of one name apart."""
+
+    home: str
+    desk: str
+    at: str  # by its own clock, UTC
+    has: Mapping[str, str] = field(default_factory=dict)
+
+    def written(self) -> bytes:
+        """As bytes."""
+        return _plain({"format": FORMAT, "desk": self.desk, "at": self.at, "has": dict(self.has)})
+
+
+def read_state(home: str, data: bytes) -> DeskState:
+    """What a desk has told of itself. Raises RecordError."""
+    values = _object(data)
+    desk, at, has = values.get("desk"), values.get("at"), values.get("has")
+    if not is_home(home) or not isinstance(desk, str) or not isinstance(at, str) or not isinstance(has, dict):
+        raise RecordError("the record is not a valid status record of a control", "not-a-desk")
+    if not desk.isprintable() or not at.isprintable():
+        raise RecordError("the record is not a valid status record of a control", "not-a-desk")
+    return DeskState(home, desk, at, {name: each for name, each in has.items() if is_id(each)})
+
+
+def is_home(text: str) -> bool:
+    """Whether it can tell a desk from others."""
+    return len(text) == 32 and set(text) <= _HEX
+
+
+def is_id(value: object) -> bool:
+    """Whether it can be the id of a version."""
+    return isinstance(value, str) and len(value) == 64 and set(value) <= _HEX
+
+
+def _object(data: bytes) -> dict[str, object]:
+    try:
+        values = json.loads(data)
+    except (ValueError, RecursionError) as error:
+        raise RecordError("the record was not written by TurnDesk", "not-ours") from error
+    if not isinstance(values, dict):
+        raise RecordError("the record was not written by TurnDesk", "not-ours")
+    return values
+
+
+def _plain(values: object) -> bytes:
+    return json.dumps(values, sort_keys=True, separators=(",", ":"), ensure_ascii=True).encode()

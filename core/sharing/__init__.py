@@ -1,1 +1,0 @@
-"""Programs shared between desks: in a folder or in PostgreSQL."""

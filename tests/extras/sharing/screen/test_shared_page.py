@@ -1,0 +1,194 @@
+"""Shared programs on the screen: seen and compared, taken when asked, never one that runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.extras.sharing.sharing import Sharing
+from app.extras.sharing.sharing_desk import Heard
+from app.extras.sharing.sharing_model import NO_PLACE, SharingModel
+from core.executor.snapshot import State
+from core.extras.sharing.shared_folder import SharedFolder
+from core.store.store import Store
+from tests.screen.day import Day, Key, begun
+from tests.texts import begins, shows
+from tests.texts import text as wording
+
+PEG = "(PEG)\nG90G94F300G72\nT1\nM03S2000\nG00X.7Z.1\nX.5\nG01G94F60Z-.3\nX.7\nG00Z1\nM05\nM30\n"
+BETTER = PEG.replace("F60", "F40")
+
+
+@pytest.fixture
+def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Day]:
+    """PEG on the desk with T1 touched off; nothing is shared yet."""
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    with begun(qtbot, "peg.nc", PEG) as day:
+        day.store.set_tool(1, "test", x=-12.7, z=-50.8, nose_radius=0.4, quadrant=3).result(60)
+        day.desk.book.read()
+        yield day
+
+
+@pytest.fixture
+def other(tmp_path: Path) -> Iterator[Sharing]:
+    """Another lathe of the shop."""
+    (tmp_path / "shop").mkdir()
+    (tmp_path / "other" / "programs").mkdir(parents=True)
+    place = SharedFolder(tmp_path / "shop")
+    place.begin()
+    with Store.open(tmp_path / "other") as store:
+        yield Sharing(place, "LATHE 2", "2" * 32, tmp_path / "other" / "programs", lambda: store)
+
+
+@pytest.fixture
+def sharing(day: Day, other: Sharing, tmp_path: Path) -> Sharing:
+    """This desk shares; the other one has taken PEG and made it better."""
+    made = Sharing(
+        SharedFolder(tmp_path / "shop"),
+        "LATHE 1",
+        "1" * 32,
+        tmp_path / "home" / "programs",
+        day.journal.opened,
+    )
+    before = day.desk.attached(SharingModel)
+    assert before is not None
+    before.close()
+    day.desk.attach(SharingModel(day.desk, made))
+    made.look()
+    other.take(other.look().families["peg.nc"].newest[0])
+    (tmp_path / "other" / "programs" / "peg.nc").write_text(BETTER)
+    other.look()
+    made.look()
+    return made
+
+
+def model(day: Day) -> SharingModel:
+    found = day.desk.attached(SharingModel)
+    assert found is not None
+    return found
+
+
+def opened(day: Day) -> None:
+    day.key(Key.Key_F1, Key.Key_X)
+    day.sees(lambda: day.page == "SHARED PROGRAMS")
+
+
+def test_what_is_newer_is_compared_and_taken_when_asked(day: Day, sharing: Sharing, tmp_path: Path) -> None:
+    peg = tmp_path / "home" / "programs" / "peg.nc"
+    opened(day)
+    day.sees(lambda: bool(model(day).elsewhere.changes))
+    assert model(day).sheet().rows[0].cells[:3] == ("peg.nc", "NEWER VERSION ON ANOTHER CONTROL", "LATHE 2")
+    signs = [(row.sign, row.text) for row in model(day).elsewhere.changes if row.sign in "+-"]
+    assert signs == [("-", "G01G94F60Z-.3"), ("+", "G01G94F40Z-.3")]
+    day.key(Key.Key_F2)
+    assert begins(day.prompt, "screen.take-shared", name="peg.nc", desk="LATHE 2")
+    day.key(Key.Key_Escape)
+    assert peg.read_text() == PEG
+    day.key(Key.Key_F2)
+    day.run(0.7)  # long enough to have been read
+    day.key(Key.Key_Y)
+    day.sees(lambda: day.prompt == wording("screen.taken-shared", name="peg.nc", desk="LATHE 2"))
+    assert peg.read_text() == BETTER
+    day.sees(lambda: model(day).sheet().rows[0].cells[1] == "UP TO DATE")
+    with sharing._store().read() as connection:
+        kept = [bytes(text) for (text,) in connection.execute("SELECT text FROM program_versions")]
+    assert PEG.encode() in kept
+
+
+def test_a_program_that_runs_is_not_replaced(day: Day, sharing: Sharing, tmp_path: Path) -> None:
+    day.key(Key.Key_D)
+    assert day.desk.choose("peg")
+    day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
+    day.palms()
+    day.reaches(State.RUN)
+    opened(day)
+    day.sees(lambda: model(day).version is not None)
+    day.key(Key.Key_F2)
+    assert day.prompt == wording("screen.program-being-cut", name="peg.nc")
+    day.key(Key.Key_Return)
+    assert (tmp_path / "home" / "programs" / "peg.nc").read_text() == PEG
+
+
+def test_what_both_have_changed_is_kept_by_f3(
+    day: Day, sharing: Sharing, other: Sharing, tmp_path: Path
+) -> None:
+    mine = PEG.replace("S2000", "S1500")
+    (tmp_path / "home" / "programs" / "peg.nc").write_text(mine)
+    opened(day)
+    day.key(Key.Key_F3)
+    assert begins(day.prompt, "screen.nothing-to-settle")
+    sharing.look()
+    day.sees(lambda: model(day).sheet().rows[0].cells[1] == wording("screen.changed-on-both"))
+    day.key(Key.Key_F3)
+    assert begins(day.prompt, "screen.keep-own", name="peg.nc")
+    day.sees(lambda: not model(day).worker.busy)  # the versions of the others are read
+    day.run(0.7)
+    day.key(Key.Key_Y)
+    day.sees(lambda: day.prompt == wording("screen.kept-own", name="peg.nc"))
+    sharing.look()
+    assert other.look().states == {"peg.nc": "newer"}
+
+
+def test_a_place_that_is_away_is_told_on_the_page_and_once_in_the_log(
+    day: Day, sharing: Sharing, tmp_path: Path
+) -> None:
+    (tmp_path / "shop").rename(tmp_path / "unmounted")
+    heard = Heard(day.desk, day.journal)
+    for _ in range(3):
+        heard.hear(sharing.look())
+    day.saved()
+    told = [each.text for each in day.journal.events("was not found", (), 10)]
+    assert len(told) == 1
+    opened(day)
+    assert shows(" ".join(model(day).sheet().notes), "screen.share-not-there")
+    day.sees(lambda: model(day).version is not None)
+    day.key(Key.Key_F2)
+    day.run(0.7)
+    day.key(Key.Key_Y)
+    day.sees(lambda: day.prompt.startswith(wording("screen.refused", why="the folder")))
+
+
+def test_a_change_to_the_program_on_the_desk_is_said_once(day: Day, sharing: Sharing) -> None:
+    assert day.desk.choose("peg")
+    day.sees(lambda: not day.desk.session.now.busy)
+    heard = Heard(day.desk, day.journal)
+    day.desk.ask("PRESS Y TO DELETE IT", lambda: None)
+    heard.hear(sharing.now)  # on the sharing thread: a question is not spoilt in the middle of being asked
+    assert day.desk.notice == "PRESS Y TO DELETE IT"
+    day.desk.look()
+    assert (day.desk.answers.answer, day.desk.answers.question) == (
+        wording("screen.changed-elsewhere", name="peg.nc", desk="LATHE 2"),
+        "PRESS Y TO DELETE IT",
+    )
+    day.desk.clear()
+    heard.hear(sharing.now)
+    day.desk.look()
+    assert day.desk.notice == ""
+
+
+def test_without_a_place_the_page_says_what_names_one(day: Day) -> None:
+    opened(day)
+    assert model(day).sheet().notes == (NO_PLACE,)
+    day.key(Key.Key_F2)
+    assert day.prompt == wording("screen.mark-program")
+    day.key(Key.Key_F5)
+    assert day.prompt == NO_PLACE
+
+
+def test_a_place_that_never_answers_is_told_and_takes_nothing(day: Day, sharing: Sharing) -> None:
+    """A dead network drive: the look waits for ever. The page says so behind 30 s, and queues nothing."""
+    model(day).silent_for = lambda: 29.0
+    assert not any(shows(note, "screen.share-silent") for note in model(day).sheet().notes)
+    opened(day)
+    day.sees(lambda: model(day).version is not None and not model(day).worker.busy)
+    model(day).silent_for = lambda: 95.0
+    said = wording("screen.share-silent", name=sharing.place.name, seconds=95)
+    assert shows(" ".join(model(day).sheet().notes), "screen.share-silent", seconds=95)
+    for key in (Key.Key_F5, Key.Key_F2):
+        day.desk.clear()
+        day.key(key)
+        assert day.desk.notice.startswith(said)
+    assert not model(day).worker.busy

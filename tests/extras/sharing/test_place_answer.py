@@ -1,0 +1,90 @@
+"""The wait of ``turndesk share``: a silent place is told, Ctrl+C ends the wait, refusals come through."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import threading
+from pathlib import Path
+from typing import cast
+
+import pytest
+
+from app.extras.sharing import place_answer
+from app.extras.sharing.place_answer import answered
+from core.extras.sharing.shared_folder import MARK, SharedFolder
+from core.extras.sharing.shared_place import SharedPlace
+from core.extras.sharing.sharing_errors import Cause, SharingError
+from tests.coded import raises_code
+from tests.texts import text as wording
+
+
+class Place:
+    """A place with a name only: the tests do its work."""
+
+    name = "the database shop"
+
+
+def test_a_silent_place_is_told_once_and_its_answer_still_counts(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    told = threading.Event()
+    tell = place_answer._tell
+
+    def tell_and_answer(place: SharedPlace, seconds: float) -> None:
+        tell(place, seconds)
+        told.set()
+
+    monkeypatch.setattr(place_answer, "_tell", tell_and_answer)
+    assert answered(cast("SharedPlace", Place()), lambda: told.wait(60.0), 0.0) is True
+    said = wording("cli.no-response", place="the database shop", seconds=0, until="")
+    assert capsys.readouterr() == ("", f"turndesk: {said}\n")
+
+
+def test_an_answer_in_time_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    assert answered(cast("SharedPlace", Place()), lambda: 7) == 7
+    assert capsys.readouterr() == ("", "")
+
+
+def test_what_the_place_refuses_is_raised_where_it_was_asked() -> None:
+    def refuse() -> None:
+        raise Cause.FULL.error("the folder x")
+
+    with raises_code(SharingError, "disk-full", "folder x"):
+        answered(cast("SharedPlace", Place()), refuse)
+
+
+def test_ctrl_c_ends_the_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    never = threading.Event()
+
+    def press(*_args: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(place_answer, "wait", press)
+    with pytest.raises(KeyboardInterrupt):
+        answered(cast("SharedPlace", Place()), lambda: never.wait(60.0))
+    never.set()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+def test_a_folder_that_hangs_is_told_before_it_is_touched(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    os.mkfifo(tmp_path / MARK)  # opening it waits for a writer, as a dead drive does
+    waits, real = list[object](), subprocess.Popen.wait
+
+    def in_no_time(process: subprocess.Popen[bytes], timeout: float | None = None) -> int:
+        waits.append(timeout)
+        if len(waits) == 2:
+            process.kill()
+            real(process)
+        raise subprocess.TimeoutExpired("open", timeout or 0.0)
+
+    touched = threading.Event()
+    monkeypatch.setattr(subprocess.Popen, "wait", in_no_time)
+    with raises_code(SharingError, "away", "300 s"):
+        answered(SharedFolder(tmp_path), touched.set)
+    assert (waits, touched.is_set()) == ([30.0, 270.0], False)
+    until = wording("cli.stops-waiting", seconds=300)
+    said = wording("cli.no-response", place=f"the folder {tmp_path}", seconds=30, until=until)
+    assert capsys.readouterr().err == f"turndesk: {said}\n"

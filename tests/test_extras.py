@@ -1,0 +1,54 @@
+"""Optional features: the table, their places in lists, and TurnDesk without one of them."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.cli import main
+from app.compose import extra
+from app.compose.extra import NAMES, command_modules, extras, insert_after
+
+HOUSE = Path(__file__).parents[1]
+
+
+@pytest.fixture
+def no_features(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """As if the folders of all optional features were deleted."""
+    found = importlib.util.find_spec
+    monkeypatch.setattr(extra, "find_spec", lambda name: None if "extras" in name else found(name))
+    extras.cache_clear()
+    yield
+    extras.cache_clear()
+
+
+def test_every_folder_of_a_feature_is_in_the_table() -> None:
+    folders = {each.parent.name for each in (HOUSE / "app" / "extras").glob("*/extra.py")}
+    cores = {each.name for each in (HOUSE / "core" / "extras").iterdir() if (each / "__init__.py").exists()}
+    assert sorted(folders) == sorted(NAMES)
+    assert cores <= folders
+
+
+def test_every_command_of_a_feature_has_a_module() -> None:
+    assert all(importlib.util.find_spec(module) for module in command_modules().values())
+    assert set(command_modules()) <= set(main.all_commands())
+
+
+def test_an_addition_follows_the_item_that_it_names() -> None:
+    assert insert_after("ab", str, [("x", "a"), ("y", "x")]) == ["a", "x", "y", "b"]
+
+
+def test_an_addition_whose_item_is_absent_is_the_last() -> None:
+    assert insert_after("ab", str, [("x", "gone")]) == ["a", "b", "x"]
+
+
+@pytest.mark.usefixtures("no_features")
+def test_without_features_their_commands_are_unknown(capsys: pytest.CaptureFixture[str]) -> None:
+    assert set(main.all_commands()) == set(main.COMMANDS)
+    with pytest.raises(SystemExit) as stopped:
+        main.main(["share", "status"])
+    assert stopped.value.code == 2
+    assert "share" in capsys.readouterr().err
