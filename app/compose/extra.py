@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from core.table_schema import Driver
 
 NAMES = ("sharing",)
-"""All optional features, in the order in which they are loaded."""
+"""All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
 Close = Callable[[], None]
@@ -35,9 +35,10 @@ class Extra:
 
     ``commands`` maps each subcommand to the subcommand that it follows in the help. Its module is
     ``app.extras.NAME.SUBCOMMAND_command``. ``threads`` maps each supervised thread to what an operator
-    misses when the thread ends.
+    misses when the thread ends. ``needs`` names the features without which this feature is left out.
     """
 
+    needs: Sequence[str] = ()
     commands: Mapping[str, str] = {}
     pages: Sequence[PageEntry] = ()
     threads: Mapping[str, str] = {}
@@ -66,10 +67,12 @@ class Extra:
 @cache
 def extras() -> Mapping[str, Extra]:
     """Return the optional features that are installed, by name."""
-    found = {}
+    found: dict[str, Extra] = {}
     for name in NAMES:
         if find_spec(f"app.extras.{name}") is not None:
-            found[name] = import_module(f"app.extras.{name}.extra").EXTRA
+            extra: Extra = import_module(f"app.extras.{name}.extra").EXTRA
+            if found.keys() >= set(extra.needs):
+                found[name] = extra
     return found
 
 

@@ -218,20 +218,6 @@ def test_programs_are_of_setup_and_their_place_of_service(
     assert "shop" in told
 
 
-def test_a_shared_program_has_the_name_in_the_log(say: Say, people: None, home: Path, tmp_path: Path) -> None:
-    (tmp_path / "shop").mkdir()
-    table = f'[sharing]\nfolder = "{tmp_path / "shop"}"\ndesk = "LATHE 1"\n'
-    (tmp_path / "own.toml").write_text(f"{resources.machine_file('gt75.toml')}\n{table}")
-    named = ("--machine", tmp_path / "own.toml", "--as")
-    assert say("share", "begin", *named, "ben", typed="2580")[0] == 2
-    assert say("share", "begin", *named, "anna", typed="4711")[0] == 0
-    assert say("share", "publish", *named, "ben", typed="2580")[0] == 0
-    assert say("share", "status", *named[:2])[0] == 0  # looking is everybody's
-    with Store.open(home) as store:
-        told = [(row.text, row.who) for row in store.events(kinds={"change"})]
-    assert told == [("share publish", "BEN"), ("share begin", "ANNA")]
-
-
 def test_a_restore_has_the_name_in_the_log(say: Say, people: None, home: Path, tmp_path: Path) -> None:
     assert say("store", "backup", tmp_path / "b.db")[0] == 0
     assert say("store", "restore", tmp_path / "b.db", "--as", "anna", typed="4711")[0] == 0
@@ -360,21 +346,6 @@ def test_jobs_are_the_operators_and_have_the_name(say: Say, people: None, home: 
         assert [(row.text, row.who) for row in store.events("jobs")] == [
             ("jobs: pin.nc, 20 parts, is job 1", "shop")
         ]
-
-
-def test_a_shared_program_is_taken_from_setup_on(
-    say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
-) -> None:
-    file, shop = tmp_path / "lathe.toml", tmp_path / "shop"
-    shop.mkdir()
-    file.write_text(resources.machine_file("gt75.toml") + f'\n[sharing]\nfolder = "{shop}"\n')
-    assert say("share", "begin", "--machine", file, "--as", "anna", typed="4711")[0] == 0
-    status, told = say("share", "take", "peg.nc", "--machine", file)
-    assert (status, codes(refusals)) == (2, ["unknown-person"])
-    assert "PROGRAMS" in told
-    assert "SETUP" in told
-    status, told = say("share", "take", "peg.nc", "--as", "ben", "--machine", file, typed="2580")
-    assert (status, codes(refusals), "peg.nc" in told) == (2, ["not-shared-program"], True)
 
 
 def test_stock_is_kept_from_setup_on(

@@ -14,6 +14,7 @@ from textwrap import indent
 import pytest
 
 import resources
+from app.cli.main import all_commands
 
 RULES = Path(__file__).with_name("as_on_windows")
 PART = "G90G94F300\nT1\nM03S1000\nX.5Z.1\nG95F.01Z0\nX.6\nG94F300Z1\nM30\n"
@@ -97,9 +98,10 @@ def office(tmp_path: Path) -> Path:
 
 @pytest.mark.long
 def test_the_commands_hold_the_rules_of_windows(office: Path) -> None:
+    lines = [line for line in COMMANDS.splitlines() if line.split()[0] in all_commands()]
     script = (
         "import sys; from app.cli.main import console\n"
-        f"for line in {COMMANDS.splitlines()!r}:\n"
+        f"for line in {lines!r}:\n"
         "    sys.argv[1:] = line.split()\n"
         "    status = console()\n"
         "    assert status == 0, f'{line}: {status}'\n"

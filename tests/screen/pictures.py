@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -42,7 +43,7 @@ from core.store.store import Store
 from core.store.store_rows import Kind
 from core.store.tool_lives import LifeRow
 from drivers.clocks import StepClock
-from tests.screen.picture_shop import put_drawing, share_with_another
+from tests.screen.picture_shop import put_drawing
 
 SIZES = ((1024, 600), (1920, 1080), (3840, 2160))
 THEMES = ("dark", "light")
@@ -237,7 +238,9 @@ def _pictures(out: Path, looks: Looks) -> Iterator[Path]:
     stage.make_ready()
     with TemporaryDirectory(prefix="shop-") as folder:
         put_drawing(Path(os.environ["TURNDESK_HOME"]) / "programs")
-        share_with_another(stage.desk, journal, Path(folder))
+        for each in sorted((Path(__file__).parents[1] / "extras").glob("*/pictures.py")):
+            module = import_module(f"tests.extras.{each.parent.name}.pictures")
+            module.prepare(stage.desk, journal, Path(folder))
         yield from taken(stage.desk, out, False, looks, heard=stage.hears)
     stage.press_start()
     stage.tick(lambda: stage.desk.snapshot().line >= AT_LINE)

@@ -10,6 +10,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
+from app.compose.extra import extras
 from app.editor import editor_messages as messages
 from app.editor.editor_view import EditorPage
 from app.mdi.mdi_model import MdiModel
@@ -50,7 +51,7 @@ KEYS = {
     Key.Key_Q: page_table.SCOPE,
     Key.Key_W: page_table.MEASURED,
     Key.Key_J: page_table.JOBS,
-    Key.Key_X: "SHARED PROGRAMS",
+    **{Key[f"Key_{page.key}"]: page.name for extra in extras().values() for page in extra.pages if page.key},
 }
 
 

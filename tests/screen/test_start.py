@@ -21,7 +21,12 @@ desk.close()
 """
 OF_LATER = (
     *("app.editor", "app.programs.program_list", "app.quality.shift_page", "app.scope", "app.shapes"),
-    *("app.extras.sharing", "app.special.setup_sheet", "app.transfer", "core.extras.sharing", "pyqtgraph"),
+    *(
+        "app.extras.sharing.sharing_model",
+        "app.special.setup_sheet",
+        "app.transfer",
+        "pyqtgraph",
+    ),
     *("core.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
     *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen.canopen_machine", "drivers.feeder"),
     *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.pendant.pendant_reader"),

@@ -14,7 +14,6 @@ from app.desk.latest import Latest
 from app.editor.document import Document
 from app.editor.drafts import Drafts
 from app.editor.versions import NoArchive
-from app.extras.sharing.sharing_desk import claim, home_of
 from app.programs.whole_file import FileError, write_new, write_out, write_whole
 from app.quality.parts_book import PartsData
 from app.quality.readings_file import write_readings
@@ -151,13 +150,6 @@ def test_a_record_of_the_scope_stays_whole(tmp_path: Path) -> None:
 
         assert set(cut_everywhere(again, path.read_bytes)) == {old, new}
     assert open_record(tmp_path / "a.scope").started == 2.0
-
-
-def test_a_desk_keeps_its_own_id_among_those_that_share(tmp_path: Path) -> None:
-    """An empty file would be another desk, whose programs nobody may go on with."""
-    claim(tmp_path, "0" * 32)
-    seen = set(cut_everywhere(lambda: claim(tmp_path, "f" * 32), lambda: home_of(tmp_path)))
-    assert seen == {"0" * 32, "f" * 32}
 
 
 def test_an_export_is_a_whole_folder_or_none(tmp_path: Path, store: Store) -> None:

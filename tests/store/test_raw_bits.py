@@ -9,8 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from core.extras.sharing import shared_versions
-from core.extras.sharing.shared_versions import SharedVersion
 from core.store import backup, database, job_queue, measured_parts, row_sums
 from core.store.damaged_rows import TABLES_CHANGED
 from core.store.measured_parts import FeatureRow, ReadingRow
@@ -231,14 +229,17 @@ def test_two_rows_that_changed_places_with_their_sums_are_none(kept: Path) -> No
 @pytest.fixture
 def told_of(kept: Path) -> Path:
     """A row in each table of what only grows."""
-    version = SharedVersion("a" * 64, "pin.nc", "b" * 64, 4, (), "LATHE 1", "2026-11-29T10:00:00Z", "saved")
+    shared = "INSERT INTO shared_versions VALUES (?, 'pin.nc', ?, 4, '', 'LATHE 1', ?, 'saved', 0)"
+    version = ("a" * 64, "b" * 64, "2026-11-29T10:00:00Z")
     cycle = "INSERT INTO part_cycles (key, program, started, offset_change) VALUES ('k', 'pin.nc', 'now', 0)"
     stop = "INSERT INTO production_stops VALUES (1, 'k', '', 'pin.nc', 'now', 3.0, 'hold', 7)"
     with Store.open(kept) as store:
         store.log_event("alarm", "X OVERTRAVEL", 12, who="ANNA").result()
         store.save_program("pin.nc", b"M30\n", "written", who="ANNA").result()
-        store.write(lambda c: shared_versions.add(c, [version])).result()
-        store.write(lambda c: shared_versions.set_here(c, "pin.nc", version.id)).result()
+        store.write(lambda c: c.execute(shared, version)).result()
+        store.write(
+            lambda c: c.execute("INSERT INTO shared_here VALUES (?, ?)", ("pin.nc", version[0]))
+        ).result()
         store.write(lambda c: c.execute(cycle)).result()
         store.write(lambda c: c.execute(stop)).result()
     assert backup.all_problems(kept / FILE_NAME) == ()

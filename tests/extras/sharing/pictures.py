@@ -1,0 +1,39 @@
+"""Pictures of the page of shared programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from app.compose.journal import Journal
+from app.compose.workshop import samples
+from app.desk.desk import Desk
+from app.extras.sharing.sharing import Sharing
+from app.extras.sharing.sharing_model import SharingModel
+from core.extras.sharing.shared_folder import SharedFolder
+from core.store.store import Store
+
+SHARED = ("bushing.nc", "grooves.nc", "knob.nc")
+
+
+def prepare(desk: Desk, journal: Journal, folder: Path) -> None:
+    """Three programs that both lathes have, of which LATHE 2 has made one better since."""
+    shop, here, there = (folder / name for name in ("shop", "here", "there"))
+    for each in (shop, here, there / "programs"):
+        each.mkdir(parents=True)
+    for name in SHARED:
+        (here / name).write_bytes((samples() / name).read_bytes())
+    SharedFolder(shop).begin()
+    made = Sharing(SharedFolder(shop), "LATHE 1", "1" * 32, here, journal.opened)
+    made.look()
+    with Store.open(there) as store:
+        other = Sharing(SharedFolder(shop), "LATHE 2", "2" * 32, there / "programs", lambda: store)
+        for family in other.look().families.values():
+            other.take(family.newest[0])
+        better = there / "programs" / SHARED[0]
+        better.write_bytes(better.read_bytes().replace(b"G95F.008", b"G95F.010"))
+        other.look()
+    made.look()
+    before = desk.attached(SharingModel)
+    if before is not None:
+        before.close()
+    desk.attach(SharingModel(desk, made))

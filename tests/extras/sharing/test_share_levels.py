@@ -1,0 +1,42 @@
+"""Who may share programs on the command line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import resources
+from core.coded_error import CodedError
+from core.store.store import Store
+from tests.cli.conftest import refusals
+from tests.cli.test_access import Say, codes, home, people, say
+
+__all__ = ["home", "people", "refusals", "say"]
+
+
+def test_a_shared_program_has_the_name_in_the_log(say: Say, people: None, home: Path, tmp_path: Path) -> None:
+    (tmp_path / "shop").mkdir()
+    table = f'[sharing]\nfolder = "{tmp_path / "shop"}"\ndesk = "LATHE 1"\n'
+    (tmp_path / "own.toml").write_text(f"{resources.machine_file('gt75.toml')}\n{table}")
+    named = ("--machine", tmp_path / "own.toml", "--as")
+    assert say("share", "begin", *named, "ben", typed="2580")[0] == 2
+    assert say("share", "begin", *named, "anna", typed="4711")[0] == 0
+    assert say("share", "publish", *named, "ben", typed="2580")[0] == 0
+    assert say("share", "status", *named[:2])[0] == 0  # looking is everybody's
+    with Store.open(home) as store:
+        told = [(row.text, row.who) for row in store.events(kinds={"change"})]
+    assert told == [("share publish", "BEN"), ("share begin", "ANNA")]
+
+
+def test_a_shared_program_is_taken_from_setup_on(
+    say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
+) -> None:
+    file, shop = tmp_path / "lathe.toml", tmp_path / "shop"
+    shop.mkdir()
+    file.write_text(resources.machine_file("gt75.toml") + f'\n[sharing]\nfolder = "{shop}"\n')
+    assert say("share", "begin", "--machine", file, "--as", "anna", typed="4711")[0] == 0
+    status, told = say("share", "take", "peg.nc", "--machine", file)
+    assert (status, codes(refusals)) == (2, ["unknown-person"])
+    assert "PROGRAMS" in told
+    assert "SETUP" in told
+    status, told = say("share", "take", "peg.nc", "--as", "ben", "--machine", file, typed="2580")
+    assert (status, codes(refusals), "peg.nc" in told) == (2, ["not-shared-program"], True)
