@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import dataclass, replace
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,7 @@ from app.cli.proof_pool import KILLED, Proving, Workers, WorkerSource, cores
 from app.cli.proof_table import table
 from app.cli.proof_work import OtherVersionError, Proof, code_version, proof_of
 from app.cli.report_file import ReportFile, report_file
+from app.compose.extra import proof_workers
 from app.compose.kept_stock import kept_with_all
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from core.language.source import Source
@@ -45,9 +47,9 @@ def prove_many(args: argparse.Namespace, jobs: FittingJobs) -> int:
 def _workers(args: argparse.Namespace) -> WorkerSource:
     if args.scheduler is None:
         return Workers(args.jobs if args.jobs is not None else cores())
-    from app.cli.proof_scheduler import Scheduler
-
-    return Scheduler(args.scheduler)
+    module, _, name = proof_workers().rpartition(".")
+    source: WorkerSource = getattr(import_module(module), name)(args.scheduler)
+    return source
 
 
 @dataclass(frozen=True, slots=True)

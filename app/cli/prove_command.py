@@ -18,6 +18,7 @@ from app.cli.program_options import (
     read_source,
 )
 from app.cli.progress_bar import Progress
+from app.compose.extra import proof_workers
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.message import Message
@@ -71,11 +72,13 @@ def add_folder_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--jobs", metavar="N", type=_count, help="number of worker processes (default: one per core)"
     )
-    parser.add_argument(
-        "--scheduler",
-        metavar="HOST:PORT",
-        help="prove with the worker processes of a dask.distributed scheduler",
-    )
+    parser.set_defaults(scheduler=None)
+    if proof_workers():
+        parser.add_argument(
+            "--scheduler",
+            metavar="HOST:PORT",
+            help="prove with the worker processes of a dask.distributed scheduler",
+        )
     parser.add_argument(
         "--no-cache", action="store_true", help="prove all programs again, including those proved before"
     )

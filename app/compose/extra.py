@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-NAMES = ("sharing",)
+NAMES = ("sharing", "analyses", "scheduler")
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -36,12 +36,14 @@ class Extra:
     ``commands`` maps each subcommand to the subcommand that it follows in the help. Its module is
     ``app.extras.NAME.SUBCOMMAND_command``. ``threads`` maps each supervised thread to what an operator
     misses when the thread ends. ``needs`` names the features without which this feature is left out.
+    ``proof_workers`` is the dotted name of a class of workers on other computers, which prove programs.
     """
 
     needs: Sequence[str] = ()
     commands: Mapping[str, str] = {}
     pages: Sequence[PageEntry] = ()
     threads: Mapping[str, str] = {}
+    proof_workers = ""
 
     def machine_tables(self) -> Sequence[Driver]:
         """Return the tables that this feature adds to the machine file."""
@@ -83,6 +85,11 @@ def command_modules() -> Mapping[str, str]:
         for name, extra in extras().items()
         for command in extra.commands
     }
+
+
+def proof_workers() -> str:
+    """Return the dotted name of the class of workers on other computers; empty if no feature has one."""
+    return next((extra.proof_workers for extra in extras().values() if extra.proof_workers), "")
 
 
 def insert_after(items: Iterable[T], name_of: Callable[[T], str], added: Iterable[tuple[T, str]]) -> list[T]:

@@ -10,12 +10,9 @@ from typing import TYPE_CHECKING
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.desk import Desk
 from core.executor.recorder import Recorder
-from core.machine.machine_model import Machine
 from core.records.record import Channel, Record
 
 if TYPE_CHECKING:
-    from app.jog.drive_test_model import DriveTests
-    from app.scope.analyses import Analyses
     from app.scope.scope_curves import LiveSamples
     from app.scope.scope_model import Scope
 
@@ -49,12 +46,9 @@ class RecordedSamples:
 def give_scope(desk: Desk, live: LiveSamples | None = None) -> None:
     """The page SCOPE on ``live``, or on what the desk's recorder samples; with neither it has files alone.
 
-    Scope, analyses and drive tests are made when somebody first looks at them.
+    The scope is made when somebody first opens its page.
     """
     desk.attach_later("app.scope.scope_model.Scope", partial(_scope, desk, live))
-    desk.attach_later("app.scope.analyses.Analyses", partial(_analyses, desk))
-    if desk.lathe is not None:
-        desk.attach_later("app.jog.drive_test_model.DriveTests", partial(_drive_tests, desk, desk.lathe))
     desk.open_record = lambda name: _scope_of(desk).open_alarm(name)
 
 
@@ -74,16 +68,3 @@ def _scope_of(desk: Desk) -> Scope:
     scope = desk.attached(Scope)
     assert scope is not None
     return scope
-
-
-def _analyses(desk: Desk) -> Analyses:
-    from app.scope.analyses import Analyses
-
-    slides = {axis.name: axis for axis in desk.lathe.axes} if desk.lathe is not None else {}
-    return Analyses(_scope_of(desk), slides, desk.lathe.spindle if desk.lathe is not None else None)
-
-
-def _drive_tests(desk: Desk, machine: Machine) -> DriveTests:
-    from app.jog.drive_test_model import DriveTests
-
-    return DriveTests(desk, _scope_of(desk), machine)

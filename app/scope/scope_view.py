@@ -217,7 +217,7 @@ class ScopePage(ListPage):
             "F4": Key("CURVES", partial(open_, Side.CURVES)),
             "F5": Key("CURSORS", scope.cursors_key, barred=scope.is_live),
             "F6": Key("FIT", scope.fit),
-            "F8": Key("ANALYZE", self._analyse),
+            **({"F8": Key("ANALYZE", self._analyse)} if page_table.has_page(page_table.ANALYSES) else {}),
             "F9": Key("RECORDS", partial(open_, Side.FILES)),
         }
 

@@ -16,7 +16,7 @@ SEARCHTO = "SEARCHTO"
 TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS"
 ZERO, MILL_TOOLS, PRESETS = "ZERO OFFSETS", "TOOL TABLE", "PRESETS"
 PROGRAMS, SHAPE, PART = "PROGRAMS", "TOOL SHAPE", "PART"
-SCOPE, ANALYSES, DRIVE_TEST = "SCOPE", "ANALYSES", "DRIVE TEST"
+SCOPE, ANALYSES = "SCOPE", "ANALYSES"
 MEASURED, JOBS = "MEASURED PARTS", "JOBS"
 
 
@@ -30,7 +30,6 @@ _PATH = (
     "app.path.part_bar_view.PartBar",
     "app.path.part_section.metal_of",
 )
-_ANALYSIS = ("app.scope.analyses_chart_view.AnalysisChart",)
 
 
 _OWN_PAGES = (
@@ -156,15 +155,6 @@ _OWN_PAGES = (
         "JOBS",
         "next job, number of parts, setup requirements",
     ),
-    PageEntry(
-        ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses", later=_ANALYSIS
-    ),
-    PageEntry(
-        DRIVE_TEST,
-        "app.jog.drive_test_view.DriveTestPage",
-        "app.jog.drive_test_model.DriveTests",
-        later=_ANALYSIS,
-    ),
     PageEntry(SHAPE, "app.offsets.tool_shapes_view.ToolShapePage"),
     PageEntry(MENU, "app.screen.main_menu.MenuPage"),
     PageEntry(
@@ -216,6 +206,11 @@ _ENTRY_OF = {entry.name: entry for entry in PAGES}
 def pages_of(language: str) -> tuple[PageEntry, ...]:
     """The pages of a machine of this language, those of the menu first."""
     return tuple(entry for entry in PAGES if language in entry.languages)
+
+
+def has_page(name: str) -> bool:
+    """Return whether there is a page of this name: optional features may be absent."""
+    return name in _ENTRY_OF
 
 
 def load(entry: PageEntry) -> None:

@@ -76,7 +76,6 @@ COVERED = {
     ("prove", "--compare"): "tests/cli/test_compare.py",
     ("prove", "--report"): "tests/cli/test_report.py",
     ("prove", "--paper"): "tests/cli/test_report_pdf.py",
-    ("prove", "--scheduler"): "tests/cli/test_scheduler.py",
     ("prove", "--no-cache"): "test_no_cache_neither_keeps_nor_looks",
     ("expand", "--ideal"): "test_the_options_of_a_program_act",
     ("trace", "--dt"): "tests/cli/test_trace.py",

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from app.compose.desk_functions import furnish
 from app.compose.desk_quality import give_quality
+from app.compose.extra import extras
 from app.compose.journal import Journal
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
@@ -86,6 +87,8 @@ def desk_on(
     desk.own_starts.append(hand)
     give_scope(desk, live)
     give_quality(desk, lathe, keep if isinstance(keep, Journal) else None)
+    for extra in extras().values():
+        extra.attach(desk, lathe, keep if isinstance(keep, Journal) else None)
     built.append(desk)
     machine.hear = desk.hear
     return desk

@@ -51,7 +51,12 @@ KEYS = {
     Key.Key_Q: page_table.SCOPE,
     Key.Key_W: page_table.MEASURED,
     Key.Key_J: page_table.JOBS,
-    **{Key[f"Key_{page.key}"]: page.name for extra in extras().values() for page in extra.pages if page.key},
+    **{
+        getattr(Key, f"Key_{page.key}"): page.name
+        for extra in extras().values()
+        for page in extra.pages
+        if page.key
+    },
 }
 
 

@@ -15,7 +15,6 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.desk.desk import Desk
-from app.scope.analyses_view import AnalysesPage
 from app.scope.record_shelf import RecordShelf, ShelfError
 from app.scope.scope_model import Scope, Side
 from app.scope.scope_trigger import When
@@ -516,28 +515,6 @@ def test_the_desk_starts_without_pyqtgraph() -> None:
         "import app.scope.scope_view; sys.exit('pyqtgraph' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
-
-
-def test_the_analyses_stand_behind_f8(hands: Hands) -> None:
-    frozen(hands)
-    hands.key(Key.Key_F8)
-    page = hands.frame.page
-    assert isinstance(page, AnalysesPage)
-    hands.sees(lambda: page.drawing.chart is not None and bool(page.drawing.chart.drawing.curves))
-    found = page.analyses.found
-    assert found is not None
-    assert found.worst
-    before = page.analyses.magnified
-    hands.key(Key.Key_Z)
-    assert page.analyses.magnified > before
-    hands.key(Key.Key_F3)
-    hands.sees(lambda: shows(page.above.words, "scope.passes-by-angle"))
-    hands.sees(lambda: page.drawing.chart is not None and len(page.drawing.chart.plots) == 2)
-    hands.key(Key.Key_F4)
-    hands.sees(lambda: text("scope.no-arc") in page.above.words)
-    hands.sees(lambda: page.drawing.chart is not None and not page.drawing.chart.drawing.curves)
-    hands.key(Key.Key_F8)
-    assert hands.frame.page.NAME == page_table.SCOPE
 
 
 def test_f7_opens_what_was_recorded_before_an_alarm(hands: Hands, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Pictures of worn machines in the scope: ``python -m tests.screen.scope_pictures OUT``.
+"""Pictures of worn machines in the scope: ``python -m tests.extras.analyses.scope_pictures OUT``.
 
 A loose gib, a slipping belt and a bad encoder are put into the simulated lathe; what is pictured is what the
 pages make of it.
@@ -17,7 +17,7 @@ from typing import Any
 from PySide6.QtWidgets import QApplication
 
 from app.compose.journal import Journal
-from app.scope.analyses import Analyses
+from app.extras.analyses.analyses import Analyses
 from app.scope.scope_model import Scope
 from app.screen.look import Look, dress, load_fonts
 from app.screen.main_window import MainWindow
@@ -57,7 +57,9 @@ PICTURES: tuple[tuple[str, str, Wear, tuple[str, ...], str], ...] = (
 
 def main(argv: list[str] | None = None) -> int:
     """Write the pictures; the exit status."""
-    parser = argparse.ArgumentParser(prog="python -m tests.screen.scope_pictures", description=__doc__)
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.extras.analyses.scope_pictures", description=__doc__
+    )
     parser.add_argument("out", metavar="OUT", type=Path, help="folder for the PNG files")
     parser.add_argument("--language", default="en", choices=("en", "es"), help="of the screen; default en")
     args = parser.parse_args(argv)

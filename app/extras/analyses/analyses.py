@@ -21,24 +21,24 @@ from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.sheet import STEPS, Row, Sheet
 from app.desk.translation import tr
-from app.scope.axis_response import AxisResponse, last_move, response_drawing, response_sheet
-from app.scope.drawing import Drawing
-from app.scope.drive_test_figures import (
+from app.extras.analyses.axis_response import AxisResponse, last_move, response_drawing, response_sheet
+from app.extras.analyses.drawing import Drawing
+from app.extras.analyses.drive_test_figures import (
     DriveTestFigures,
     drive_test_figures,
     figures_sheet,
     path_in,
     shown_words,
 )
+from app.extras.analyses.spindle_response import SpindleResponse, last_run_up, spindle_drawing, spindle_sheet
 from app.scope.scope_model import Scope
-from app.scope.spindle_response import SpindleResponse, last_run_up, spindle_drawing, spindle_sheet
+from core.extras.analyses.ball_bar import BallBar, arcs_in, ball_bar
+from core.extras.analyses.path_error import PathError, WorstPlace, of_samples, worst_places
+from core.extras.analyses.thread_passes import Thread, fastest, find_thread
 from core.machine.machine_model import Axis, SpindleModel
 from core.message import Message
-from core.records.ball_bar import BallBar, arcs_in, ball_bar
-from core.records.path_error import PathError, WorstPlace, of_samples, worst_places
 from core.records.record import Record
 from core.records.record_errors import AnalysisError
-from core.records.thread_passes import Thread, fastest, find_thread
 
 FloatArray = npt.NDArray[np.float64]
 MOST_POINTS = 6000  # that are drawn of a path

@@ -16,12 +16,9 @@ from app.desk.formats import MM_PER_INCH
 from app.desk.prompt_line import STOP_HELD
 from app.desk.sheet import Row, Sheet, following
 from app.desk.translation import tr
-from app.jog.held_jog import Held, HeldJog
-from app.jog.jog_model import LEASE, why_no_jog
-from app.jog.jog_speeds import JogDirection, JogSpeeds, directions_of
-from app.scope.axis_response import Units, response_drawing
-from app.scope.drawing import Drawing
-from app.scope.drive_test_figures import (
+from app.extras.analyses.axis_response import Units, response_drawing
+from app.extras.analyses.drawing import Drawing
+from app.extras.analyses.drive_test_figures import (
     BEFORE,
     TESTED,
     DriveTestFigures,
@@ -31,6 +28,9 @@ from app.scope.drive_test_figures import (
     shown_words,
     words_of,
 )
+from app.jog.held_jog import Held, HeldJog
+from app.jog.jog_model import LEASE, why_no_jog
+from app.jog.jog_speeds import JogDirection, JogSpeeds, directions_of
 from app.scope.record_shelf import INSTANT
 from app.scope.scope_model import Scope
 from core.executor import drive_test_path

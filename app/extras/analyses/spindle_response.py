@@ -14,12 +14,12 @@ import numpy.typing as npt
 from app.desk import formats
 from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
-from app.scope.drawing import Drawing
+from app.extras.analyses.drawing import Drawing
+from core.extras.analyses.step_response import StepResponse, step_response
 from core.machine.machine_model import SpindleModel
 from core.message import Message
 from core.records.record import Record
 from core.records.record_errors import AnalysisError
-from core.records.step_response import StepResponse, step_response
 
 FloatArray = npt.NDArray[np.float64]
 _CHANGE = 1.0  # rpm by which a command differs from the one before

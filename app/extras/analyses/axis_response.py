@@ -16,13 +16,8 @@ import numpy.typing as npt
 from app.desk import formats
 from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
-from app.scope.drawing import Drawing
-from core.machine.machine_model import Axis
-from core.message import Message
-from core.records.derived_figures import velocity
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
-from core.records.step_response import (
+from app.extras.analyses.drawing import Drawing
+from core.extras.analyses.step_response import (
     StepResponse,
     at_other_speed,
     lag_of,
@@ -31,6 +26,11 @@ from core.records.step_response import (
     step_response,
     would_trip,
 )
+from core.machine.machine_model import Axis
+from core.message import Message
+from core.records.derived_figures import velocity
+from core.records.record import Record
+from core.records.record_errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
 _BEFORE, _BEHIND = 0.2, 1.0  # s of rest that belong to a move

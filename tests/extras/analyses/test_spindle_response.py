@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from app.compose.machine_files import load_machine
-from app.scope.analyses import Analyses, Kind, analysed, scaled
-from app.scope.spindle_response import SpindleResponse, last_run_up
+from app.extras.analyses.analyses import Analyses, Kind, analysed, scaled
+from app.extras.analyses.spindle_response import SpindleResponse, last_run_up
 from core.records.record import FloatArray, Record
 from core.records.record_errors import AnalysisError
 from tests.coded import raises_code

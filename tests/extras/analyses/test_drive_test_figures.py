@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from app.compose.machine_files import load_machine
-from app.scope.analyses import Kind, analysed
-from app.scope.drive_test_figures import (
+from app.extras.analyses.analyses import Kind, analysed
+from app.extras.analyses.drive_test_figures import (
     TESTED,
     Part,
     drive_test_figures,
@@ -20,9 +20,9 @@ from app.scope.drive_test_figures import (
     words_of,
 )
 from core.executor.drive_test_path import DriveTestPath, Limits, Shape
+from core.extras.analyses.step_response import bandwidth, narrowest_window, sine_response, speed_of_window
 from core.records.record import Record
 from core.records.record_errors import AnalysisError
-from core.records.step_response import bandwidth, narrowest_window, sine_response, speed_of_window
 from tests.coded import raises_code
 from tests.scope.played_record import RATE, record_of, seconds
 from tests.texts import text

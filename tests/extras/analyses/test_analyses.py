@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from app.scope.analyses import Analyses, Kind, analysed, last_run, scaled
+from app.extras.analyses.analyses import Analyses, Kind, analysed, last_run, scaled
 from tests.scope.played_record import record_of, seconds
 from tests.texts import text
 

@@ -11,11 +11,11 @@ from PySide6.QtWidgets import QWidget
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.translation import tr
-from app.jog.drive_test_model import DriveTests
+from app.extras.analyses.analyses_view import Above
+from app.extras.analyses.drawing_room_view import DrawingRoom
+from app.extras.analyses.drive_test_model import DriveTests
 from app.jog.held_keys_view import HeldKeysPage
 from app.jog.jog_cross_view import JogCross
-from app.scope.analyses_view import Above
-from app.scope.drawing_room_view import DrawingRoom
 from app.screen import page_table
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions
@@ -50,7 +50,7 @@ class DriveTestPad(JogCross):
 class DriveTestPage(HeldKeysPage):
     """What is held is renewed from ``refresh``: a screen that stands still moves nothing for longer."""
 
-    NAME = page_table.DRIVE_TEST
+    NAME = "DRIVE TEST"
     LABELS = ("MENU", "SHAPE", "SIZE", "SPEED", "VALUES", "", "ALARMS", "ANALYZE", "JOG", "")
 
     model: DriveTests

@@ -17,13 +17,9 @@ import numpy.typing as npt
 from app.desk import formats
 from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
-from app.scope.axis_response import SHARES, Moved, Units, moved, step_rows, stretches, window_rows
+from app.extras.analyses.axis_response import SHARES, Moved, Units, moved, step_rows, stretches, window_rows
 from core.executor.drive_test_path import PAUSE, DriveTestPath, Shape
-from core.machine.machine_model import Axis
-from core.message import Message
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
-from core.records.step_response import (
+from core.extras.analyses.step_response import (
     RampResponse,
     SineResponse,
     StepResponse,
@@ -32,6 +28,10 @@ from core.records.step_response import (
     sine_response,
     step_response,
 )
+from core.machine.machine_model import Axis
+from core.message import Message
+from core.records.record import Record
+from core.records.record_errors import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
 TESTED = "drive test"  # of a record's words

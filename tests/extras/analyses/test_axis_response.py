@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from app.compose.machine_files import load_machine
-from app.scope.analyses import Kind, analysed
-from app.scope.axis_response import last_move, response_sheet
+from app.extras.analyses.analyses import Kind, analysed
+from app.extras.analyses.axis_response import last_move, response_sheet
 from core.records.record_errors import AnalysisError
 from tests.coded import raises_code
 from tests.scope.played_record import record_of, seconds

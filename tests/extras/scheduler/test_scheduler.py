@@ -18,7 +18,9 @@ from app.cli import proof_work
 from app.cli.proof_work import OtherVersionError, proof_of
 from core.language.source import Source
 from tests.benchmarks.bench_folder import program
-from tests.cli.conftest import Turndesk
+from tests.cli.conftest import Turndesk, home, offsets, turndesk
+
+__all__ = ["home", "offsets", "turndesk"]
 
 with_distributed = pytest.mark.skipif(
     importlib.util.find_spec("distributed") is None,
@@ -89,7 +91,7 @@ def test_two_workers_prove_a_folder_and_one_is_killed(
 def test_nothing_answers(
     turndesk: Turndesk, parts: Path, offsets: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.cli.proof_scheduler._ANSWER", 0.2)
+    monkeypatch.setattr("app.extras.scheduler.proof_scheduler._ANSWER", 0.2)
     told = turndesk("prove", parts, "--offsets", offsets, "--scheduler", "127.0.0.1:1")
     assert (told.status, told.code) == (2, "no-scheduler")
 

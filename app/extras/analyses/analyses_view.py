@@ -13,8 +13,8 @@ from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.sheet import Key
 from app.desk.translation import tr
-from app.scope.analyses import Analyses, Kind
-from app.scope.drawing_room_view import DrawingRoom
+from app.extras.analyses.analyses import Analyses, Kind
+from app.extras.analyses.drawing_room_view import DrawingRoom
 from app.screen import page_table
 from app.screen.look import Painter
 from app.screen.page_base import Host, KeyActions
@@ -71,7 +71,7 @@ class AnalysesPage(ListPage):
         }
 
     def _test(self) -> None:
-        self.host.go(page_table.DRIVE_TEST)
+        self.host.go("DRIVE TEST")
 
     def _back(self) -> None:
         self.host.go(page_table.SCOPE)

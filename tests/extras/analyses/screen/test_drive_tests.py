@@ -8,7 +8,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QDialog
 from pytestqt.qtbot import QtBot
 
-from app.jog.drive_test_view import DriveTestPage
+from app.extras.analyses.drive_test_view import DriveTestPage
 from app.screen import page_table
 from core.executor.snapshot import State
 from tests.screen.hands import LIMIT
@@ -25,7 +25,7 @@ def page(jog: JogBench) -> DriveTestPage:
 
 
 def on_page(jog: JogBench) -> DriveTestPage:
-    assert jog.frame.go(page_table.DRIVE_TEST)
+    assert jog.frame.go("DRIVE TEST")
     jog.run(0.1)
     page = jog.frame.page
     assert isinstance(page, DriveTestPage)

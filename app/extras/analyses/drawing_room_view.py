@@ -10,19 +10,19 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.formats import MM_PER_INCH
 from app.desk.latest import Latest
-from app.scope.analyses import scaled
-from app.scope.drawing import Drawing
+from app.extras.analyses.analyses import scaled
+from app.extras.analyses.drawing import Drawing
 from app.screen.look import Look
 
 if TYPE_CHECKING:
-    from app.scope.analyses_chart_view import AnalysisChart
+    from app.extras.analyses.analyses_chart_view import AnalysisChart
 
 _PLOTS = 2  # of a drawing at most
 
 
 def _chart_class() -> type[AnalysisChart]:
     """On a worker: pyqtgraph takes a third of a second."""
-    from app.scope.analyses_chart_view import AnalysisChart
+    from app.extras.analyses.analyses_chart_view import AnalysisChart
 
     return AnalysisChart
 

@@ -8,7 +8,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from app.scope.drawing import Drawing
+from app.extras.analyses.drawing import Drawing
 from app.screen.chart import Chart, Plot, curve_colour, line_pen, set_curve
 from app.screen.look import Look
 
