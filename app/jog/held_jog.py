@@ -52,6 +52,7 @@ class HeldJog:
     mode: Mode = field(default_factory=Mode)
     along: Callable[[str], Direction | None] = field(default=lambda _axis: None)  # of a tilted plane (3D-ROT)
     held: Held | None = None
+    rapid_armed: bool = False  # by the key RAPID on the screen: for the next jog only
     button: str = ""  # the input that the last press came from, where a button beside the slides did
     down: set[str] = field(default_factory=set)  # keys and fingers that were pressed and not let go yet
     _ended: str = ""  # why the last one ended, to be said once more when the slide rests
@@ -59,6 +60,7 @@ class HeldJog:
     def press(self, source: str, axis: str, sign: int, *, rapid: bool, button: str = "") -> None:
         """A key or finger goes down on a direction, or a ``button`` beside the slides: its input's name."""
         others, self._ended = self.down - {source}, ""
+        self.rapid_armed = False
         self.down.add(source)
         if others or self.held is not None:
             self.stop(tr("TWO KEYS PRESSED, JOG STOPPED. RELEASE BOTH, THEN PRESS ONE"))

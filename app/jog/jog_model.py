@@ -40,10 +40,7 @@ LETTERS = {
 
 @dataclass(slots=True)
 class JogModel:
-    """Hold, steps and speeds, homing, tool setting. The page draws it and hands the keys on.
-
-    ``armed``: the next finger that holds goes rapid.
-    """
+    """Hold, steps and speeds, homing, tool setting. The page draws it and hands the keys on."""
 
     desk: Desk
     machine: Machine
@@ -58,7 +55,6 @@ class JogModel:
     pendant: PendantJog = field(init=False)
     tilt: TiltedJog = field(init=False)
     directions: tuple[JogDirection, ...] = ()
-    armed: bool = False
 
     def __post_init__(self) -> None:
         desk = self.desk
@@ -169,7 +165,7 @@ class JogModel:
     def choose_step(self, step: int) -> None:
         """A finger on one of the steps."""
         self._another_step()
-        self.speeds.step, self.armed = step, False
+        self.speeds.step, self.hold.rapid_armed = step, False
 
     def next_speed(self) -> None:
         """F3: another speed ends what is held."""
@@ -179,17 +175,16 @@ class JogModel:
     def choose_speed(self, speed: int) -> None:
         """A finger on one of the speeds."""
         self._another_speed()
-        self.speeds.speed, self.armed = speed, False
+        self.speeds.speed, self.hold.rapid_armed = speed, False
 
     def arm(self) -> None:
-        """A finger on RAPID: the next hold goes rapid, and only that one."""
+        """Select rapid for the next jog, if a finger starts it on this pad; any other jog cancels it."""
         self._another_speed()
-        self.armed = not self.armed
+        self.hold.rapid_armed = not self.hold.rapid_armed
 
     def finger(self, source: str, axis: str, sign: int) -> None:
         """A finger or the mouse goes down on a direction."""
-        rapid, self.armed = self.armed, False
-        self.hold.press(source, axis, sign, rapid=rapid)
+        self.hold.press(source, axis, sign, rapid=self.hold.rapid_armed)
 
     def _another_step(self) -> None:
         self.hold.let_go(tr("JOG STOPPED: STEP CHANGED"))
@@ -332,7 +327,7 @@ class JogModel:
         """Hands off: the keyboard, the window or the page is gone."""
         self.hold.let_go(tr("JOG STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.wheel.drop(tr("HANDWHEEL IS OFF: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
-        self.armed = False
+        self.hold.rapid_armed = False
         self._stop_step()
 
     def _stop_step(self) -> None:
@@ -347,7 +342,7 @@ class JogModel:
         self.wheel.drop("")
         self._stop_step()
         self.home.give_up()
-        self.armed = False
+        self.hold.rapid_armed = False
         self.tilt.off()
         self.setter.drop()
         self.skim.drop()

@@ -159,7 +159,7 @@ class JogPad(JogCross):
         self._known = model.home.known(snapshot)
         held = model.hold.held
         self._shown = (
-            (model.speeds.step, model.speeds.speed, model.armed, model.hold.mode),
+            (model.speeds.step, model.speeds.speed, model.hold.rapid_armed, model.hold.mode),
             (held.axis, held.velocity) if held else None,
             (model.wheel.choice, model.home.asking, snapshot.state),
             (model.setter.armed, snapshot.touching, model.tilt.on),
@@ -208,7 +208,7 @@ class JogPad(JogCross):
             said = model.speeds.step_word(turning, mode, step) if turning else step_words(mode)[step]
         speeds = turn_words() if self._turning else speed_words(mode)
         words = (f"F2 {said}", f"F3 {speeds[model.speeds.speed]}", tr("RAPID"))
-        chosen = 2 if model.armed else -1
+        chosen = 2 if model.hold.rapid_armed else -1
         tiles = Tiles(("", ""), words, [model.next_step, model.next_speed, model.arm], chosen, warn=True)
         self._tiles(painter, row, tiles)
 
@@ -234,12 +234,12 @@ class JogPad(JogCross):
         if self._turning:
             unit, rapid = tr("°/MIN"), f"{tr('RAPID')} {self._turning_rapid}"
             words = (*turn_words(), rapid)
-        chosen = len(words) - 1 if model.armed else model.speeds.speed
+        chosen = len(words) - 1 if model.hold.rapid_armed else model.speeds.speed
         presses: list[Callable[[], None]] = [
             *(partial(model.choose_speed, speed) for speed in range(len(words) - 1)),
             model.arm,
         ]
-        self._tiles(painter, row, Tiles((unit, "F3"), words, presses, chosen, warn=model.armed))
+        self._tiles(painter, row, Tiles((unit, "F3"), words, presses, chosen, warn=model.hold.rapid_armed))
 
     @property
     def _turning(self) -> str:
@@ -324,7 +324,7 @@ class JogPad(JogCross):
     def _speed(self, mode: Mode) -> str:
         model = self._model
         held = model.hold.held
-        rapid = held.rapid if held else model.armed
+        rapid = held.rapid if held else model.hold.rapid_armed
         if self._turning:
             return self._turning_rapid if rapid else turn_words()[model.speeds.speed]
         return rapid_word(model.machine, mode) if rapid else speed_words(mode)[model.speeds.speed]

@@ -313,3 +313,28 @@ def test_a_machine_without_c_has_no_targets_and_no_keys_for_it(no_c: JogBench) -
     no_c.up(Key.Key_PageUp)
     assert no_c.shot.demand == (0.0, 0.0, 0.0)
     assert no_c.shot.state is State.IDLE
+
+
+def test_rapid_that_a_finger_selected_ends_with_a_jog_by_key(jog: JogBench) -> None:
+    model = jog.page.model
+    model.arm()
+    jog.down(Key.Key_Left)
+    assert model.hold.held is not None
+    assert not model.hold.held.rapid
+    jog.up(Key.Key_Left)
+    jog.run(0.5)
+    assert not model.hold.rapid_armed
+    model.finger("finger", "Z", -1)
+    assert model.hold.held is not None
+    assert not model.hold.held.rapid
+    model.let_go()
+
+
+def test_rapid_that_a_finger_selected_holds_for_its_next_jog_alone(jog: JogBench) -> None:
+    model = jog.page.model
+    model.arm()
+    model.finger("finger", "Z", -1)
+    assert model.hold.held is not None
+    assert model.hold.held.rapid
+    assert not model.hold.rapid_armed
+    model.let_go()

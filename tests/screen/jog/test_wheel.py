@@ -217,6 +217,6 @@ def test_in_a_low_pad_one_row_goes_through_steps_and_speeds(wheeled: JogBench) -
     step, speed = speeds.step, speeds.speed
     for control in pad.controls[:3]:
         QTest.mouseClick(pad, Qt.MouseButton.LeftButton, pos=control.box.center().toPoint())
-    assert wheeled.page.model.armed
+    assert wheeled.page.model.hold.rapid_armed
     assert speeds.step != step
     assert speeds.speed != speed
