@@ -265,9 +265,16 @@ class _Stand:
 
 
 def _is_uncut(block: Block, broken: Interruption) -> bool:
-    """Return whether the cut of a block was not begun, or was interrupted before its end."""
+    """Return whether the cut of a block was not begun, or was interrupted before its end.
+
+    A closed block, such as a full circle, counts as uncut: its place does not tell how far it was cut.
+    """
     if block.n != broken.block or block.travel is None:
         return block.n > broken.done
+    travel = block.travel
+    closed = all(abs(end - start) <= NEAR for start, end in zip(travel.start, travel.end, strict=True))
+    if closed and travel.length > NEAR:
+        return True
     offs = [end - at for end, at in zip(block.travel.end, broken.at, strict=False)]
     turned = [(each + 180.0) % 360.0 - 180.0 for each in offs[_SLIDES:]]  # whole turns make no difference
     return block.n > broken.done or any(abs(each) > NEAR for each in (*offs[:_SLIDES], *turned))

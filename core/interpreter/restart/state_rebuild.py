@@ -17,7 +17,7 @@ from core.interpreter.job_setup import Setup
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter, PassToLine
 from core.interpreter.omniturn.omniturn_program import Program, read_program
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.restart.cut_record import CutRecord, record_cuts
+from core.interpreter.restart.cut_record import FACE, SIDE, CutRecord, record_cuts
 from core.interpreter.restart.loop_passes import Visits, visits_of
 from core.interpreter.restart.restart_lines import RestartLines
 from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
@@ -316,7 +316,8 @@ def _complete_blocks(cut: CutRecord, broken: Interruption) -> int:
     """Return the last block whose cut is complete.
 
     The interrupted block is complete only if the tool is at its end; otherwise, a restart behind that block
-    would leave the rest of its cut in the part.
+    would leave the rest of its cut in the part. A milled block that is closed, such as a full circle,
+    never counts as complete: its place does not tell how far it was cut.
     """
     row = cut.row_behind(broken.block)
     off = cut.offsets.get(broken.tool)
@@ -325,7 +326,10 @@ def _complete_blocks(cut: CutRecord, broken: Interruption) -> int:
     x, z = broken.at[0] - off[0], broken.at[1] - off[1]
     feeds = bool(int(cut.how[row]) & 1)
     at_end = hypot(x - float(cut.x[row]), z - float(cut.z[row])) <= NEAR
-    return broken.block - 1 if feeds and not at_end else broken.done
+    begin = cut.ends(cut.first_row(row))
+    closed = hypot(begin[0] - float(cut.x[row]), begin[1] - float(cut.z[row])) <= NEAR
+    milled = bool(int(cut.how[row]) & (SIDE | FACE))
+    return broken.block - 1 if feeds and ((closed and milled) or not at_end) else broken.done
 
 
 _HOW = {

@@ -49,6 +49,20 @@ PLATE = """\
 23 PLANE RESET TURN MB MAX FMAX
 24 END PGM PLATE MM
 """
+RING = """\
+0 BEGIN PGM RING MM
+1 TOOL CALL 5 Z S3000 F400
+2 L X+0 Y+0 Z+50 R0 FMAX M3
+3 L X+20 Y+0 FMAX
+4 L Z+2 FMAX
+5 L Z-3 F200
+6 CC X+0 Y+0
+7 C X+20 Y+0 DR+ F400
+8 L Z+50 FMAX
+9 L X+40 FMAX
+10 M30
+11 END PGM RING MM
+"""
 TURNED = """\
 G18 G71 G90 G54 DIAMON
 G94 S800 M3
@@ -262,6 +276,15 @@ def test_a_line_in_metal_that_was_never_cut_is_refused_and_one_above_it_warned_o
     half_cut = search.find(7, 2, broken._replace(at=STANDS))
     assert isinstance(half_cut, RestartPoint)
     assert half_cut.left_out == (9, 10)
+
+
+def test_a_full_circle_that_was_interrupted_counts_as_uncut_wherever_it_stopped() -> None:
+    of = mill(RING)
+    circle = next(each for each in whole(of) if each.line == 8)
+    assert circle.travel is not None
+    found = searched(of, 10, broken=Interruption(circle.n, 5, circle.travel.end, circle.n))
+    assert isinstance(found, NoRestart)
+    assert found.before == 8
 
 
 def test_on_a_lathe_what_was_left_out_is_no_matter_of_heights() -> None:
