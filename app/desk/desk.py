@@ -358,7 +358,9 @@ class Desk:
             return prompt_line.alarm_of(snapshot, self.release_words, field_open=self.field_open()) or page
         words = self.start_words, self.release_words
         standing = prompt_line.prompt(snapshot, loaded, *words, field_open=self.field_open())
-        if refusal := self.first_move_refusal(snapshot):
+        if snapshot.state is State.DISABLED and self.changes.barred:
+            standing = self.changes.barred
+        elif refusal := self.first_move_refusal(snapshot):
             standing = Message("{no_start}: {refusal}", no_start=prompt_line.NO_START, refusal=refusal)
         elif self.first_move is not None and self.first_move.checking and snapshot.state is State.IDLE:
             standing = tr("CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART")

@@ -47,6 +47,10 @@ class Room:
         return self.desk.snapshot().state
 
     @property
+    def prompt(self) -> str:
+        return self.desk.prompt(self.desk.snapshot(), self.desk.session.now)
+
+    @property
     def section(self) -> MachineFileAcceptance:
         functions = attached(self.desk, SpecialFunctions).functions
         (found,) = [each for each in functions if isinstance(each, MachineFileAcceptance)]
@@ -106,6 +110,7 @@ def test_a_changed_file_keeps_the_drives_off_until_it_is_accepted(
         made.run()
         assert made.state is State.DISABLED
         assert shows(made.desk.notice, "desk.machine-file-changed", count=2)
+        assert shows(made.prompt, "desk.machine-file-changed", count=2)
         accept = made.section.keys()["F2"].action
         accept()
         accept()
@@ -114,6 +119,7 @@ def test_a_changed_file_keeps_the_drives_off_until_it_is_accepted(
         made.desk.answers._since = float("-inf")
         made.desk.answer()
         assert made.cells() == []
+        assert not shows(made.prompt, "desk.machine-file-changed", count=2)
         made.desk.enable()
         made.run()
         assert made.state is State.IDLE
