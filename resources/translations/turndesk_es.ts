@@ -27450,33 +27450,13 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>R{number} is not a valid parameter</source>
-      <translation>R{number} no es un parámetro válido</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Split the block; the maximum is {longest_line} characters.</source>
       <translation>Divida el bloque; el máximo es de {longest_line} caracteres.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>Use a parameter from R0 to R{most_r}.</source>
-      <translation>Use un parámetro de R0 a R{most_r}.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>Use a value of {word} between {low} and {high}.</source>
-      <translation>Use un valor de {word} entre {low} y {high}.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Use {allowed}.</source>
       <translation>Use {allowed}.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>Write a whole number of up to four digits.</source>
-      <translation>Escriba un número entero de hasta cuatro cifras.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -27615,21 +27595,6 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>{word} is not a valid code</source>
-      <translation>{word} no es un código válido</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>{word} is not a valid tool or edge number</source>
-      <translation>{word} no es un número válido de herramienta o de filo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>{word} is out of range</source>
-      <translation>{word} está fuera de rango</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>{word} needs a program name</source>
       <translation>{word} necesita un nombre de programa</translation>
     </message>
@@ -27677,6 +27642,41 @@
       <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>this lathe has no W axis; write incremental values with IC( ), as in Z=IC(1)</source>
       <translation>este torno no tiene eje W; escriba los valores incrementales con IC( ), como en Z=IC(1)</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>R{number} is not a valid parameter</source>
+      <translation>R{number} no es un parámetro válido</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>Use a parameter from R0 to R{most_r}.</source>
+      <translation>Use un parámetro de R0 a R{most_r}.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>Use a value of {word} between {low} and {high}.</source>
+      <translation>Use un valor de {word} entre {low} y {high}.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>Write a whole number of up to four digits.</source>
+      <translation>Escriba un número entero de hasta cuatro cifras.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>{word} is not a valid code</source>
+      <translation>{word} no es un código válido</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>{word} is not a valid tool or edge number</source>
+      <translation>{word} no es un número válido de herramienta o de filo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>{word} is out of range</source>
+      <translation>{word} está fuera de rango</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />

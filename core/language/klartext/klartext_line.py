@@ -28,6 +28,7 @@ from core.language.klartext.klartext_nodes import (
 )
 from core.language.klartext.line_cursor import Cursor
 from core.language.klartext.refused_codes import CONTOUR_FORMULA, STRING, Refused
+from core.language.line_reading import comment_start
 from core.message import Message
 
 # --- L moves of plain numbers: nearly all lines of a long program, read by two patterns
@@ -124,16 +125,6 @@ def read_line(number: int, text: str) -> KlartextLine:
 
 CONTINUED = "~"
 """Ends a line whose block goes on in the next one; it stands behind the comment where there is one."""
-
-
-def comment_start(text: str) -> int:
-    """Index of the semicolon that begins the comment, else the length: in a quoted name it begins none."""
-    quoted = False
-    for at, sign in enumerate(text if ";" in text else ""):
-        quoted ^= sign == '"'
-        if sign == ";" and not quoted:
-            return at
-    return len(text)
 
 
 def _node(cursor: Cursor) -> Node | None:
