@@ -27475,6 +27475,11 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>Write {name} without an equals sign.</source>
+      <translation>Escriba {name} sin el signo igual.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write {name}={form}(…).</source>
       <translation>Escriba {name}={form}(…).</translation>
     </message>
@@ -27552,6 +27557,11 @@
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>{form} needs parentheses</source>
       <translation>{form} necesita paréntesis</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>{name} does not accept a value</source>
+      <translation>{name} no acepta un valor</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />

@@ -323,6 +323,8 @@ class _Scanner:
         if name in known.NAMES_OUTSIDE or _OF_AN_AXIS.match(self._text, match.end()):
             why = known.WHY_OUTSIDE.get(name, "this control does not support axis-specific words")
             return self._outside(at, match.end(), name, why)
+        if name in known.WITHOUT_EQUALS:
+            return self._without_equals(name, at)
         try:
             reader = FormulaReader(GRAMMAR, self._text, self._text.index("[", at))
             place = reader.index()
@@ -369,6 +371,8 @@ class _Scanner:
             word = Word("T", None, at + 1, f'T="{quoted[1]}"', string=quoted[1].strip())
             self.words.append(word)
             return quoted.end()
+        if name in known.WITHOUT_EQUALS:
+            return self._without_equals(name, at)
         assigned = name in known.ASSIGNED or name == "M"
         if is_r is None and not assigned and (len(name) == 1 or name in known.NAMES_OUTSIDE):
             why = known.LETTERS_OUTSIDE.get(name) or known.WHY_OUTSIDE.get(name)
@@ -381,6 +385,11 @@ class _Scanner:
         if found is not None and found[1] in _FORMS:
             return self._target(name, at, found)
         return self._value(name, at, end)
+
+    def _without_equals(self, name: str, at: int) -> int:
+        """Report a value that is assigned to a word without one."""
+        text = Message("{name} does not accept a value", name=name)
+        return self._skip(at, text, Message("Write {name} without an equals sign.", name=name))
 
     def _value(self, name: str, at: int, end: int) -> int:
         try:

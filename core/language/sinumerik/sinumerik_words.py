@@ -113,6 +113,9 @@ FRAMES = frozenset({"TRANS", "ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR
 KEYS = frozenset(NAMED_GROUPS)
 """Words without a value."""
 
+WITHOUT_EQUALS = KEYS | OF_A_SPINDLE
+"""Words that no equals sign can follow."""
+
 TARGETS = frozenset({"AC", "IC", "DC", "ACP", "ACN"})
 FORMS: dict[str, frozenset[str]] = {
     **dict.fromkeys((*AXES, "SPOS", "SPOSA"), TARGETS),
