@@ -128,7 +128,7 @@ class FormulaReader(LineReader):
     """Reads one formula from ``upper`` at ``at``; ``at`` then stands behind it."""
 
     def __init__(self, grammar: Grammar, upper: str, at: int) -> None:
-        super().__init__(upper, at)
+        self.upper, self.at = upper, at
         self._grammar = grammar
         self._depth = 0
 

@@ -24,7 +24,8 @@ class LineReader:
 
     def blanks(self) -> None:
         """Move to the next character that is not a blank."""
-        self.at = after_blanks(self.upper, self.at)
+        if self.upper[self.at : self.at + 1].isspace():
+            self.at = after_blanks(self.upper, self.at)
 
     def take(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return what the pattern matches here, and move behind it; None without a match."""

@@ -9,7 +9,7 @@ from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import INPUT_VALUE, fault, syntax, unsupported
 from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, Value
 from core.language.klartext.refused_codes import STRING
-from core.language.line_reading import LineReader
+from core.language.line_reading import LineReader, after_blanks
 from core.language.typography import ascii_upper, typed
 from core.message import Message
 
@@ -57,9 +57,9 @@ class Cursor(LineReader):
 
     def take(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return what the pattern matches here, and move to what follows; None without a match."""
-        match = super().take(pattern)
+        match = pattern.match(self.upper, self.at)
         if match is not None:
-            self.blanks()
+            self.at = after_blanks(self.upper, match.end())
         return match
 
     def keyword(self, *choices: str) -> str | None:
@@ -228,7 +228,8 @@ def axis_words(cursor: Cursor, letters: str, *, incremental: bool = True) -> tup
         if match is None:
             return tuple(found)
         sign, axis = match.groups()
-        demand_once(cursor, column, any(word.axis == axis for word in found), f"{sign}{axis}")
+        if any(word.axis == axis for word in found):
+            raise doubled(cursor, column, f"{sign}{axis}")
         found.append(AxisWord(axis, cursor.value(f"{sign}{axis}"), sign == "I", column))
 
 
@@ -250,5 +251,10 @@ def words_once(cursor: Cursor, pattern: re.Pattern[str]) -> dict[str, AxisWord]:
 def demand_once(cursor: Cursor, column: int, known: object, what: str) -> None:
     """Raise ProgramError for a word that the block already has."""
     if known:
-        text = Message("{word} is programmed twice in the block.", word=what)
-        raise syntax(cursor.line, column, text, "Remove one of the two.")
+        raise doubled(cursor, column, what)
+
+
+def doubled(cursor: Cursor, column: int, what: str) -> ProgramError:
+    """Return the error for a word that is programmed twice."""
+    text = Message("{word} is programmed twice in the block.", word=what)
+    return syntax(cursor.line, column, text, "Remove one of the two.")

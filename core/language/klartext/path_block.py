@@ -8,7 +8,7 @@ from typing import NamedTuple
 from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import syntax
 from core.language.klartext.klartext_nodes import AxisWord, Codes, Corner, Feed, MCode, Move, Pole
-from core.language.klartext.line_cursor import Cursor, axis_words, demand_once, feed, retract
+from core.language.klartext.line_cursor import Cursor, axis_words, demand_once, doubled, feed, retract
 from core.message import Message
 
 MOST_CODES = 4
@@ -74,7 +74,8 @@ def move(cursor: Cursor, form: str, column: int) -> Move:
         elif radius := cursor.take(_COMPENSATION):
             kind = radius.group(1) or radius.group(2) or ""
             _demand_paraxial(cursor, at, kind, axes)
-            demand_once(cursor, at, compensation, f"R{kind}")
+            if compensation:
+                raise doubled(cursor, at, f"R{kind}")
             compensation = kind
         elif direction := cursor.take(TURN):
             demand_once(cursor, at, turn, "DR")
@@ -222,7 +223,8 @@ def _plain_feed(cursor: Cursor) -> Feed | None:
 
 def _joined(cursor: Cursor, axes: tuple[AxisWord, ...], words: tuple[AxisWord, ...]) -> tuple[AxisWord, ...]:
     for word in words:
-        demand_once(cursor, word.column, any(word.axis == known.axis for known in axes), word.axis)
+        if any(word.axis == known.axis for known in axes):
+            raise doubled(cursor, word.column, word.axis)
     return axes + words
 
 

@@ -68,7 +68,7 @@ def beyond(word: Word) -> tuple[str, str] | None:
         ), "Write a whole number of up to four digits."
     if word.name in {"T", "D"} and not word.value.is_integer():
         return Message("{word} is not a valid tool or edge number", word=word.text), "Enter a whole number."
-    low, high = known.REACH["R" if variable(word.name) else word.name]
+    low, high = known.REACH.get(word.name, known.REACH["R"])  # a variable is like an R parameter
     if low <= word.value <= high:
         return None
     return Message("{word} is out of range", word=word.text), (
