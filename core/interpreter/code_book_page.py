@@ -19,7 +19,7 @@ This page is the reference of all {name} codes. For an introduction, see
 [programming/{dialect}.md](programming/{dialect}.md).
 
 {contents}
-It is written from `core/language/{dialect}/{dialect}_book.py`, which the tests use. Do not edit it.
+It is written from `core/language/code_books/{dialect}`, which the tests use. Do not edit it.
 Each code has an example. "Rejected" gives an example that is rejected, with a part of the message.
 
 """

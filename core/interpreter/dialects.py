@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 from core.interpreter.interpretation import Interpretation, RefusedPass
@@ -117,19 +117,16 @@ NAMES = {Dialect.OMNITURN: "OmniTurn", Dialect.SINUMERIK: "SINUMERIK", Dialect.K
 """What sentences call them."""
 
 
+@cache
 def code_book(dialect: Dialect) -> CodeBook:
-    """All codes of a language, with examples."""
-    if dialect is Dialect.KLARTEXT:
-        from core.language.klartext.klartext_book import BOOK as KLARTEXT
+    """All codes of a language, with examples; read from its files when it is first needed."""
+    if dialect is Dialect.OMNITURN:
+        from core.interpreter.omniturn.omniturn_book import book
 
-        return KLARTEXT
-    if dialect is Dialect.SINUMERIK:
-        from core.language.sinumerik.sinumerik_book import BOOK as SINUMERIK
+        return book()
+    from core.language.code_book_files import BOOKS, read_book
 
-        return SINUMERIK
-    from core.interpreter.omniturn.omniturn_book import book
-
-    return book()
+    return read_book(BOOKS / dialect)
 
 
 # A language is loaded when a program of it is: the others cost nothing.

@@ -14,6 +14,8 @@ from functools import cached_property
 _CLOSE = ("", ".", ":", "=", "(", ",")  # such words stand close behind their head
 _NUMBER = re.compile(r"0*([0-9]+)")
 _WORD_BEGIN = re.compile(r"(?<![A-Z_$])[A-Z_$]|(?<=[0-9 ])[A-Z]")
+_NUMBERED = re.compile(r"(.*[A-Z ])0*([0-9]+)")  # a head that ends in a whole number
+_NUMBER_BEHIND = r"\s*0*([0-9]+)"
 _LETTERS_BEHIND = r"(?![A-Z_])"
 _DIGITS_BEHIND = r"(?![0-9])"
 _NO_LETTER_BEFORE = r"(?<![A-Z_$])"
@@ -95,9 +97,10 @@ class CodeBook:
     def _found_in(self, code: str) -> Iterator[tuple[int, int, Entry]]:
         """Begin, end and entry of each code of a line; of two that begin together the longer one."""
         longest: dict[int, tuple[int, Entry]] = {}
-        for entry, pattern in self._patterns:
+        for pattern, by_number in self._patterns:
             for match in pattern.finditer(code):
-                if match.end() > longest.get(match.start(), (0, entry))[0]:
+                entry = by_number.get(match[1])
+                if entry and match.end() > longest.get(match.start(), (0, entry))[0]:
                     longest[match.start()] = match.end(), entry
         reached = 0
         for start in sorted(longest):
@@ -107,8 +110,14 @@ class CodeBook:
                 reached = end
 
     @cached_property
-    def _patterns(self) -> tuple[tuple[Entry, re.Pattern[str]], ...]:
-        return tuple((entry, _pattern(entry.head)) for entry in self.entries)
+    def _patterns(self) -> tuple[tuple[re.Pattern[str], dict[str, Entry]], ...]:
+        """Return a pattern for all heads that differ only in their number, and their entries by number."""
+        families: dict[tuple[str, bool], dict[str, Entry]] = {}
+        for entry in self.entries:
+            numbered = _NUMBERED.fullmatch(entry.head)
+            stem, number = numbered.groups() if numbered else (entry.head, "")
+            families.setdefault((stem, bool(numbered)), {})[number] = entry
+        return tuple((_pattern(*family), by_number) for family, by_number in families.items())
 
     def completions(self, line: str, column: int) -> tuple[int, tuple[Entry, ...]]:
         """What the words before the cursor may become, by the order of the book, and where they begin.
@@ -152,12 +161,9 @@ def _plain(written: str) -> str:
     return _NUMBER.sub(r"\1", " ".join(written.upper().split()))
 
 
-def _pattern(head: str) -> re.Pattern[str]:
-    """Matches the beginning of a code wherever it stands, its number with and without a leading zero."""
-    parts = []
-    for word in head.split():
-        made = re.sub(r"(?<=[A-Z])0*([0-9]+)$", r"\\s*0*\1", re.escape(word))
-        parts.append(re.sub(r"^0*([0-9]+)$", r"0*\1", made))
-    behind = _DIGITS_BEHIND if head[-1].isdigit() else _LETTERS_BEHIND if head[-1].isalpha() else ""
-    before = _NO_LETTER_BEFORE if head[0].isalpha() else ""
-    return re.compile(before + r"\s*".join(parts) + behind)
+def _pattern(stem: str, numbered: bool) -> re.Pattern[str]:
+    """Return what matches a code at any place in a line; its group is the number, empty without one."""
+    words = r"\s*".join(map(re.escape, stem.split()))
+    last = _DIGITS_BEHIND if stem[-1].isdigit() else _LETTERS_BEHIND if stem[-1].isalpha() else ""
+    before = _NO_LETTER_BEFORE if stem[0].isalpha() else ""
+    return re.compile(before + words + (_NUMBER_BEHIND if numbered else f"(){last}"))

@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from core.language.line_reading import LineReader
+
 
 class Number(NamedTuple):
     """A number as written."""
@@ -37,13 +39,18 @@ class Operation(NamedTuple):
 Formula = Number | Parameter | Operation
 INDICES = "indices"
 """The operation that stands for several indices of one element; it has no value of its own."""
-TRIGONOMETRY = {
+FUNCTIONS = {
     "SIN": "sine",
     "COS": "cosine",
     "TAN": "tangent",
     "ASIN": "arc sine",
     "ACOS": "arc cosine",
-}  # what every language calls them
+    "SQRT": "square root",
+    "ABS": "absolute",
+    "LN": "natural logarithm",
+    "EXP": "exponential",
+}
+"""Functions that have the same name in every language."""
 
 
 class FormulaError(Exception):
@@ -117,13 +124,12 @@ _CLOSEST = 1000
 _DEEPEST = 40
 
 
-class FormulaReader:
-    """Reads one formula from ``text`` (in capitals) at ``at``; ``at`` then stands behind it."""
+class FormulaReader(LineReader):
+    """Reads one formula from ``upper`` at ``at``; ``at`` then stands behind it."""
 
-    def __init__(self, grammar: Grammar, text: str, at: int) -> None:
+    def __init__(self, grammar: Grammar, upper: str, at: int) -> None:
+        self.upper, self.at = upper, at
         self._grammar = grammar
-        self._text = text
-        self.at = at
         self._depth = 0
 
     def formula(self) -> Formula:
@@ -149,11 +155,11 @@ class FormulaReader:
         return made
 
     def _operator(self) -> str | None:
-        self._blanks()
-        return self._grammar.operator(self._text, self.at)
+        self.blanks()
+        return self._grammar.operator(self.upper, self.at)
 
     def _operand(self) -> Formula:
-        self._blanks()
+        self.blanks()
         at = self.at
         if self._takes("-"):
             return Operation("negative", (self._expression(self._grammar.negation),), at + 1)
@@ -166,10 +172,10 @@ class FormulaReader:
     def _word(self, at: int) -> Formula | None:
         """A function with what it is asked of, or a constant."""
         grammar = self._grammar
-        if word := grammar.function(self._text, at):
+        if word := grammar.function(self.upper, at):
             self.at += len(word)
             return Operation(grammar.functions[word], self._asked_of(), at + 1)
-        if word := grammar.constant(self._text, at):
+        if word := grammar.constant(self.upper, at):
             self.at += len(word)
             return Number(grammar.constants[word])
         return None
@@ -177,13 +183,13 @@ class FormulaReader:
     def _figure(self, at: int) -> Formula:
         """A parameter or a number."""
         grammar = self._grammar
-        if match := grammar.parameter.match(self._text, at):
+        if match := grammar.parameter.match(self.upper, at):
             self.at = match.end()
             letters, number = match.group(1), match.group(2)
-            if not number and grammar.indexed and self._text.startswith("[", self.at):
+            if not number and grammar.indexed and self.upper.startswith("[", self.at):
                 return Parameter(letters, self.index(), at + 1)
             return Parameter(letters, int(number) if number else None, at + 1)
-        if match := grammar.number.match(self._text, at):
+        if match := grammar.number.match(self.upper, at):
             self.at = match.end()
             return Number(float(match.group().replace(",", ".").replace("EX", "E")))
         raise FormulaError(at, "A number or a parameter is missing in the formula", "Complete the formula.")
@@ -208,7 +214,7 @@ class FormulaReader:
 
     def _asked_of(self) -> tuple[Formula, ...]:
         """What a function is asked of: one operand, or a list in brackets where the language has that."""
-        self._blanks()
+        self.blanks()
         if not self._grammar.separator or not self._takes("("):
             return (self._expression(_CLOSEST),)
         found = [self._expression(0)]
@@ -222,12 +228,8 @@ class FormulaReader:
             raise FormulaError(self.at, "A closing parenthesis is missing", "Write ) after the formula.")
 
     def _takes(self, sign: str) -> bool:
-        self._blanks()
-        if not self._text.startswith(sign, self.at):
+        self.blanks()
+        if not self.upper.startswith(sign, self.at):
             return False
         self.at += len(sign)
         return True
-
-    def _blanks(self) -> None:
-        while self.at < len(self._text) and self._text[self.at].isspace():
-            self.at += 1

@@ -22,7 +22,7 @@ from core.interpreter.omniturn.code_table import CHAPTERS
 from core.language.klartext import klartext_faults
 from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
 from core.language.sinumerik.outside_words import OUTSIDE
-from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, WORDS
+from core.language.sinumerik.word_table import FUNCTIONS, IDLE
 from core.language.source import Dialect
 from core.shapes.shape_fields import Field, choice_text
 from core.shapes.shape_table import HELPERS, SHAPES, SINUMERIK_HELPERS, SINUMERIK_SHAPES
@@ -93,12 +93,6 @@ APART = frozenset(
         *("screen/pdf_pages.py", "shapes/sinumerik_lines.py", "shapes/bar_lines.py"),
         *("shapes/live_lines.py", "shapes/sinumerik_live_lines.py"),
         *(
-            "klartext_book.py",
-            "klartext_cycle_book.py",
-            "klartext_refused_book.py",
-            "sinumerik_book.py",
-            "calls_book.py",
-            "cycles_book.py",
             "sinumerik/cycle_names.py",
             "word_table.py",
             "outside_words.py",
@@ -315,10 +309,9 @@ def _of_books() -> list[str]:
     chapters = {title for book in books for title, _ in book.chapters}
     shown = chapters | {entry.what for book in books for entry in book.entries}
     shown |= {what for book in books for entry in book.entries for _, what in book.words_of(entry)}
-    reasons = {entry.idle for entry in (*FUNCTIONS.values(), *WORDS.values(), *M_FUNCTIONS.values())}
     refused = {*OUTSIDE.values(), *CYCLES_OUTSIDE.values()}
     refused |= {name for key, name in vars(klartext_faults).items() if key.isupper()}
-    return sorted(shown | refused | {entry.group for entry in FUNCTIONS.values()} | reasons - {""})
+    return sorted(shown | refused | {*FUNCTIONS.values(), *IDLE.values()})
 
 
 def _of_shapes() -> list[str]:

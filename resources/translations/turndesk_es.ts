@@ -20,8 +20,38 @@
     </message>
     <message>
       <location filename="" />
+      <source>+1 = climb milling, -1 = up-cut milling</source>
+      <translation>+1 = fresado a favor, -1 = fresado en contra</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>0 = chip breaking, 1 = retract out of the hole</source>
+      <translation>0 = rotura de viruta, 1 = retirada fuera del agujero</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>0 = roughing and finishing, 1 = roughing only, 2 = finishing only</source>
+      <translation>0 = desbaste y acabado, 1 = sólo desbaste, 2 = sólo acabado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>0 = with encoder, 1 = without encoder</source>
+      <translation>0 = con encoder, 1 = sin encoder</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>1 WARNING</source>
       <translation>1 AVISO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>1 and 3 = external, 2 and 4 = internal; 3 and 4 = constant chip cross-section</source>
+      <translation>1 y 3 = exterior, 2 y 4 = interior; 3 y 4 = sección de viruta constante</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>1 to 12: roughing, finishing or both; longitudinal or facing; external or internal</source>
+      <translation>1 a 12: desbaste, acabado o ambos; longitudinal o frontal; exterior o interior</translation>
     </message>
     <message>
       <location filename="" />
@@ -112,6 +142,11 @@
       <location filename="" />
       <source>Activates a preset.</source>
       <translation>Activa un preset.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Activates a row of the preset table, as cycle 247 does.</source>
+      <translation>Activa una fila de la tabla de puntos de referencia, como el ciclo 247.</translation>
     </message>
     <message>
       <location filename="" />
@@ -325,6 +360,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Back boring: with the spindle at angle Q336, the tool enters the hole offset from the center by Q251, then bores from below.</source>
+      <translation>Mandrinado inverso: con el husillo en el ángulo Q336, la herramienta entra en el agujero desplazada Q251 del centro y después mandrina desde abajo.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Block buffer</source>
       <translation>Búfer de bloques</translation>
     </message>
@@ -467,6 +507,11 @@
       <location filename="" />
       <source>Clamps the collet.</source>
       <translation>Cierra la pinza.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Clears the pocket of cycle 14 level by level, around its islands; plunges vertically if Q19 is 0.</source>
+      <translation>Vacía la cajera del ciclo 14 nivel a nivel, alrededor de sus islas; baja en vertical si Q19 es 0.</translation>
     </message>
     <message>
       <location filename="" />
@@ -670,6 +715,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Defines parameters for all later cycles, which use them through PREDEF.</source>
+      <translation>Define parámetros para todos los ciclos siguientes, que los usan con PREDEF.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Defines the blank for the original control's simulation; accepted. This word has no effect because TurnDesk proves the program with the stock that is set by --stock or on the PART page, or that is assumed from the moves.</source>
       <translation>Define la pieza en bruto para la simulación del control original; se acepta. Esta palabra no tiene efecto porque TurnDesk comprueba el programa con el material en bruto fijado con --stock o en la página PIEZA, o supuesto a partir de los movimientos.</translation>
     </message>
@@ -707,6 +757,11 @@
       <location filename="" />
       <source>Drills a hole along Z with G17: rapid to SDIS before RFP, feed to DP (or to a depth of DPR), then rapid to RTP.</source>
       <translation>Taladra un agujero a lo largo de Z con G17: rápido hasta SDIS antes de RFP, avance hasta DP (o hasta una profundidad DPR) y rápido a RTP.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Drills at the points where the tool with the number Q13 plunges in cycle 22.</source>
+      <translation>Taladra en los puntos donde la herramienta con el número Q13 baja en el ciclo 22.</translation>
     </message>
     <message>
       <location filename="" />
@@ -757,6 +812,11 @@
       <location filename="" />
       <source>Dwell, with F in seconds or S in revolutions.</source>
       <translation>Espera, con F en segundos o S en vueltas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Dwells for the given number of seconds.</source>
+      <translation>Espera los segundos indicados.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1060,6 +1120,26 @@
     </message>
     <message>
       <location filename="" />
+      <source>Finishes the wall of a circular pocket.</source>
+      <translation>Acaba la pared de una cajera circular.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Finishes the wall of a rectangular pocket.</source>
+      <translation>Acaba la pared de una cajera rectangular.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Finishes the wall of a rectangular stud.</source>
+      <translation>Acaba la pared de una isla rectangular.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Finishes the wall of a round stud.</source>
+      <translation>Acaba la pared de una isla circular.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>First line of a subprogram, with its parameters: VAR returns the value to the caller, and = sets the value that is used if the caller does not pass a value. VAR REAL LIST[3] accepts an array of that size, and VAR REAL LIST[] an array of any size. SAVE restores the G functions and the frame at the end.</source>
       <translation>Primera línea de un subprograma, con sus parámetros: VAR devuelve el valor al programa que llama, y = fija el valor que se usa si el programa que llama no pasa ninguno. VAR REAL LIST[3] admite un array de ese tamaño, y VAR REAL LIST[] un array de cualquier tamaño. SAVE restablece al final las funciones G y el frame.</translation>
     </message>
@@ -1245,6 +1325,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>In a block that moves one axis (X+10 R+ F300; L is optional), R+ lengthens the move by the tool radius and R- shortens it.</source>
+      <translation>En un bloque que mueve un solo eje (X+10 R+ F300; L es opcional), R+ alarga el movimiento en el radio de la herramienta y R- lo acorta.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Inches.</source>
       <translation>Pulgadas.</translation>
     </message>
@@ -1377,6 +1462,16 @@
       <location filename="" />
       <source>Length and radius of a tool that is defined in the program.</source>
       <translation>Longitud y radio de una herramienta definida en el programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Lists the pockets (P) and islands (I), as cycle 14 does. Each of them is LBL n or a program name in quotes.</source>
+      <translation>Enumera las cajeras (P) y las islas (I), como el ciclo 14. Cada una es LBL n o un nombre de programa entre comillas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Lists the subprograms that define pockets (clockwise with RR) and islands (clockwise with RL).</source>
+      <translation>Indica los subprogramas que definen cajeras (sentido horario con RR) e islas (sentido horario con RL).</translation>
     </message>
     <message>
       <location filename="" />
@@ -1555,6 +1650,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Mills a circular slot.</source>
+      <translation>Fresa una ranura circular.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Mills a hole on a helical path.</source>
       <translation>Fresa un agujero por una trayectoria helicoidal.</translation>
     </message>
@@ -1585,8 +1685,28 @@
     </message>
     <message>
       <location filename="" />
+      <source>Mills a slot with back-and-forth moves.</source>
+      <translation>Fresa una ranura con movimientos de vaivén.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Mills a slot; walls and floor are finished last.</source>
       <translation>Fresa una ranura; paredes y fondo se acaban al final.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills along an open or closed contour, on the side set by RL or RR.</source>
+      <translation>Fresa a lo largo de un contorno abierto o cerrado, por el lado que fija RL o RR.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills along the walls of the pocket and its islands, leaving the allowance Q14.</source>
+      <translation>Fresa a lo largo de las paredes de la cajera y de sus islas, dejando la sobremedida Q14.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills circular slots on a pitch circle.</source>
+      <translation>Fresa ranuras circulares en un círculo de referencia.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1597,6 +1717,11 @@
       <location filename="" />
       <source>Mills the face: program X and Y across the face; the machine moves X and C.</source>
       <translation>Fresa la cara: programe X e Y sobre la cara; la máquina mueve X y C.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Mills the pocket floor at the pocket depth.</source>
+      <translation>Fresa el fondo de la cajera a la profundidad de la cajera.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1642,6 +1767,11 @@
       <location filename="" />
       <source>Moves axes to home at rapid; program each of these axes with the value 0: X1=0 Z1=0.</source>
       <translation>Mueve ejes a la referencia en rápido; programe cada uno de esos ejes con el valor 0: X1=0 Z1=0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Moves in a straight line; NX, NY and NZ are the surface normal. Compensation along the normal is not available: a block with DL, DR, DR2 or TX TY TZ is rejected.</source>
+      <translation>Mueve en línea recta; NX, NY y NZ son la normal a la superficie. No hay compensación a lo largo de la normal: se rechaza un bloque con DL, DR, DR2 o TX TY TZ.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2270,6 +2400,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>S(VC=…) in TOOL CALL sets the spindle speed from a cutting speed in m/min and the tool radius.</source>
+      <translation>S(VC=…) en TOOL CALL fija la velocidad del husillo según una velocidad de corte en m/min y el radio de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>SAVE is only allowed after PROC</source>
       <translation>SAVE sólo puede ir después de PROC</translation>
     </message>
@@ -2510,6 +2645,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Sets depth, overlap, allowances, heights and milling direction for cycles 21 to 24.</source>
+      <translation>Fija profundidad, solapamiento, sobremedidas, alturas y sentido de fresado para los ciclos 21 a 24.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Sets the circle center and the pole for the following blocks.</source>
       <translation>Fija el centro de círculo y el polo para los bloques siguientes.</translation>
     </message>
@@ -2592,6 +2732,11 @@
       <location filename="" />
       <source>Sine of an angle in degrees.</source>
       <translation>Seno de un ángulo en grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Specifies the material. TurnDesk ignores this block and reports it.</source>
+      <translation>Indica el material. TurnDesk no usa este bloque y lo avisa.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3505,6 +3650,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>X coordinate of the start point, as a diameter</source>
+      <translation>coordenada X del punto inicial, como diámetro</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>X is a diameter in absolute positions and a radius in incremental distances.</source>
       <translation>X es un diámetro en posiciones absolutas y un radio en distancias incrementales.</translation>
     </message>
@@ -3550,8 +3700,28 @@
     </message>
     <message>
       <location filename="" />
+      <source>Z coordinate of the end point</source>
+      <translation>coordenada Z del punto final</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Z coordinate of the intermediate point for CIP.</source>
       <translation>Coordenada Z del punto intermedio de CIP.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Z coordinate of the second point</source>
+      <translation>coordenada Z del segundo punto</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Z coordinate of the start point</source>
+      <translation>coordenada Z del punto inicial</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Z coordinate of the third point</source>
+      <translation>coordenada Z del tercer punto</translation>
     </message>
     <message>
       <location filename="" />
@@ -3600,6 +3770,41 @@
     </message>
     <message>
       <location filename="" />
+      <source>allowance for the last pass</source>
+      <translation>sobremedida para la última pasada</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>amount by which each infeed is reduced</source>
+      <translation>cantidad en que se reduce cada penetración</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>angle between holes</source>
+      <translation>ángulo entre agujeros</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>angle of rotation</source>
+      <translation>ángulo de giro</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>angle of the first hole</source>
+      <translation>ángulo del primer agujero</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>angle of the row of holes</source>
+      <translation>ángulo de la fila de agujeros</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>angle of the surface to be grooved</source>
+      <translation>ángulo de la superficie a ranurar</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>approach</source>
       <translation>entrada</translation>
     </message>
@@ -3632,6 +3837,16 @@
       <location filename="" />
       <source>block buffer</source>
       <translation>búfer de bloques</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>center in the first axis</source>
+      <translation>centro en el primer eje</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>center in the second axis</source>
+      <translation>centro en el segundo eje</translation>
     </message>
     <message>
       <location filename="" />
@@ -3685,6 +3900,21 @@
     </message>
     <message>
       <location filename="" />
+      <source>contour, defined by a subprogram or by two labels</source>
+      <translation>contorno, definido por un subprograma o por dos etiquetas</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>corner radius</source>
+      <translation>radio de la esquina</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>counterboring feed</source>
+      <translation>avance de avellanado</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>departure</source>
       <translation>salida</translation>
     </message>
@@ -3695,8 +3925,83 @@
     </message>
     <message>
       <location filename="" />
+      <source>depth between chip breaks</source>
+      <translation>profundidad entre roturas de viruta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>depth of the starting point below the surface</source>
+      <translation>profundidad del punto inicial bajo la superficie</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>depth of the thread</source>
+      <translation>profundidad de la rosca</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>depth per pass</source>
+      <translation>profundidad por pasada</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>depth per plunge</source>
+      <translation>profundidad por penetración</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>depth reduction per peck</source>
+      <translation>reducción de profundidad por picada</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>depth, measured from the surface</source>
+      <translation>profundidad, medida desde la superficie</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>diameter at the end</source>
+      <translation>diámetro al final</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>diameter at the second point</source>
+      <translation>diámetro en el segundo punto</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>diameter at the start</source>
+      <translation>diámetro al inicio</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>diameter at the third point</source>
+      <translation>diámetro en el tercer punto</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>diameter of the thread</source>
+      <translation>diámetro de la rosca</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>diameter or radius</source>
       <translation>diámetro o radio</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>direction in which the cutting edge retracts from the wall</source>
+      <translation>dirección en que el filo se retira de la pared</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>distance between holes</source>
+      <translation>distancia entre agujeros</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>distance from the reference point to the first hole</source>
+      <translation>distancia del punto de referencia al primer agujero</translation>
     </message>
     <message>
       <location filename="" />
@@ -3710,6 +4015,26 @@
     </message>
     <message>
       <location filename="" />
+      <source>dwell at the bottom, in seconds</source>
+      <translation>espera en el fondo, en segundos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>dwell at the top, in seconds</source>
+      <translation>espera arriba, en segundos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>dwell for chip breaking, in seconds</source>
+      <translation>espera para romper la viruta, en segundos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>dwell outside the hole, in seconds</source>
+      <translation>espera fuera del agujero, en segundos</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>dynamics</source>
       <translation>dinámica</translation>
     </message>
@@ -3717,6 +4042,11 @@
       <location filename="" />
       <source>end</source>
       <translation>fin</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>end angle</source>
+      <translation>ángulo final</translation>
     </message>
     <message>
       <location filename="" />
@@ -3750,6 +4080,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>feed distance between chip breaks</source>
+      <translation>recorrido entre roturas de viruta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>feed factor for the first peck</source>
+      <translation>factor de avance de la primera picada</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>feed on arcs</source>
       <translation>avance en arcos</translation>
     </message>
@@ -3757,6 +4097,21 @@
       <location filename="" />
       <source>feed profile</source>
       <translation>perfil de avance</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>feed rate for plunging into relief cuts of the contour</source>
+      <translation>avance de penetración en los destalonados del contorno</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>feed rate into the hole</source>
+      <translation>avance de entrada en el agujero</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>feed rate out of the hole</source>
+      <translation>avance de salida del agujero</translation>
     </message>
     <message>
       <location filename="" />
@@ -3775,8 +4130,93 @@
     </message>
     <message>
       <location filename="" />
+      <source>final depth, absolute</source>
+      <translation>profundidad final, absoluta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>final depth, measured from the surface</source>
+      <translation>profundidad final, medida desde la superficie</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>finished diameter</source>
+      <translation>diámetro acabado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>finishing allowance along the contour</source>
+      <translation>sobremedida de acabado a lo largo del contorno</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>finishing allowance at the bottom</source>
+      <translation>sobremedida de acabado en el fondo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>finishing allowance in X</source>
+      <translation>sobremedida de acabado en X</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>finishing allowance in Z</source>
+      <translation>sobremedida de acabado en Z</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>finishing allowance on the flanks</source>
+      <translation>sobremedida de acabado en los flancos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>finishing allowance on the sides</source>
+      <translation>sobremedida de acabado en los lados</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>finishing feed</source>
+      <translation>avance de acabado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>finishing infeed</source>
+      <translation>profundización de acabado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>first depth, absolute</source>
+      <translation>primera profundidad, absoluta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>first depth, measured from the surface</source>
+      <translation>primera profundidad, medida desde la superficie</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>flank angle on the side opposite the start point</source>
+      <translation>ángulo de flanco en el lado opuesto al punto inicial</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>flank angle on the start-point side</source>
+      <translation>ángulo de flanco en el lado del punto inicial</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>force</source>
       <translation>forzado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>groove position: longitudinal or face, external or internal, starting side</source>
+      <translation>posición de la ranura: longitudinal o frontal, exterior o interior, lado inicial</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>groove width at the bottom</source>
+      <translation>ancho de la ranura en el fondo</translation>
     </message>
     <message>
       <location filename="" />
@@ -3802,6 +4242,21 @@
       <location filename="" />
       <source>infeed angle in degrees: 0 … 30</source>
       <translation>ángulo de penetración en grados: 0 … 30</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>infeed angle; negative for alternating flanks</source>
+      <translation>ángulo de penetración; negativo para flancos alternos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>inner corner (radius or chamfer) on the side opposite the start point</source>
+      <translation>esquina interior (radio o chaflán) en el lado opuesto al punto inicial</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>inner corner (radius or chamfer) on the start-point side</source>
+      <translation>esquina interior (radio o chaflán) en el lado del punto inicial</translation>
     </message>
     <message>
       <location filename="" />
@@ -3835,6 +4290,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>length of the first side</source>
+      <translation>longitud del primer lado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>length of the second side</source>
+      <translation>longitud del segundo lado</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>machine</source>
       <translation>máquina</translation>
     </message>
@@ -3852,6 +4317,16 @@
       <location filename="" />
       <source>measuring in the program is not supported; touch off the tool on the Jog page</source>
       <translation>no se admite medir en el programa; toque la herramienta en la página Manual</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>milling feed</source>
+      <translation>avance de fresado</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>minimum infeed</source>
+      <translation>profundización mínima</translation>
     </message>
     <message>
       <location filename="" />
@@ -3880,6 +4355,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>nominal diameter</source>
+      <translation>diámetro nominal</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>non-modal functions</source>
       <translation>funciones no modales</translation>
     </message>
@@ -3887,6 +4367,26 @@
       <location filename="" />
       <source>nose compensation</source>
       <translation>compensación de punta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>number of chip breaks before a retract</source>
+      <translation>número de roturas de viruta antes de una retirada</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>number of positions</source>
+      <translation>número de posiciones</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>number of roughing passes</source>
+      <translation>número de pasadas de desbaste</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>number of spring passes (passes without infeed)</source>
+      <translation>número de pasadas de repaso (pasadas sin penetración)</translation>
     </message>
     <message>
       <location filename="" />
@@ -3925,6 +4425,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>outer corner (radius or chamfer) on the side opposite the start point</source>
+      <translation>esquina exterior (radio o chaflán) en el lado opuesto al punto inicial</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>outer corner (radius or chamfer) on the start-point side</source>
+      <translation>esquina exterior (radio o chaflán) en el lado del punto inicial</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>outside corners</source>
       <translation>esquinas exteriores</translation>
     </message>
@@ -3945,6 +4455,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>path overlap, as a multiple of the tool radius</source>
+      <translation>solape de pasadas, como múltiplo del radio de la herramienta</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>pecks</source>
       <translation>picadas</translation>
     </message>
@@ -3955,13 +4470,58 @@
     </message>
     <message>
       <location filename="" />
+      <source>pitch circle diameter</source>
+      <translation>diámetro del círculo de agujeros</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>pitch, specified as a metric thread size</source>
+      <translation>paso, indicado como tamaño de rosca métrica</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>pitch; negative for a left-hand thread</source>
+      <translation>paso; negativo para rosca a izquierdas</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>plane</source>
       <translation>plano</translation>
     </message>
     <message>
       <location filename="" />
+      <source>plunging feed</source>
+      <translation>avance de penetración</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>plunging: 0 = vertical, 1 = helical, 2 = reciprocating</source>
+      <translation>entrada: 0 = vertical, 1 = helicoidal, 2 = en vaivén</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>pockets and slots are not supported; write their path as moves of X, Z and C</source>
       <translation>no se admiten cajeras ni ranuras; escriba su trayectoria como movimientos de X, Z y C</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>position of the programmed point relative to the shape</source>
+      <translation>posición del punto programado respecto a la figura</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>position of the undercut</source>
+      <translation>posición de la entalla</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>pre-positioning feed</source>
+      <translation>avance de posicionamiento previo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>preset number</source>
+      <translation>número del preset</translation>
     </message>
     <message>
       <location filename="" />
@@ -3985,6 +4545,26 @@
     </message>
     <message>
       <location filename="" />
+      <source>radius of the circle</source>
+      <translation>radio del círculo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>reference plane (the surface), absolute</source>
+      <translation>plano de referencia (la superficie), absoluto</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>reference point in the first axis</source>
+      <translation>punto de referencia en el primer eje</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>reference point in the second axis</source>
+      <translation>punto de referencia en el segundo eje</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>refused</source>
       <translation>rechazado</translation>
     </message>
@@ -4002,6 +4582,41 @@
       <location filename="" />
       <source>restart</source>
       <translation>rearranque</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>retract distance for chip breaking</source>
+      <translation>retroceso para romper la viruta</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>retract feed</source>
+      <translation>avance de retirada</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>retract in X at the bottom</source>
+      <translation>retirada en X en el fondo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>retract in Y at the bottom</source>
+      <translation>retirada en Y en el fondo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>retract in Z at the bottom</source>
+      <translation>retirada en Z en el fondo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>retract plane, absolute</source>
+      <translation>plano de retirada, absoluto</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>roughing feed</source>
+      <translation>avance de desbaste</translation>
     </message>
     <message>
       <location filename="" />
@@ -4025,8 +4640,23 @@
     </message>
     <message>
       <location filename="" />
+      <source>safety clearance in front of the surface</source>
+      <translation>distancia de seguridad delante de la superficie</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>second set-up clearance</source>
+      <translation>segunda distancia de seguridad</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>seconds</source>
       <translation>segundos</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>set-up clearance</source>
+      <translation>distancia de seguridad</translation>
     </message>
     <message>
       <location filename="" />
@@ -4045,8 +4675,38 @@
     </message>
     <message>
       <location filename="" />
+      <source>spacing in the first axis</source>
+      <translation>separación en el primer eje</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>spacing in the second axis</source>
+      <translation>separación en el segundo eje</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>speed limits</source>
       <translation>topes de velocidad</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>spindle angle at the first thread start</source>
+      <translation>ángulo del husillo en la primera entrada de la rosca</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>spindle direction for the retract: 0 (reversed), 3 or 4</source>
+      <translation>sentido de giro del husillo en la retirada: 0 (inverso), 3 o 4</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>spindle direction or stop after the cycle: 3, 4 or 5</source>
+      <translation>giro o paro del husillo después del ciclo: 3, 4 o 5</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>spindle direction: 3 or 4</source>
+      <translation>sentido de giro del husillo: 3 o 4</translation>
     </message>
     <message>
       <location filename="" />
@@ -4055,8 +4715,43 @@
     </message>
     <message>
       <location filename="" />
+      <source>spindle orientation angle</source>
+      <translation>ángulo de orientación del husillo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>spindle rpm when feeding into the hole</source>
+      <translation>rpm del husillo al entrar en el agujero</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>spindle rpm when feeding out of the hole</source>
+      <translation>rpm del husillo al salir del agujero</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>spindle stop angle</source>
+      <translation>ángulo de paro del husillo</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>start</source>
       <translation>arranque</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>start point in the first axis</source>
+      <translation>punto inicial en el primer eje</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>start point in the second axis</source>
+      <translation>punto inicial en el segundo eje</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>starting angle</source>
+      <translation>ángulo inicial</translation>
     </message>
     <message>
       <location filename="" />
@@ -4075,6 +4770,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>stepping angle between positions</source>
+      <translation>paso angular entre posiciones</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>stock</source>
       <translation>material en bruto</translation>
     </message>
@@ -4082,6 +4782,11 @@
       <location filename="" />
       <source>stop</source>
       <translation>paro</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>surface coordinate</source>
+      <translation>coordenada de la superficie</translation>
     </message>
     <message>
       <location filename="" />
@@ -4365,6 +5070,26 @@
     </message>
     <message>
       <location filename="" />
+      <source>thread lead in the first section</source>
+      <translation>paso de rosca en el primer tramo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>thread lead in the second section</source>
+      <translation>paso de rosca en el segundo tramo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>thread lead in the third section</source>
+      <translation>paso de rosca en el tercer tramo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>thread pitch; negative for a left-hand thread</source>
+      <translation>paso de la rosca; negativo para rosca a izquierdas</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>tool radius compensation</source>
       <translation>compensación de radio de herramienta</translation>
     </message>
@@ -4390,8 +5115,18 @@
     </message>
     <message>
       <location filename="" />
+      <source>traverse between positions: 0 = at set-up clearance, 1 = at second set-up clearance</source>
+      <translation>desplazamiento entre posiciones: 0 = a la distancia de seguridad, 1 = a la segunda distancia de seguridad</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>uncounted</source>
       <translation>sin contar</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>undercut form, specified by a letter</source>
+      <translation>forma de la entalla, indicada con una letra</translation>
     </message>
     <message>
       <location filename="" />
@@ -4417,6 +5152,11 @@
       <location filename="" />
       <source>working area</source>
       <translation>zona de trabajo</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>workpiece blank diameter</source>
+      <translation>diámetro de la pieza en bruto</translation>
     </message>
     <message>
       <location filename="" />
@@ -24464,346 +25204,6 @@
       <translation>{total} con un parámetro de texto (QS)</translation>
     </message>
     <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>+1 = climb milling, -1 = up-cut milling</source>
-      <translation>+1 = fresado a favor, -1 = fresado en contra</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>0 = roughing and finishing, 1 = roughing only, 2 = finishing only</source>
-      <translation>0 = desbaste y acabado, 1 = sólo desbaste, 2 = sólo acabado</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>amount by which each infeed is reduced</source>
-      <translation>cantidad en que se reduce cada penetración</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>angle of rotation</source>
-      <translation>ángulo de giro</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>center in the first axis</source>
-      <translation>centro en el primer eje</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>center in the second axis</source>
-      <translation>centro en el segundo eje</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>corner radius</source>
-      <translation>radio de la esquina</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>counterboring feed</source>
-      <translation>avance de avellanado</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>depth between chip breaks</source>
-      <translation>profundidad entre roturas de viruta</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>depth of the starting point below the surface</source>
-      <translation>profundidad del punto inicial bajo la superficie</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>depth, measured from the surface</source>
-      <translation>profundidad, medida desde la superficie</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>direction in which the cutting edge retracts from the wall</source>
-      <translation>dirección en que el filo se retira de la pared</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>dwell at the bottom, in seconds</source>
-      <translation>espera en el fondo, en segundos</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>dwell at the top, in seconds</source>
-      <translation>espera arriba, en segundos</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>end angle</source>
-      <translation>ángulo final</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>finished diameter</source>
-      <translation>diámetro acabado</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>finishing allowance at the bottom</source>
-      <translation>sobremedida de acabado en el fondo</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>finishing allowance on the sides</source>
-      <translation>sobremedida de acabado en los lados</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>finishing feed</source>
-      <translation>avance de acabado</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>finishing infeed</source>
-      <translation>profundización de acabado</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>length of the first side</source>
-      <translation>longitud del primer lado</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>length of the second side</source>
-      <translation>longitud del segundo lado</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>milling feed</source>
-      <translation>avance de fresado</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>minimum infeed</source>
-      <translation>profundización mínima</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>nominal diameter</source>
-      <translation>diámetro nominal</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>number of chip breaks before a retract</source>
-      <translation>número de roturas de viruta antes de una retirada</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>number of positions</source>
-      <translation>número de posiciones</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>path overlap, as a multiple of the tool radius</source>
-      <translation>solape de pasadas, como múltiplo del radio de la herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>pitch circle diameter</source>
-      <translation>diámetro del círculo de agujeros</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>plunging feed</source>
-      <translation>avance de penetración</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>plunging: 0 = vertical, 1 = helical, 2 = reciprocating</source>
-      <translation>entrada: 0 = vertical, 1 = helicoidal, 2 = en vaivén</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>position of the programmed point relative to the shape</source>
-      <translation>posición del punto programado respecto a la figura</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>pre-positioning feed</source>
-      <translation>avance de posicionamiento previo</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>preset number</source>
-      <translation>número del preset</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>retract distance for chip breaking</source>
-      <translation>retroceso para romper la viruta</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>retract feed</source>
-      <translation>avance de retirada</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>second set-up clearance</source>
-      <translation>segunda distancia de seguridad</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>set-up clearance</source>
-      <translation>distancia de seguridad</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>spacing in the first axis</source>
-      <translation>separación en el primer eje</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>spacing in the second axis</source>
-      <translation>separación en el segundo eje</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>spindle orientation angle</source>
-      <translation>ángulo de orientación del husillo</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>start point in the first axis</source>
-      <translation>punto inicial en el primer eje</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>start point in the second axis</source>
-      <translation>punto inicial en el segundo eje</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>starting angle</source>
-      <translation>ángulo inicial</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>stepping angle between positions</source>
-      <translation>paso angular entre posiciones</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>surface coordinate</source>
-      <translation>coordenada de la superficie</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>thread pitch; negative for a left-hand thread</source>
-      <translation>paso de la rosca; negativo para rosca a izquierdas</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>traverse between positions: 0 = at set-up clearance, 1 = at second set-up clearance</source>
-      <translation>desplazamiento entre posiciones: 0 = a la distancia de seguridad, 1 = a la segunda distancia de seguridad</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/cycle_words.py" />
-      <source>workpiece blank diameter</source>
-      <translation>diámetro de la pieza en bruto</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>CONTOUR DATA</source>
-      <translation>CONTOUR DATA</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>CONTOUR DEF</source>
-      <translation>CONTOUR DEF</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>CONTOUR TRAIN</source>
-      <translation>CONTOUR TRAIN</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>CYCL DEF 14</source>
-      <translation>CYCL DEF 14</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>CYCL DEF 20</source>
-      <translation>CYCL DEF 20</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>CYCL DEF 25</source>
-      <translation>CYCL DEF 25</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>CYCL DEF {number} {name}{item}</source>
-      <translation>CYCL DEF {number} {name}{item}</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Clears the pocket of cycle 14 level by level, around its islands; plunges vertically if Q19 is 0.</source>
-      <translation>Vacía la cajera del ciclo 14 nivel a nivel, alrededor de sus islas; baja en vertical si Q19 es 0.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Drills at the points where the tool with the number Q13 plunges in cycle 22.</source>
-      <translation>Taladra en los puntos donde la herramienta con el número Q13 baja en el ciclo 22.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>FLOOR FINISHING</source>
-      <translation>FLOOR FINISHING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Lists the pockets (P) and islands (I), as cycle 14 does. Each of them is LBL n or a program name in quotes.</source>
-      <translation>Enumera las cajeras (P) y las islas (I), como el ciclo 14. Cada una es LBL n o un nombre de programa entre comillas.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Lists the subprograms that define pockets (clockwise with RR) and islands (clockwise with RL).</source>
-      <translation>Indica los subprogramas que definen cajeras (sentido horario con RR) e islas (sentido horario con RL).</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Mills along an open or closed contour, on the side set by RL or RR.</source>
-      <translation>Fresa a lo largo de un contorno abierto o cerrado, por el lado que fija RL o RR.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Mills along the walls of the pocket and its islands, leaving the allowance Q14.</source>
-      <translation>Fresa a lo largo de las paredes de la cajera y de sus islas, dejando la sobremedida Q14.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Mills the pocket floor at the pocket depth.</source>
-      <translation>Fresa el fondo de la cajera a la profundidad de la cajera.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>P1 = LBL n I2 = LBL n</source>
-      <translation>P1 = LBL n I2 = LBL n</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>PILOT DRILLING</source>
-      <translation>PILOT DRILLING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>SIDE FINISHING</source>
-      <translation>SIDE FINISHING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_contour_book.py" />
-      <source>Sets depth, overlap, allowances, heights and milling direction for cycles 21 to 24.</source>
-      <translation>Fija profundidad, solapamiento, sobremedidas, alturas y sentido de fresado para los ciclos 21 a 24.</translation>
-    </message>
-    <message>
       <location filename="core/language/klartext/klartext_faults.py" />
       <source>Arithmetical error</source>
       <translation>Error aritmético</translation>
@@ -25015,6 +25415,11 @@
     </message>
     <message>
       <location filename="core/language/klartext/klartext_line.py" />
+      <source>CONTOUR DEF</source>
+      <translation>CONTOUR DEF</translation>
+    </message>
+    <message>
+      <location filename="core/language/klartext/klartext_line.py" />
       <source>CYCL DEF</source>
       <translation>CYCL DEF</translation>
     </message>
@@ -25107,181 +25512,6 @@
       <location filename="core/language/klartext/klartext_line.py" />
       <source>The line is too long ({text_count} characters).</source>
       <translation>La línea es demasiado larga ({text_count} caracteres).</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>BACK BORING</source>
-      <translation>BACK BORING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Back boring: with the spindle at angle Q336, the tool enters the hole offset from the center by Q251, then bores from below.</source>
-      <translation>Mandrinado inverso: con el husillo en el ángulo Q336, la herramienta entra en el agujero desplazada Q251 del centro y después mandrina desde abajo.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>C. POCKET FINISHING</source>
-      <translation>C. POCKET FINISHING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>C. STUD FINISHING</source>
-      <translation>C. STUD FINISHING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>CIRCULAR SLOT</source>
-      <translation>CIRCULAR SLOT</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Finishes the wall of a circular pocket.</source>
-      <translation>Acaba la pared de una cajera circular.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Finishes the wall of a rectangular pocket.</source>
-      <translation>Acaba la pared de una cajera rectangular.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Finishes the wall of a rectangular stud.</source>
-      <translation>Acaba la pared de una isla rectangular.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Finishes the wall of a round stud.</source>
-      <translation>Acaba la pared de una isla circular.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills a circular slot.</source>
-      <translation>Fresa una ranura circular.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills a slot with back-and-forth moves.</source>
-      <translation>Fresa una ranura con movimientos de vaivén.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>Mills circular slots on a pitch circle.</source>
-      <translation>Fresa ranuras circulares en un círculo de referencia.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>POCKET FINISHING</source>
-      <translation>POCKET FINISHING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>SLOT RECIP. PLNG</source>
-      <translation>SLOT RECIP. PLNG</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>STUD FINISHING</source>
-      <translation>STUD FINISHING</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_milling_book.py" />
-      <source>positive (upward)</source>
-      <translation>positiva (hacia arriba)</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>Activates a row of the preset table, as cycle 247 does.</source>
-      <translation>Activa una fila de la tabla de puntos de referencia, como el ciclo 247.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>Defines parameters for all later cycles, which use them through PREDEF.</source>
-      <translation>Define parámetros para todos los ciclos siguientes, que los usan con PREDEF.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>Dwells for the given number of seconds.</source>
-      <translation>Espera los segundos indicados.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>FUNCTION DWELL</source>
-      <translation>FUNCTION DWELL</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>FUNCTION DWELL REV5</source>
-      <translation>FUNCTION DWELL REV5</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>FUNCTION DWELL TIME0.5</source>
-      <translation>FUNCTION DWELL TIME0.5</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>In a block that moves one axis (X+10 R+ F300; L is optional), R+ lengthens the move by the tool radius and R- shortens it.</source>
-      <translation>En un bloque que mueve un solo eje (X+10 R+ F300; L es opcional), R+ alarga el movimiento en el radio de la herramienta y R- lo acorta.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>LN X+10 Y+5 Z+20 NX+0.1 NY+0.2 NZ+0.97 F300</source>
-      <translation>LN X+10 Y+5 Z+20 NX+0.1 NY+0.2 NZ+0.97 F300</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>Moves in a straight line; NX, NY and NZ are the surface normal. Compensation along the normal is not available: a block with DL, DR, DR2 or TX TY TZ is rejected.</source>
-      <translation>Mueve en línea recta; NX, NY y NZ son la normal a la superficie. No hay compensación a lo largo de la normal: se rechaza un bloque con DL, DR, DR2 o TX TY TZ.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>PRESET SELECT "VICE"</source>
-      <translation>PRESET SELECT "VICE"</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>PRESET SELECT #0</source>
-      <translation>PRESET SELECT #0</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>S(VC=…) in TOOL CALL sets the spindle speed from a cutting speed in m/min and the tool radius.</source>
-      <translation>S(VC=…) en TOOL CALL fija la velocidad del husillo según una velocidad de corte en m/min y el radio de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>Specifies the material. TurnDesk ignores this block and reports it.</source>
-      <translation>Indica el material. TurnDesk no usa este bloque y lo avisa.</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>TOOL CALL 1 Z S(VC=60) F300</source>
-      <translation>TOOL CALL 1 Z S(VC=60) F300</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>WMAT "STEEL"</source>
-      <translation>WMAT "STEEL"</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>X.. Y.. Z.. NX.. NY.. NZ..</source>
-      <translation>X.. Y.. Z.. NX.. NY.. NZ..</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>no GLOBAL DEF</source>
-      <translation>ningún GLOBAL DEF</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>one axis</source>
-      <translation>un solo eje</translation>
-    </message>
-    <message>
-      <location filename="core/language/klartext/klartext_other_controls_book.py" />
-      <source>with a name</source>
-      <translation>con un nombre</translation>
     </message>
     <message>
       <location filename="core/language/klartext/line_cursor.py" />
@@ -26944,386 +27174,6 @@
       <translation>IF sin salto</translation>
     </message>
     <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>0 = chip breaking, 1 = retract out of the hole</source>
-      <translation>0 = rotura de viruta, 1 = retirada fuera del agujero</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>0 = with encoder, 1 = without encoder</source>
-      <translation>0 = con encoder, 1 = sin encoder</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>1 and 3 = external, 2 and 4 = internal; 3 and 4 = constant chip cross-section</source>
-      <translation>1 y 3 = exterior, 2 y 4 = interior; 3 y 4 = sección de viruta constante</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>1 to 12: roughing, finishing or both; longitudinal or facing; external or internal</source>
-      <translation>1 a 12: desbaste, acabado o ambos; longitudinal o frontal; exterior o interior</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>X coordinate of the start point, as a diameter</source>
-      <translation>coordenada X del punto inicial, como diámetro</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>Z coordinate of the end point</source>
-      <translation>coordenada Z del punto final</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>Z coordinate of the second point</source>
-      <translation>coordenada Z del segundo punto</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>Z coordinate of the start point</source>
-      <translation>coordenada Z del punto inicial</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>Z coordinate of the third point</source>
-      <translation>coordenada Z del tercer punto</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>allowance for the last pass</source>
-      <translation>sobremedida para la última pasada</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>angle between holes</source>
-      <translation>ángulo entre agujeros</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>angle of the first hole</source>
-      <translation>ángulo del primer agujero</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>angle of the row of holes</source>
-      <translation>ángulo de la fila de agujeros</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>angle of the surface to be grooved</source>
-      <translation>ángulo de la superficie a ranurar</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>contour, defined by a subprogram or by two labels</source>
-      <translation>contorno, definido por un subprograma o por dos etiquetas</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>depth of the thread</source>
-      <translation>profundidad de la rosca</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>depth per pass</source>
-      <translation>profundidad por pasada</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>depth per plunge</source>
-      <translation>profundidad por penetración</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>depth reduction per peck</source>
-      <translation>reducción de profundidad por picada</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>diameter at the end</source>
-      <translation>diámetro al final</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>diameter at the second point</source>
-      <translation>diámetro en el segundo punto</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>diameter at the start</source>
-      <translation>diámetro al inicio</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>diameter at the third point</source>
-      <translation>diámetro en el tercer punto</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>diameter of the thread</source>
-      <translation>diámetro de la rosca</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>distance between holes</source>
-      <translation>distancia entre agujeros</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>distance from the reference point to the first hole</source>
-      <translation>distancia del punto de referencia al primer agujero</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>dwell for chip breaking, in seconds</source>
-      <translation>espera para romper la viruta, en segundos</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>dwell outside the hole, in seconds</source>
-      <translation>espera fuera del agujero, en segundos</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>feed distance between chip breaks</source>
-      <translation>recorrido entre roturas de viruta</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>feed factor for the first peck</source>
-      <translation>factor de avance de la primera picada</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>feed rate for plunging into relief cuts of the contour</source>
-      <translation>avance de penetración en los destalonados del contorno</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>feed rate into the hole</source>
-      <translation>avance de entrada en el agujero</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>feed rate out of the hole</source>
-      <translation>avance de salida del agujero</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>final depth, absolute</source>
-      <translation>profundidad final, absoluta</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>final depth, measured from the surface</source>
-      <translation>profundidad final, medida desde la superficie</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>finishing allowance along the contour</source>
-      <translation>sobremedida de acabado a lo largo del contorno</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>finishing allowance in X</source>
-      <translation>sobremedida de acabado en X</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>finishing allowance in Z</source>
-      <translation>sobremedida de acabado en Z</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>finishing allowance on the flanks</source>
-      <translation>sobremedida de acabado en los flancos</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>first depth, absolute</source>
-      <translation>primera profundidad, absoluta</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>first depth, measured from the surface</source>
-      <translation>primera profundidad, medida desde la superficie</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>flank angle on the side opposite the start point</source>
-      <translation>ángulo de flanco en el lado opuesto al punto inicial</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>flank angle on the start-point side</source>
-      <translation>ángulo de flanco en el lado del punto inicial</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>groove position: longitudinal or face, external or internal, starting side</source>
-      <translation>posición de la ranura: longitudinal o frontal, exterior o interior, lado inicial</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>groove width at the bottom</source>
-      <translation>ancho de la ranura en el fondo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>infeed angle; negative for alternating flanks</source>
-      <translation>ángulo de penetración; negativo para flancos alternos</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>inner corner (radius or chamfer) on the side opposite the start point</source>
-      <translation>esquina interior (radio o chaflán) en el lado opuesto al punto inicial</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>inner corner (radius or chamfer) on the start-point side</source>
-      <translation>esquina interior (radio o chaflán) en el lado del punto inicial</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>number of roughing passes</source>
-      <translation>número de pasadas de desbaste</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>number of spring passes (passes without infeed)</source>
-      <translation>número de pasadas de repaso (pasadas sin penetración)</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>outer corner (radius or chamfer) on the side opposite the start point</source>
-      <translation>esquina exterior (radio o chaflán) en el lado opuesto al punto inicial</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>outer corner (radius or chamfer) on the start-point side</source>
-      <translation>esquina exterior (radio o chaflán) en el lado del punto inicial</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>pitch, specified as a metric thread size</source>
-      <translation>paso, indicado como tamaño de rosca métrica</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>pitch; negative for a left-hand thread</source>
-      <translation>paso; negativo para rosca a izquierdas</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>position of the undercut</source>
-      <translation>posición de la entalla</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>radius of the circle</source>
-      <translation>radio del círculo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>reference plane (the surface), absolute</source>
-      <translation>plano de referencia (la superficie), absoluto</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>reference point in the first axis</source>
-      <translation>punto de referencia en el primer eje</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>reference point in the second axis</source>
-      <translation>punto de referencia en el segundo eje</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>retract in X at the bottom</source>
-      <translation>retirada en X en el fondo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>retract in Y at the bottom</source>
-      <translation>retirada en Y en el fondo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>retract in Z at the bottom</source>
-      <translation>retirada en Z en el fondo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>retract plane, absolute</source>
-      <translation>plano de retirada, absoluto</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>roughing feed</source>
-      <translation>avance de desbaste</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>safety clearance in front of the surface</source>
-      <translation>distancia de seguridad delante de la superficie</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>spindle angle at the first thread start</source>
-      <translation>ángulo del husillo en la primera entrada de la rosca</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>spindle direction for the retract: 0 (reversed), 3 or 4</source>
-      <translation>sentido de giro del husillo en la retirada: 0 (inverso), 3 o 4</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>spindle direction or stop after the cycle: 3, 4 or 5</source>
-      <translation>giro o paro del husillo después del ciclo: 3, 4 o 5</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>spindle direction: 3 or 4</source>
-      <translation>sentido de giro del husillo: 3 o 4</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>spindle rpm when feeding into the hole</source>
-      <translation>rpm del husillo al entrar en el agujero</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>spindle rpm when feeding out of the hole</source>
-      <translation>rpm del husillo al salir del agujero</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>spindle stop angle</source>
-      <translation>ángulo de paro del husillo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>thread lead in the first section</source>
-      <translation>paso de rosca en el primer tramo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>thread lead in the second section</source>
-      <translation>paso de rosca en el segundo tramo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>thread lead in the third section</source>
-      <translation>paso de rosca en el tercer tramo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/cycle_words.py" />
-      <source>undercut form, specified by a letter</source>
-      <translation>forma de la entalla, indicada con una letra</translation>
-    </message>
-    <message>
       <location filename="core/language/sinumerik/iso_words.py" />
       <source>#{word}: on this control, variables are R parameters.</source>
       <translation>#{word}: en este control, las variables son parámetros R.</translation>
@@ -27600,33 +27450,13 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>R{number} is not a valid parameter</source>
-      <translation>R{number} no es un parámetro válido</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Split the block; the maximum is {longest_line} characters.</source>
       <translation>Divida el bloque; el máximo es de {longest_line} caracteres.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>Use a parameter from R0 to R{most_r}.</source>
-      <translation>Use un parámetro de R0 a R{most_r}.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>Use a value of {word} between {low} and {high}.</source>
-      <translation>Use un valor de {word} entre {low} y {high}.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Use {allowed}.</source>
       <translation>Use {allowed}.</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>Write a whole number of up to four digits.</source>
-      <translation>Escriba un número entero de hasta cuatro cifras.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -27642,6 +27472,11 @@
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>Write {letter} with a number, or {letter2}=…</source>
       <translation>Escriba {letter} con un número, o {letter2}=…</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>Write {name} without an equals sign.</source>
+      <translation>Escriba {name} sin el signo igual.</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -27725,6 +27560,11 @@
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
+      <source>{name} does not accept a value</source>
+      <translation>{name} no acepta un valor</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>{name} is not a valid word</source>
       <translation>{name} no es una palabra válida</translation>
     </message>
@@ -27762,21 +27602,6 @@
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
       <source>{rest} is not allowed after {name}</source>
       <translation>{rest} no se permite después de {name}</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>{word} is not a valid code</source>
-      <translation>{word} no es un código válido</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>{word} is not a valid tool or edge number</source>
-      <translation>{word} no es un número válido de herramienta o de filo</translation>
-    </message>
-    <message>
-      <location filename="core/language/sinumerik/sinumerik_lexer.py" />
-      <source>{word} is out of range</source>
-      <translation>{word} está fuera de rango</translation>
     </message>
     <message>
       <location filename="core/language/sinumerik/sinumerik_lexer.py" />
@@ -27827,6 +27652,41 @@
       <location filename="core/language/sinumerik/sinumerik_words.py" />
       <source>this lathe has no W axis; write incremental values with IC( ), as in Z=IC(1)</source>
       <translation>este torno no tiene eje W; escriba los valores incrementales con IC( ), como en Z=IC(1)</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>R{number} is not a valid parameter</source>
+      <translation>R{number} no es un parámetro válido</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>Use a parameter from R0 to R{most_r}.</source>
+      <translation>Use un parámetro de R0 a R{most_r}.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>Use a value of {word} between {low} and {high}.</source>
+      <translation>Use un valor de {word} entre {low} y {high}.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>Write a whole number of up to four digits.</source>
+      <translation>Escriba un número entero de hasta cuatro cifras.</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>{word} is not a valid code</source>
+      <translation>{word} no es un código válido</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>{word} is not a valid tool or edge number</source>
+      <translation>{word} no es un número válido de herramienta o de filo</translation>
+    </message>
+    <message>
+      <location filename="core/language/sinumerik/word_values.py" />
+      <source>{word} is out of range</source>
+      <translation>{word} está fuera de rango</translation>
     </message>
     <message>
       <location filename="core/language/source.py" />

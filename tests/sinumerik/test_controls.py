@@ -9,9 +9,10 @@ import pytest
 
 from app.compose.machine_files import parse_machine, shipped_machine
 from app.compose.machine_setup import control_limits
+from core.interpreter.dialects import code_book
 from core.interpreter.job_setup import Setup
 from core.language.sinumerik.control_differences import CONTROLS, LACKS
-from core.language.sinumerik.sinumerik_book import BOOK
+from core.language.source import Dialect
 from core.table_schema import MachineFileError
 from tests.coded import raises_code
 from tests.sinumerik.lathe import refused, run, setup
@@ -77,6 +78,6 @@ def test_the_page_names_everything_that_is_lacking() -> None:
 
 
 def test_only_what_there_is_can_be_lacking() -> None:
-    heads = {entry.head for entry in BOOK.entries}
+    heads = {entry.head for entry in code_book(Dialect.SINUMERIK).entries}
     spoken = {name for lacks in LACKS.values() for name in lacks} - {'T="NAME"', "IF without a jump"}
     assert spoken - heads == set()

@@ -9,20 +9,22 @@ import pytest
 from app.compose.machine_files import shipped_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.code_book_page import page
+from core.interpreter.dialects import code_book
 from core.interpreter.job_setup import ToolOffset
 from core.language.code_book import Entry
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.sinumerik import sinumerik_words
 from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE
 from core.language.sinumerik.program_jumps import Steering
-from core.language.sinumerik.sinumerik_book import BOOK
-from core.language.sinumerik.word_table import M_FUNCTIONS
+from core.language.sinumerik.word_table import FUNCTIONS, IDLE, M_FUNCTIONS
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
 from core.tool_edges import edge_key
 from tests.sinumerik.lathe import MODULO
 
+BOOK = code_book(Dialect.SINUMERIK)
+ENTRIES = {entry.head: entry for entry in BOOK.entries}
 LIVE = shipped_machine("sinumerik-live")
 """Its spindle is C."""
 
@@ -58,11 +60,32 @@ def test_what_is_no_program_is_refused(entry: Entry) -> None:
 
 def test_every_construct_has_its_entry() -> None:
     """What the reader knows, by its own tables."""
-    heads = {entry.head for entry in BOOK.entries}
     codes = {f"G{n}" for n in sinumerik_words.G_GROUPS} | {f"M{n}" for n in M_FUNCTIONS}
     words = sinumerik_words.VOCABULARY - {"G", "M"}
-    assert (codes | words | {str(each) for each in Steering} | set(CYCLES)) - heads == set()
-    assert len(heads) == len(BOOK.entries)
+    assert (codes | words | {str(each) for each in Steering} | set(CYCLES)) - ENTRIES.keys() == set()
+
+
+def test_the_chapters_are_the_groups_of_the_table() -> None:
+    groups: dict[str, set[str]] = {}
+    for name, group in FUNCTIONS.items():
+        groups.setdefault(group.capitalize(), set()).add(name)
+    chapters = dict(BOOK.chapters)
+    assert {title: {entry.head for entry in chapters.get(title, ())} for title in groups} == groups
+
+
+@pytest.mark.parametrize("name", IDLE)
+def test_the_entry_of_a_word_without_effect_has_the_reason_of_the_note(name: str) -> None:
+    assert f"because {IDLE[name]}." in ENTRIES[name].what
+
+
+@pytest.mark.parametrize("name", CYCLES_OUTSIDE)
+def test_the_entry_of_a_rejected_cycle_has_the_reason_of_the_error(name: str) -> None:
+    assert f": {CYCLES_OUTSIDE[name]}." in ENTRIES[name].what
+
+
+@pytest.mark.parametrize("name", CYCLES)
+def test_the_entry_of_a_cycle_has_its_parameters_in_their_order(name: str) -> None:
+    assert ENTRIES[name].words == f"({', '.join(CYCLES[name])})"
 
 
 def test_every_construct_is_shown_in_use_and_refused() -> None:

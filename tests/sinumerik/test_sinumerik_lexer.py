@@ -31,6 +31,13 @@ def test_any_case() -> None:
     assert words("g1 x=ic(3) diamon") == words("G1 X=IC(3) DIAMON")
 
 
+@pytest.mark.parametrize("text", ["TRANS=3", "NORM = -R1", "NORM[1]=3", "G1 SETMS=(1)", "WAITS[R1]=SET(1)"])
+def test_words_without_a_value_do_not_take_equals(text: str) -> None:
+    line = lex_line(1, text)
+    assert [error.code for error in line.errors] == ["12080"]
+    assert all(word.name == "G" for word in line.words)
+
+
 @pytest.mark.parametrize("form", ["AC", "IC", "DC", "ACP", "ACN"])
 def test_targets(form: str) -> None:
     (word,) = lex_line(1, f"C = {form}( -7.25 )").words

@@ -7,20 +7,20 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine_files import shipped_machine
+from core.interpreter.dialects import code_book
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Severity
 from core.language.sinumerik.outside_words import OUTSIDE
-from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, WORDS
+from core.language.sinumerik.word_table import FUNCTIONS, IDLE, M_FUNCTIONS, WORDS
+from core.language.source import Dialect
 from core.machine.machine_model import Machine
 from tests.sinumerik.lathe import MODULO, refused, run, setup
 
+NAMES = frozenset({*FUNCTIONS, *WORDS, *(f"M{code}" for code in M_FUNCTIONS)})
 EXAMPLES = {
-    **FUNCTIONS,
-    **WORDS,
-    **{f"M{code}": entry for code, entry in M_FUNCTIONS.items()},
+    entry.head: entry.example for entry in code_book(Dialect.SINUMERIK).entries if entry.head in NAMES
 }
-
 
 LIVE = shipped_machine("sinumerik-live")
 """Its spindle is C."""
@@ -33,12 +33,12 @@ def around(machine: Machine = MODULO) -> Setup:
     return replace(setup(machine), tools=tools, start=(60.0, 80.0, 0.0))
 
 
-@pytest.mark.parametrize("name", [name for name, entry in EXAMPLES.items() if entry.example])
+@pytest.mark.parametrize("name", EXAMPLES)
 def test_an_example_runs(name: str) -> None:
-    text = EXAMPLES[name].example.replace("|", "\n")
+    text = EXAMPLES[name]
     passed = run(text, around(LIVE if name in NEED_C else MODULO))
     assert [each for each in passed.found if each.severity is not Severity.NOTE] == []
-    assert bool(EXAMPLES[name].idle) is any(each.code == "no-effect" for each in passed.found) or "M6" in text
+    assert (name in IDLE) is any(each.code == "no-effect" for each in passed.found) or "M6" in text
 
 
 PATH = "G1 X40 Z-5 F200\n{}X30 Z-20\nX50"
@@ -47,7 +47,7 @@ _TAKEN = """
     G40 NORM KONT G450 G451 G500 G290 TRAFOOF DISPLON DISPLOF SBLON SBLOF M7 M8 M9 M40 M41 M42 M43 M44 M45
 """
 SWITCHES_NOTHING = (
-    *(name for name, entry in FUNCTIONS.items() if entry.idle),
+    *(name for name in FUNCTIONS if name in IDLE),
     *_TAKEN.split(),
     *("ADIS=0.5", "ADISPOS=0.5", "DITS=2", "DITE=2"),
     *("CYCLE832(0.01,1,1)", "CYCLE832()", "CYCLE800()"),

@@ -16,7 +16,7 @@ from core.language.klartext import read_line
 from core.language.klartext.called_programs import file_name
 from core.language.klartext.canonical_text import name_text, written
 from core.language.klartext.klartext_faults import LABEL, LABEL_TWICE, NESTING, NOT_SUPPORTED, fault, syntax
-from core.language.klartext.klartext_line import CONTINUED, comment_start
+from core.language.klartext.klartext_line import CONTINUED
 from core.language.klartext.klartext_nodes import (
     Begin,
     BlankForm,
@@ -31,6 +31,7 @@ from core.language.klartext.klartext_nodes import (
     SystemRead,
 )
 from core.language.klartext.table_file import Row, is_table, table_rows
+from core.language.line_reading import comment_start
 from core.language.source import Source
 from core.message import Message
 

@@ -12,7 +12,7 @@ from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
-from core.language.sinumerik.word_table import M_FUNCTIONS
+from core.language.sinumerik.word_table import IDLE, M_FUNCTIONS
 from core.message import Message
 
 COLLET = "collet"  # the output of the chuck, whatever codes the builder has given it
@@ -57,7 +57,7 @@ def _check_chuck(state: State, statement: Statement, word: Word, name: str, on: 
 def _idle(state: State, code: int) -> str:
     if code == 6 and 6 not in state.setup.limits.m_outputs:
         return "T changes the tool automatically on this machine"
-    return M_FUNCTIONS[code].idle
+    return IDLE.get(f"M{code}", "")
 
 
 def _refused(state: State, statement: Statement, code: int, word: Word) -> ProgramError:

@@ -200,10 +200,9 @@ def tell_idle_words(state: State, statement: Statement) -> None:
     """Say once what makes no difference here."""
     for word in statement.g.values():
         name = word.name if word.value is None else f"G{int(word.value)}"
-        tell_idle(state, statement, word, name, table.FUNCTIONS[name].idle)
+        tell_idle(state, statement, word, name, table.IDLE.get(name, ""))
     for name, word in statement.words.items():
-        if name in table.WORDS:
-            tell_idle(state, statement, word, name, table.WORDS[name].idle)
+        tell_idle(state, statement, word, name, table.IDLE.get(name, ""))
 
 
 def tell_idle(state: State, statement: Statement, word: Word, name: str, why: str) -> None:

@@ -56,9 +56,9 @@ from core.language.sinumerik.word_table import (
     BLOCKWISE,
     DWELL,
     EXACT_ONCE,
+    IDLE,
     SUPPRESSION,
     TRANSFORMATION,
-    WORDS,
 )
 from core.language.source import Source
 from core.message import Message
@@ -71,7 +71,6 @@ _ARC_IN_Y = re.compile(r": J: an arc in G18 uses I and K")
 _BEHIND_ERROR = 20_000
 """Lines that are gone through behind the first error, for others that it may hide."""
 
-_IDLE = frozenset(name for name, entry in WORDS.items() if entry.idle)
 _BY_STATE = frozenset(
     {
         *("14040", "arc-radius", "arc-no-chord", "10720", "corner-too-large", "corner-next"),
@@ -345,7 +344,7 @@ class Interpreter(Interpretation):
         check_m(state, statement, self._lacking)
         if statement.g:
             modes(state, statement)
-        if statement.g or not _IDLE.isdisjoint(statement.words):
+        if statement.g or not IDLE.keys().isdisjoint(statement.words):
             tell_idle_words(state, statement)
         feed_words(state, statement)
         if DWELL in statement.g:

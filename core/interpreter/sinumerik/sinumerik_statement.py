@@ -9,8 +9,8 @@ from core.language.sinumerik import sinumerik_words as known
 from core.language.sinumerik import word_table as table
 from core.language.sinumerik.iso_words import iso_habit
 from core.language.sinumerik.sinumerik_alarms import ONE_GROUP, TWICE, UNKNOWN_G, fault
-from core.language.sinumerik.sinumerik_lexer import variable
 from core.language.sinumerik.sinumerik_words import Line, Word
+from core.language.sinumerik.word_values import variable
 from core.message import Message
 
 _DWELL_WORDS = frozenset({"F", "S"})

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from core.language.klartext.klartext_line import CONTINUED, comment_start, read_line
+from core.language.klartext.klartext_line import CONTINUED, read_line
+from core.language.line_reading import comment_start
 from core.language.syntax_colours import PLAIN, Ink, Span
 
 _VALUE = r"\s*[+-]?\s*(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+|Q[LR]?\s*[0-9]+)"

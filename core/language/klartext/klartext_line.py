@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from core.language.diagnostics import ProgramError
 from core.language.klartext import (
@@ -28,6 +28,7 @@ from core.language.klartext.klartext_nodes import (
 )
 from core.language.klartext.line_cursor import Cursor
 from core.language.klartext.refused_codes import CONTOUR_FORMULA, STRING, Refused
+from core.language.line_reading import comment_start
 from core.message import Message
 
 # --- L moves of plain numbers: nearly all lines of a long program, read by two patterns
@@ -73,8 +74,14 @@ _M = re.compile(r"M(?=\s*[0-9])")
 _Q = re.compile(r"Q[LR]?(?=\s*[0-9])")
 _ONE_AXIS = re.compile(r"I?[XYZABCUVW](?=\s*[+\-.,]?\s*[0-9Q])")
 _FN = re.compile(r"FN\s*([0-9]+)\s*")
-_LONGEST_FIRST = sorted(path_block.FORMS, key=len, reverse=True)
-_PATHS = re.compile("|".join(r"\s+".join(form.split()) + r"(?![A-Z0-9])" for form in _LONGEST_FIRST))
+
+
+def _any_of(names: Iterable[str], end: str) -> re.Pattern[str]:
+    """Return a pattern of the first of these names, with any blanks between its words, before ``end``."""
+    return re.compile("|".join(r"\s+".join(name.split()) + end for name in names))
+
+
+_PATHS = _any_of(sorted(path_block.FORMS, key=len, reverse=True), r"(?![A-Z0-9])")
 
 # Blocks of the control that are not read here: the longest name first where one begins another.
 _OUTSIDE = (
@@ -89,7 +96,7 @@ _TOGETHER = {
     **dict.fromkeys(("SEL CONTOUR", "DECLARE CONTOUR", "QC"), CONTOUR_FORMULA),
     **dict.fromkeys(("DECLARE STRING", "QS"), STRING),
 }  # told as one
-_OUTSIDE_PATTERNS = tuple((name, re.compile(r"\s+".join(name.split()) + r"(?![A-Z])")) for name in _OUTSIDE)
+_OUTSIDE_STARTS = _any_of(_OUTSIDE, r"(?![A-Z])")
 
 
 def read_line(number: int, text: str) -> KlartextLine:
@@ -126,16 +133,6 @@ CONTINUED = "~"
 """Ends a line whose block goes on in the next one; it stands behind the comment where there is one."""
 
 
-def comment_start(text: str) -> int:
-    """Index of the semicolon that begins the comment, else the length: in a quoted name it begins none."""
-    quoted = False
-    for at, sign in enumerate(text if ";" in text else ""):
-        quoted ^= sign == '"'
-        if sign == ";" and not quoted:
-            return at
-    return len(text)
-
-
 def _node(cursor: Cursor) -> Node | None:
     if cursor.done:
         return None
@@ -148,14 +145,11 @@ def _node(cursor: Cursor) -> Node | None:
 
 
 def _by_keyword(cursor: Cursor) -> Node | None:
-    column = cursor.column
-    for words, meant in _SYNONYMS.items():
-        if cursor.keyword(words):
-            return _KEYWORDS[meant](cursor, column)
-    for words, read in _KEYWORDS.items():
-        if cursor.keyword(words):
-            return read(cursor, column)
-    return None
+    column, match = cursor.column, cursor.take(_STARTS)
+    if match is None:
+        return None
+    words = " ".join(match.group().split())
+    return _KEYWORDS[_SYNONYMS.get(words, words)](cursor, column)
 
 
 def _stop(cursor: Cursor, _column: int) -> Node:
@@ -195,6 +189,7 @@ _KEYWORDS: dict[str, Callable[[Cursor, int], Node]] = {
 
 
 _SYNONYMS = {"CYCLE DEF": "CYCL DEF", "CYCLE CALL": "CYCL CALL"}  # as some posts write them
+_STARTS = _any_of((*_SYNONYMS, *_KEYWORDS), r"(?![A-Z])")
 
 
 def _by_letter(cursor: Cursor) -> Node:
@@ -213,11 +208,11 @@ def _by_letter(cursor: Cursor) -> Node:
 def _no_block(cursor: Cursor) -> ProgramError:
     """What begins no block that is read here, by its name where the control knows it."""
     column = cursor.column
-    for name, pattern in _OUTSIDE_PATTERNS:
-        if pattern.match(cursor.upper, cursor.at):
-            if name == "TCH PROBE":
-                return structure_blocks.touch_probe(cursor, column)
-            return _TOGETHER.get(name, Refused(name, "")).error(cursor.line, column)
+    if match := _OUTSIDE_STARTS.match(cursor.upper, cursor.at):
+        name = " ".join(match.group().split())
+        if name == "TCH PROBE":
+            return structure_blocks.touch_probe(cursor, column)
+        return _TOGETHER.get(name, Refused(name, "")).error(cursor.line, column)
     text = Message("'{next_word}' cannot begin a block.", next_word=cursor.next_word)
     hint = cursor.advice("Begin the block with a word such as L, PLANE, TOOL CALL or LBL.")
     return syntax(cursor.line, column, text, hint)

@@ -9,12 +9,13 @@ from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import INPUT_VALUE, fault, syntax, unsupported
 from core.language.klartext.klartext_nodes import AxisWord, Feed, Retract, Value
 from core.language.klartext.refused_codes import STRING
+from core.language.line_reading import LineReader, after_blanks
 from core.language.typography import ascii_upper, typed
 from core.message import Message
 
-_NUMBER = r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)"
-_VALUE = re.compile(rf"([+-]?)\s*(?:({_NUMBER})|(Q[LR]?)\s*([0-9]+))(?![0-9.,])")
-_PLAIN = re.compile(rf"([+-]?)\s*({_NUMBER})(?![0-9.,])")
+NUMBER = r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)"
+_VALUE = re.compile(rf"([+-]?)\s*(?:({NUMBER})|(Q[LR]?)\s*([0-9]+))(?![0-9.,])")
+_PLAIN = re.compile(rf"([+-]?)\s*({NUMBER})(?![0-9.,])")
 _TEXT = re.compile(r"\(?[^\W\d_]{3}|\(")
 _WHOLE = re.compile(r"[0-9]+(?![0-9.,])")
 _QUOTED = re.compile(r'"([^"]*)"')
@@ -29,14 +30,13 @@ def _keyword(words: str) -> re.Pattern[str]:
     return re.compile(r"\s+".join(map(re.escape, words.split())) + r"(?![A-Z])")
 
 
-class Cursor:
+class Cursor(LineReader):
     """Reads one line from left to right; ``upper`` is the line in capitals, of the same length."""
 
     def __init__(self, line: int, text: str, at: int = 0) -> None:
+        super().__init__(ascii_upper(text), at)
         self.line = line
         self.text = text
-        self.upper = ascii_upper(text)
-        self.at = at
         self.blanks()
 
     @property
@@ -55,19 +55,11 @@ class Cursor:
         match = _WORD.match(self.text, self.at)
         return match.group() if match else ""
 
-    def blanks(self) -> None:
-        """Go to the next sign that is no blank."""
-        upper, at, end = self.upper, self.at, len(self.upper)
-        while at < end and upper[at].isspace():
-            at += 1
-        self.at = at
-
     def take(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
-        """What the pattern matches here, and go behind it."""
+        """Return what the pattern matches here, and move to what follows; None without a match."""
         match = pattern.match(self.upper, self.at)
         if match is not None:
-            self.at = match.end()
-            self.blanks()
+            self.at = after_blanks(self.upper, match.end())
         return match
 
     def keyword(self, *choices: str) -> str | None:
@@ -158,6 +150,11 @@ class Cursor:
             self.advice(hint),
         )
 
+    def demand_end(self, message: str, hint: str = "") -> None:
+        """Raise ProgramError with this message where anything follows."""
+        if not self.done:
+            raise self.expected(message, hint)
+
     def advice(self, hint: str) -> str:
         """A hint, and what to do where text or a typographic character stands in the place."""
         word = "" if self.done else self.next_word
@@ -236,11 +233,28 @@ def axis_words(cursor: Cursor, letters: str, *, incremental: bool = True) -> tup
         found.append(AxisWord(axis, cursor.value(f"{sign}{axis}"), sign == "I", column))
 
 
+def words_once(cursor: Cursor, pattern: re.Pattern[str]) -> dict[str, AxisWord]:
+    """Return all words that are here, by name, each once; the group of the pattern is the name.
+
+    Raises ProgramError for a word that is here twice.
+    """
+    found: dict[str, AxisWord] = {}
+    while True:
+        column, match = cursor.column, cursor.take(pattern)
+        if match is None:
+            return found
+        name = match[1]
+        demand_once(cursor, column, name in found, name)
+        found[name] = AxisWord(name, cursor.value(name), column=column)
+
+
+def demand_once(cursor: Cursor, column: int, known: object, what: str) -> None:
+    """Raise ProgramError for a word that the block already has."""
+    if known:
+        raise doubled(cursor, column, what)
+
+
 def doubled(cursor: Cursor, column: int, what: str) -> ProgramError:
-    """The error for a word that stands twice."""
-    return syntax(
-        cursor.line,
-        column,
-        Message("{word} is programmed twice in the block.", word=what),
-        "Remove one of the two.",
-    )
+    """Return the error for a word that is programmed twice."""
+    text = Message("{word} is programmed twice in the block.", word=what)
+    return syntax(cursor.line, column, text, "Remove one of the two.")

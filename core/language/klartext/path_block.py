@@ -8,7 +8,7 @@ from typing import NamedTuple
 from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import syntax
 from core.language.klartext.klartext_nodes import AxisWord, Codes, Corner, Feed, MCode, Move, Pole
-from core.language.klartext.line_cursor import Cursor, axis_words, doubled, feed, retract
+from core.language.klartext.line_cursor import Cursor, axis_words, demand_once, doubled, feed, retract
 from core.message import Message
 
 MOST_CODES = 4
@@ -19,7 +19,7 @@ _COMPENSATION = re.compile(
 )  # a bare R leaves it as it is
 _M = re.compile(r"M(?=\s*[0-9])")
 _AXIS_ALONE = re.compile(r"I?[XYZABCUVW](?=\s*$)")
-_TURN = re.compile(r"DR\s*([+-])(?![0-9Q])")
+TURN = re.compile(r"DR\s*([+-])(?![0-9Q])")
 
 
 class _Form(NamedTuple):
@@ -74,17 +74,20 @@ def move(cursor: Cursor, form: str, column: int) -> Move:
         elif radius := cursor.take(_COMPENSATION):
             kind = radius.group(1) or radius.group(2) or ""
             _demand_paraxial(cursor, at, kind, axes)
-            compensation = _once(cursor, at, compensation, kind, f"R{kind}")
-        elif direction := cursor.take(_TURN):
-            turn = _once(cursor, at, turn, direction.group(1), "DR")
+            if compensation:
+                raise doubled(cursor, at, f"R{kind}")
+            compensation = kind
+        elif direction := cursor.take(TURN):
+            demand_once(cursor, at, turn, "DR")
+            turn = direction.group(1)
         elif word := _word(cursor, form):
-            if word.axis in words:
-                raise doubled(cursor, word.column, word.axis)
+            demand_once(cursor, word.column, word.axis in words, word.axis)
             words[word.axis] = word
         elif cursor.take(_NOT_PROGRAMMED):
             continue
         elif read := feed(cursor):
-            speed = _once_feed(cursor, speed, read)
+            demand_once(cursor, read.column, speed, "F")
+            speed = read
         elif code := m_code(cursor):
             codes.append(code)
             _demand_few(cursor, codes)
@@ -120,18 +123,6 @@ def _word(cursor: Cursor, form: str) -> AxisWord | None:
     return AxisWord(name, cursor.value(match.group(1)), match.group(1)[0] == "I", at + 1)
 
 
-def _once(cursor: Cursor, column: int, known: str, read: str, what: str) -> str:
-    if known:
-        raise doubled(cursor, column, what)
-    return read
-
-
-def _once_feed(cursor: Cursor, known: Feed | None, read: Feed) -> Feed:
-    if known is not None:
-        raise doubled(cursor, read.column, "F")
-    return read
-
-
 def _demand_whole(cursor: Cursor, made: Move) -> None:
     form = _FORMS[made.form]
     missing = [name for name in form.needs if made.word(name) is None]
@@ -151,8 +142,7 @@ def _demand_whole(cursor: Cursor, made: Move) -> None:
 def pole(cursor: Cursor, column: int) -> Pole:
     """The axes behind ``CC``."""
     made = Pole(axis_words(cursor, "XYZ"), column)
-    if not cursor.done:
-        raise cursor.expected("CC accepts only two axes")
+    cursor.demand_end("CC accepts only two axes")
     return made
 
 

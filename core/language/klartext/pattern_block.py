@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from core.language.klartext.klartext_nodes import AxisWord, PatternDef, PatternPart
-from core.language.klartext.line_cursor import Cursor, doubled
+from core.language.klartext.line_cursor import Cursor, words_once
 from core.message import Message
 
 _KIND = re.compile(r"(PITCHCIRC|CIRC|FRAME|PAT|ROW|POS)\s*[0-9]{1,2}\s*\(")
@@ -41,17 +41,11 @@ def pattern(cursor: Cursor, column: int) -> PatternDef:
 
 
 def _words(cursor: Cursor, form: str) -> tuple[AxisWord, ...]:
-    found: dict[str, AxisWord] = {}
-    while not cursor.take(_CLOSED):
-        at, match = cursor.column, cursor.take(_WORD)
-        if match is None:
-            raise cursor.expected(
-                Message("Unexpected word in {form}", form=form), "Close the parenthesis after the last word."
-            )
-        name = match.group(1)
-        if name in found:
-            raise doubled(cursor, at, name)
-        found[name] = AxisWord(name, cursor.value(name), column=at)
+    found = words_once(cursor, _WORD)
+    if not cursor.take(_CLOSED):
+        raise cursor.expected(
+            Message("Unexpected word in {form}", form=form), "Close the parenthesis after the last word."
+        )
     missing = [name for name in NEEDS[form] if name not in found]
     if missing:
         raise cursor.expected(Message("{form} needs {missing}", form=form, missing=" and ".join(missing)))

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from core.language.klartext.klartext_faults import syntax
 from core.language.klartext.klartext_nodes import AxisWord, Plane, Positioning
-from core.language.klartext.line_cursor import Cursor, axis_words, doubled, feed, retract
+from core.language.klartext.line_cursor import Cursor, axis_words, demand_once, feed, retract, words_once
 from core.message import Message
 
 POINT_WORDS = tuple(f"P{point}{axis}" for point in "123" for axis in "XYZ")
@@ -45,7 +45,7 @@ def _axial(cursor: Cursor) -> tuple[AxisWord, ...]:
 
 
 def _relative(cursor: Cursor) -> tuple[AxisWord, ...]:
-    words = _named(cursor, _SPATIAL)
+    words = tuple(words_once(cursor, _SPATIAL).values())
     if len(words) != 1:
         column = words[1].column if words else cursor.column
         text = "PLANE RELATIV needs exactly one of SPA, SPB and SPC."
@@ -55,30 +55,18 @@ def _relative(cursor: Cursor) -> tuple[AxisWord, ...]:
 
 _WORDS: dict[str, Callable[[Cursor], tuple[AxisWord, ...]]] = {
     "AXIAL": _axial,
-    "POINTS": lambda cursor: _all_of(cursor, POINT_WORDS, _named(cursor, _POINT)),
-    "SPATIAL": lambda cursor: _all_of(cursor, SPATIAL_WORDS, _named(cursor, _SPATIAL)),
+    "POINTS": lambda cursor: _all_of(cursor, POINT_WORDS, _POINT),
+    "SPATIAL": lambda cursor: _all_of(cursor, SPATIAL_WORDS, _SPATIAL),
     "RELATIV": _relative,
-    "EULER": lambda cursor: _all_of(cursor, EULER_WORDS, _named(cursor, _EULER)),
-    "VECTOR": lambda cursor: _all_of(cursor, VECTOR_WORDS, _named(cursor, _VECTOR)),
-    "PROJECTED": lambda cursor: _all_of(cursor, PROJECTED_WORDS, _named(cursor, _PROJECTED)),
+    "EULER": lambda cursor: _all_of(cursor, EULER_WORDS, _EULER),
+    "VECTOR": lambda cursor: _all_of(cursor, VECTOR_WORDS, _VECTOR),
+    "PROJECTED": lambda cursor: _all_of(cursor, PROJECTED_WORDS, _PROJECTED),
 }
 
 
-def _named(cursor: Cursor, pattern: re.Pattern[str]) -> tuple[AxisWord, ...]:
-    found: dict[str, AxisWord] = {}
-    while True:
-        column, match = cursor.column, cursor.take(pattern)
-        if match is None:
-            return tuple(found.values())
-        name = match.group(1)
-        if name in found:
-            raise doubled(cursor, column, name)
-        found[name] = AxisWord(name, cursor.value(name), column=column)
-
-
-def _all_of(cursor: Cursor, names: tuple[str, ...], words: tuple[AxisWord, ...]) -> tuple[AxisWord, ...]:
+def _all_of(cursor: Cursor, names: tuple[str, ...], pattern: re.Pattern[str]) -> tuple[AxisWord, ...]:
     """The words in the order of the manual; every one must be there."""
-    found = {word.axis: word for word in words}
+    found = words_once(cursor, pattern)
     missing = [name for name in names if name not in found]
     if missing:
         template = "{missing} are missing" if len(missing) > 1 else "{missing} is missing"
@@ -108,16 +96,16 @@ def _with_word(cursor: Cursor, form: str, made: Positioning) -> Positioning:
     """The next word behind the way of positioning."""
     column = cursor.column
     if form != "RESET" and (side := cursor.take(_SIDE)):
-        _once(cursor, column, made.side, "SYM or SEQ")
+        demand_once(cursor, column, made.side, "SYM or SEQ")
         return dataclasses.replace(made, side="".join(side.groups()))
     if form != "RESET" and (rotation := cursor.take(_ROTATION)):
-        _once(cursor, column, made.rotation, "COORD ROT or TABLE ROT")
+        demand_once(cursor, column, made.rotation, "COORD ROT or TABLE ROT")
         return dataclasses.replace(made, rotation=Message("{word} ROT", word=rotation.group(1)))
     if cursor.keyword("DIST", "ABST", "SETUP"):  # as German controls write it
         if made.way != "MOVE":
             text = Message("DIST is allowed only with MOVE, not with {word}.", word=made.way)
             raise syntax(cursor.line, column, text, "Remove this text from the program.")
-        _once(cursor, column, made.distance, "DIST")
+        demand_once(cursor, column, made.distance, "DIST")
         return dataclasses.replace(made, distance=cursor.number("DIST"))
     return _with_motion(cursor, made, column)
 
@@ -125,11 +113,11 @@ def _with_word(cursor: Cursor, form: str, made: Positioning) -> Positioning:
 def _with_motion(cursor: Cursor, made: Positioning, column: int) -> Positioning:
     if way := retract(cursor):
         _demand_motion(cursor, made, column, "MB")
-        _once(cursor, column, made.retract, "MB")
+        demand_once(cursor, column, made.retract, "MB")
         return dataclasses.replace(made, retract=way)
     if speed := feed(cursor):
         _demand_motion(cursor, made, column, "F")
-        _once(cursor, column, made.feed, "F")
+        demand_once(cursor, column, made.feed, "F")
         return dataclasses.replace(made, feed=speed)
     if second := cursor.keyword(*_WAYS):
         text = Message(
@@ -137,11 +125,6 @@ def _with_motion(cursor: Cursor, made: Positioning, column: int) -> Positioning:
         )
         raise syntax(cursor.line, column, text, "Remove one of the two words.")
     raise cursor.expected("Unexpected word in a PLANE block")
-
-
-def _once(cursor: Cursor, column: int, known: object, what: str) -> None:
-    if known:
-        raise doubled(cursor, column, what)
 
 
 def _demand_motion(cursor: Cursor, made: Positioning, column: int, what: str) -> None:

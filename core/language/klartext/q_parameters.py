@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 
 from core.language.formulas import (
-    TRIGONOMETRY,
+    FUNCTIONS,
     Formula,
     FormulaError,
     FormulaReader,
@@ -24,11 +24,10 @@ from core.language.klartext.klartext_nodes import (
     SystemWrite,
     Unheeded,
 )
-from core.language.klartext.line_cursor import Cursor
+from core.language.klartext.line_cursor import NUMBER, Cursor
 from core.language.klartext.refused_codes import FREE_TABLE, STRING
 from core.message import Message
 
-_NUMBER = re.compile(r"(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)(?:E[+-]?[0-9]{1,3})?")
 _PARAMETER = re.compile(r"(Q[LR]?)\s*([0-9]{1,4})(?![0-9])")
 _TIMES, _POWER = 40, 60
 
@@ -39,7 +38,7 @@ TOOL_FEED = -1.0
 """FAUTO in a cycle: the feed of the last TOOL CALL."""
 
 GRAMMAR = Grammar(
-    number=_NUMBER,
+    number=re.compile(rf"{NUMBER}(?:E[+-]?[0-9]{{1,3}})?"),
     parameter=_PARAMETER,
     operators={
         "+": (30, "plus"),
@@ -50,16 +49,12 @@ GRAMMAR = Grammar(
         "^": (_POWER, "power"),
     },
     functions={
-        **TRIGONOMETRY,
+        **FUNCTIONS,
         "ATAN": "arc tangent",
         "SQ": "square",
-        "SQRT": "square root",
-        "LN": "natural logarithm",
         "LOG": "common logarithm",
-        "EXP": "exponential",
         "NEG": "negative",
         "INT": "integer part",
-        "ABS": "absolute",
         "FRAC": "fraction",
         "SGN": "sign",
     },
@@ -120,8 +115,7 @@ def assign(cursor: Cursor) -> Assign:
     if _OF_TEXTS.match(cursor.upper, cursor.at):
         raise STRING.error(cursor.line, cursor.column)
     made = formula(cursor, f"{kind}{number}")
-    if not cursor.done:
-        raise cursor.expected("Expected an operator")
+    cursor.demand_end("Expected an operator")
     return Assign(number, made, column, kind)
 
 
@@ -223,8 +217,7 @@ def _whole_jump(cursor: Cursor, condition: Formula) -> Jump:
         raise cursor.expected("A jump needs GOTO LBL")
     at = cursor.column
     made = Jump(condition, cursor.name("GOTO LBL", MOST_LABEL), at)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in a jump")
+    cursor.demand_end("Unexpected word in a jump")
     return made
 
 
@@ -246,8 +239,7 @@ def _system(cursor: Cursor, column: int) -> SystemRead:
         raise cursor.expected("FN 18 needs SYSREAD")
     kind, q = _target(cursor)
     group, number, index = _place(cursor, 18)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in FN 18")
+    cursor.demand_end("Unexpected word in FN 18")
     return SystemRead(q, group, number, index, column, kind)
 
 
@@ -258,8 +250,7 @@ def _system_write(cursor: Cursor, column: int) -> SystemWrite:
     if cursor.take(_EQUALS) is None:
         raise cursor.expected("FN 17 needs = and a value to write")
     made = SystemWrite(group, number, index, _operand(cursor, 0), column)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in FN 17")
+    cursor.demand_end("Unexpected word in FN 17")
     return made
 
 

@@ -27,7 +27,8 @@ from core.language.klartext.klartext_nodes import (
     Unheeded,
     Value,
 )
-from core.language.klartext.line_cursor import Cursor, axis_words, doubled
+from core.language.klartext.line_cursor import Cursor, axis_words, demand_once, words_once
+from core.language.klartext.q_parameters import MOST_LABEL
 from core.message import Message
 
 _PROGRAM = re.compile(r"(?:(\S.*?)\s+)?(MM|INCH)\s*$")
@@ -75,16 +76,8 @@ _ROUND_WORD = re.compile(r"(RI|DI|R|D|L|DIST)(?=\s*[+\-0-9.,Q])")
 def _round_blank(cursor: Cursor) -> RoundBlank:
     """Behind ``BLK FORM CYLINDER``: axis, radius or diameter, length, and how far it reaches up."""
     axis = cursor.take(_AXIS)
-    words: dict[str, Value] = {}
-    while not cursor.done:
-        at, match = cursor.column, cursor.take(_ROUND_WORD)
-        if match is None:
-            raise cursor.expected(
-                "Unexpected word in BLK FORM CYLINDER", "Use only R (or D), L, DIST and RI (or DI)."
-            )
-        if match.group(1) in words:
-            raise doubled(cursor, at, match.group(1))
-        words[match.group(1)] = cursor.value(match.group(1))
+    words = {name: word.value for name, word in words_once(cursor, _ROUND_WORD).items()}
+    cursor.demand_end("Unexpected word in BLK FORM CYLINDER", "Use only R (or D), L, DIST and RI (or DI).")
     if axis is None or not {"R", "D"} & words.keys() or "L" not in words:
         raise cursor.expected("BLK FORM CYLINDER needs an axis, R or D, and L")
     wide = words.get("R") or words["D"]._replace(number=words["D"].number / 2.0)
@@ -120,8 +113,7 @@ def _demand_all(cursor: Cursor, corner: tuple[AxisWord, ...]) -> None:
             Message("{missing} is missing", missing=", ".join(missing)),
             "Write the X, Y and Z coordinates of the corner.",
         )
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in BLK FORM")
+    cursor.demand_end("Unexpected word in BLK FORM")
 
 
 def tool_call(cursor: Cursor) -> ToolCall:
@@ -152,8 +144,7 @@ def tool_call(cursor: Cursor) -> ToolCall:
                 "Unexpected word in TOOL CALL", "Use only a tool, its axis, S, F, DL, DR and DR2."
             )
         name, per = match.group(1), match.group(2) or per
-        if name in words:
-            raise doubled(cursor, at, name)
+        demand_once(cursor, at, name in words, name)
         words[name] = cursor.value(name)
     length, radius = words.get("DL"), words.get("DR")
     return ToolCall(tool, axis, words.get("S"), words.get("F"), length, radius, column, per, words.get("VC"))
@@ -181,21 +172,14 @@ def tool_def(cursor: Cursor, column: int) -> ToolDef:
     """The words behind ``TOOL DEF``: the tool, and its length and radius where the program tells them."""
     _demand_no_index(cursor)
     tool = cursor.name("TOOL DEF", MOST_TOOL)
-    words: dict[str, Value] = {}
-    while not cursor.done:
-        at, match = cursor.column, cursor.take(_LENGTHS)
-        if match is None:
-            raise cursor.expected("Unexpected word in TOOL DEF", "Use only a tool, L and R.")
-        if match.group(1) in words:
-            raise doubled(cursor, at, match.group(1))
-        words[match.group(1)] = cursor.value(match.group(1))
+    words = {name: word.value for name, word in words_once(cursor, _LENGTHS).items()}
+    cursor.demand_end("Unexpected word in TOOL DEF", "Use only a tool, L and R.")
     return ToolDef(tool, words.get("L"), words.get("R"), column)
 
 
 # --- datum shifts and other transformations, labels, calls
 
 
-MOST_LABEL = 65535
 MOST_REPEATS = 65534
 _OF_REPEATS = re.compile(r"/\s*[0-9]+")
 
@@ -232,8 +216,7 @@ def _datum(cursor: Cursor, column: int) -> Datum:
         made = Datum(row=cursor.value("TABLINE"), column=column, table=table)
     else:
         raise cursor.expected("TRANS DATUM needs AXIS or RESET")
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in TRANS DATUM")
+    cursor.demand_end("Unexpected word in TRANS DATUM")
     return made
 
 
@@ -241,8 +224,7 @@ def label(cursor: Cursor) -> Label:
     """The number or name behind ``LBL``."""
     column = cursor.column
     made = Label(cursor.name("LBL", MOST_LABEL), column)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in LBL")
+    cursor.demand_end("Unexpected word in LBL")
     return made
 
 
@@ -257,8 +239,7 @@ def call(cursor: Cursor) -> Call:
     if cursor.keyword("REP"):
         repeat = _repeats(cursor)
         cursor.take(_OF_REPEATS)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in CALL LBL")
+    cursor.demand_end("Unexpected word in CALL LBL")
     return Call(name, repeat, column)
 
 
@@ -281,8 +262,7 @@ def call_program(cursor: Cursor, column: int) -> ProgramCall:
 def call_selected(cursor: Cursor, column: int) -> ProgramCall:
     """Behind ``CALL SELECTED``: PGM."""
     cursor.keyword("PGM")
-    if not cursor.done:
-        raise cursor.expected("CALL SELECTED accepts only PGM")
+    cursor.demand_end("CALL SELECTED accepts only PGM")
     return ProgramCall("", column)
 
 
@@ -324,8 +304,7 @@ def _dwell(cursor: Cursor, column: int) -> CycleLine:
     if cursor.take(_SECONDS) is None:
         raise unsupported(cursor.line, column, "FUNCTION DWELL in revolutions")
     made = CycleLine(9, 1, (AxisWord("", cursor.value("TIME")),), column=column)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in FUNCTION DWELL")
+    cursor.demand_end("Unexpected word in FUNCTION DWELL")
     return made
 
 

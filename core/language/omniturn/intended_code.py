@@ -10,10 +10,9 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple
 
+from core.language.line_reading import SIGNED
 from core.language.omniturn import other_controls
 from core.message import Message
-
-_NUMBER = r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))"
 
 
 class Intent(NamedTuple):
@@ -75,7 +74,7 @@ _PATTERNS = (
         lambda match: Message("Write {name}.", name="G72" if match.string[match.end() + 1] == "7" else "G73"),
     ),
     _Pattern(
-        re.compile(rf"(?<=G04)([PXU]){_NUMBER}"),
+        re.compile(rf"(?<=G04)([PXU])({SIGNED})"),
         "G04 takes seconds as F.",
         _dwell,
     ),
@@ -115,7 +114,7 @@ _PATTERNS = (
         _always(_THREAD),
     ),
     _Pattern(
-        re.compile(rf"(?<=G8[13])[^Q]*Q{_NUMBER}"),
+        re.compile(rf"(?<=G8[13])[^Q]*Q({SIGNED})"),
         "The peck depth is K here.",
         lambda match: Message("Write K{word} in G83.", word=match[1]),
     ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from core.language.diagnostics import ProgramError
+from core.language.line_reading import after_signs
 from core.language.omniturn.omniturn_lexer import lex_line
 from core.language.omniturn.omniturn_words import Line, Word
 from core.language.omniturn.plane_switching_lines import ends_program, lex_plane, plane_entry
@@ -56,9 +57,6 @@ def _comments(text: str, line: Line) -> list[Span]:
 
 def _span(text: str, word: Word) -> Span:
     """A word in the line as written, blanks inside it counted."""
-    begin = at = word.column - 1
-    left = len(word.text)
-    while left and at < len(text):
-        left -= not text[at].isspace()
-        at += 1
-    return Span(begin, at - begin, _OF_LETTER.get(word.letter, Ink.POSITION))
+    at = word.column - 1
+    end = after_signs(text, at, len(word.text))
+    return Span(at, end - at, _OF_LETTER.get(word.letter, Ink.POSITION))

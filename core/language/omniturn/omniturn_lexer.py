@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic, refusal
+from core.language.line_reading import SIGNED
 from core.language.omniturn import other_controls, word_faults
 from core.language.omniturn.intended_code import intent_of, with_digit_one
 from core.language.omniturn.omniturn_words import BARE, Line, Word
@@ -20,7 +21,7 @@ _NUMBER = r"[+-]?(?:[0-9]{1,4}(?:\.[0-9]{0,8})?|\.[0-9]{1,8})"
 _USUAL = re.compile(f"(?:[XZIKRFS]{_NUMBER}|[GM][0-9]{{2}}(?![0-9.]))+")
 _MAY_BE_FOREIGN = re.compile("G(?:04X|74|75|76|92S)")  # of usual words, but not of this control
 _USUAL_WORD = re.compile(r"(([A-Z])([-+0-9.]+))")
-_WORD = re.compile(r"(LS|LF|RF|CA|CI|[A-Z}])([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+))?")
+_WORD = re.compile(rf"(LS|LF|RF|CA|CI|[A-Z}}])({SIGNED})?")
 _THREAD = re.compile(r"G3[34](?![0-9.])")
 _TO_NEXT_LETTER = re.compile(r"[^A-Z}]+")
 _ZERO_LETTER = re.compile(r"O[0-9.]*")
@@ -85,7 +86,7 @@ def _nested_comment(text: str) -> int | None:
 
 def _letter_l(number: int, text: str) -> Diagnostic | None:
     """The letter l written for the digit 1, where the line is good with the digit; else None."""
-    code = _COMMENT.sub(lambda found: " " * len(found[0]), text)
+    code = _with_blank_comments(text)
     fixed = with_digit_one(code)
     if fixed == code or lex_line(number, fixed).errors:
         return None
@@ -97,7 +98,7 @@ def _letter_l(number: int, text: str) -> Diagnostic | None:
 
 def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
     """The line with blanks where text stands that is no code, and one error for each stretch of it."""
-    bare = _COMMENT.sub(lambda found: " " * len(found[0]), text)
+    bare = _with_blank_comments(text)
     habit = other_controls.whole_line(bare)
     if habit is not None:
         column = len(bare) - len(bare.lstrip()) + 1
@@ -113,6 +114,11 @@ def _without_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
             told.append(word_faults.text_outside(number, start + 1, found[0].strip()))
         text = text[:start] + " " * (end - start) + text[end:]
     return text, told
+
+
+def _with_blank_comments(text: str) -> str:
+    """Return the line with blanks in place of its comments."""
+    return _COMMENT.sub(lambda found: " " * len(found[0]), text)
 
 
 def _prose_in(bare: str) -> Iterator[re.Match[str]]:

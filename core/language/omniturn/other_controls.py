@@ -18,22 +18,18 @@ _HERE: dict[str, tuple[str, str]] = {
     ),
     "G12": ("On this control, (~PLXC) starts face milling.", ("Put the contour between (~PLXC) and (END).")),
     "G13": ("On this control, (END) ends face milling.", "Write (END)."),
-    "G17": ("On this control, the plane is always XZ.", "Remove this text from the program."),
-    "G18": ("On this control, the plane is always XZ.", "Remove this text from the program."),
-    "G19": ("On this control, the plane is always XZ.", "Remove this text from the program."),
+    **dict.fromkeys(
+        ("G17", "G18", "G19"),
+        ("On this control, the plane is always XZ.", "Remove this text from the program."),
+    ),
     "G20": ("On this control, G70 selects inches.", "Write G70."),
     "G21": ("On this control, G71 selects metric units.", "Write G71."),
-    "G27": (
-        "This control has no code that moves to a reference point.",
-        ("Move to an X and Z position clear of the part."),
-    ),
-    "G28": (
-        "This control has no code that moves to a reference point.",
-        ("Move to an X and Z position clear of the part."),
-    ),
-    "G30": (
-        "This control has no code that moves to a reference point.",
-        ("Move to an X and Z position clear of the part."),
+    **dict.fromkeys(
+        ("G27", "G28", "G30"),
+        (
+            "This control has no code that moves to a reference point.",
+            "Move to an X and Z position clear of the part.",
+        ),
     ),
     "G32": ("On this control, one G33 line cuts all passes of a thread.", "Write G33XnZnInKn."),
     "G43": ("On this control, T selects the tool offset.", "Write T and the tool number."),
@@ -43,14 +39,20 @@ _HERE: dict[str, tuple[str, str]] = {
         "Write G77Sn for the maximum rpm, or G92 to preset the position.",
     ),
     "G53": ("On this control, T0 selects machine coordinates.", "Write T0 before the move."),
-    "G54": (
-        "On this control, part zero is in the tool offset, and G10 sets a work shift.",
-        "Write T; for a work shift, write G10XnZn before T.",
+    **dict.fromkeys(
+        ("G54", "G55", "G56", "G57", "G58", "G59"),
+        (
+            "On this control, part zero is in the tool offset, and G10 sets a work shift.",
+            "Write T; for a work shift, write G10XnZn before T.",
+        ),
     ),
-    "G61": ("This control has no code for the cornering mode.", "Remove this text from the program."),
-    "G64": ("This control has no code for the cornering mode.", "Remove this text from the program."),
-    "G65": ("This control has no macros; M98Pn calls a subroutine.", "Write M98Pn."),
-    "G66": ("This control has no macros; M98Pn calls a subroutine.", "Write M98Pn."),
+    **dict.fromkeys(
+        ("G61", "G64"),
+        ("This control has no code for the cornering mode.", "Remove this text from the program."),
+    ),
+    **dict.fromkeys(
+        ("G65", "G66"), ("This control has no macros; M98Pn calls a subroutine.", "Write M98Pn.")
+    ),
     "G80": (
         "On this control, a cycle is active only on its own line and does not need a cancel code.",
         ("Remove this text from the program."),
@@ -83,7 +85,6 @@ _HERE: dict[str, tuple[str, str]] = {
     "W": ("On this control, incremental moves are X and Z with G91.", "Write G91 and Z."),
     "E": ("On this control, F is the feed and K is the lead of a thread.", "Write F or K."),
 }
-_HERE |= {f"G{number}": _HERE["G54"] for number in range(55, 60)}
 
 _SIGNS: dict[str, tuple[str, str]] = {
     "，": ("a comma, which this control does not allow", "Type a decimal point."),
@@ -92,21 +93,12 @@ _SIGNS: dict[str, tuple[str, str]] = {
         "Put the comment in parentheses.",
     ),
     "#": ("the symbol for variables; this control does not support variables", "Write the actual number."),
-    "[": (
-        ("a symbol for calculations; this control does not support calculations"),
-        "Write the actual number.",
-    ),
-    "]": (
-        ("a symbol for calculations; this control does not support calculations"),
-        "Write the actual number.",
-    ),
-    "*": (
-        ("a symbol for calculations; this control does not support calculations"),
-        "Write the actual number.",
-    ),
-    "=": (
-        ("a symbol for calculations; this control does not support calculations"),
-        "Write the actual number.",
+    **dict.fromkeys(
+        "[]*=",
+        (
+            "a symbol for calculations; this control does not support calculations",
+            "Write the actual number.",
+        ),
     ),
     "%": ("the mark at the start and end of a program transfer", "Delete the character."),
     "$": ("a character that only other controls use", "Remove this text from the program."),

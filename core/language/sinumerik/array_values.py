@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from core.language.formulas import Formula, FormulaError, FormulaReader
-from core.language.sinumerik.sinumerik_formulas import GRAMMAR
+from core.language.formulas import Formula, FormulaError
+from core.language.sinumerik.sinumerik_formulas import formula_at, list_at
 
 _LIST = re.compile(r"\s*(SET|REP)?\s*\(")
-_NEXT = re.compile(r"\s*([,)])")
+_LEFT_OUT = re.compile(r"\s*[,)]")
 
 
 class Values(NamedTuple):
@@ -31,33 +31,22 @@ def read_values(text: str, at: int, *, bare: bool) -> tuple[Values, int] | None:
     match = _LIST.match(text, at)
     if match is None or not (match[1] or bare):
         return None
-    found: list[Formula | None] = []
-    at = match.end()
-    while True:
-        formula, at = _element(text, at)
-        found.append(formula)
-        sign = _NEXT.match(text, at)
-        if sign is None:
-            raise FormulaError(
-                at,
-                "The closing parenthesis of the list of values is missing",
-                "Write ) after the last value.",
-            )
-        at = sign.end()
-        if sign[1] == ")":
-            break
+    found, end = list_at(text, match.end(), lambda at: _element(text, at), _unclosed)
     if match[1] != "REP":
-        return Values(tuple(found)), at
+        return Values(tuple(found)), end
     if found[0] is None or len(found) > 2:
         raise FormulaError(
             match.end(), "REP accepts only a value and a number of elements", "Write, for example, REP(0)."
         )
-    return Values((found[0],), repeated=True, times=found[1] if found[1:] else None), at
+    return Values((found[0],), repeated=True, times=found[1] if found[1:] else None), end
 
 
 def _element(text: str, at: int) -> tuple[Formula | None, int]:
-    """A formula, or nothing before the next comma."""
-    if _NEXT.match(text, at):
-        return None, at
-    reader = FormulaReader(GRAMMAR, text, at)
-    return reader.formula(), reader.at
+    """Return a formula, or None before the next comma, and the index behind it."""
+    return (None, at) if _LEFT_OUT.match(text, at) else formula_at(text, at)
+
+
+def _unclosed(at: int) -> FormulaError:
+    return FormulaError(
+        at, "The closing parenthesis of the list of values is missing", "Write ) after the last value."
+    )

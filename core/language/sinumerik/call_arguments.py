@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from core.language.formulas import Formula, FormulaError, FormulaReader
-from core.language.sinumerik.sinumerik_formulas import GRAMMAR
+from core.language.formulas import Formula, FormulaError
+from core.language.line_reading import after_blanks
+from core.language.sinumerik.sinumerik_formulas import formula_at, list_at
 
 _QUOTED = re.compile(r'\s*"([^"]*)"\s*(?=[,)])')
 _AXIS = re.compile(r"\s*([A-CU-Z][0-9]?)\s*(?=[,)])")
@@ -15,7 +16,6 @@ _PARAMETER = re.compile(
     r"(?:\s+([A-Z_][A-Z_][A-Z0-9_]*)(?:\s*\[([^\]]*)\])?)?\s*(=)?\s*"
 )
 _DIMENSION = re.compile(r"\s*([0-9]*)\s*")
-_NEXT = re.compile(r"\s*([,)])")
 
 
 class Argument(NamedTuple):
@@ -52,21 +52,20 @@ def read_arguments(text: str, written: str, at: int) -> tuple[tuple[Argument, ..
 
     ``text`` is in capitals, ``written`` the same in its own case.
     """
-    found: list[Argument] = []
-    start, at = at, at + 1
-    while True:
-        at = _blanks(text, at)
-        argument, at = _argument(text, written, at)
-        found.append(argument)
-        match = _NEXT.match(text, at)
-        if match is None:
-            hint = "Write ( , , )."
-            if at >= len(text):
-                raise FormulaError(start, "The argument list has no closing parenthesis", hint)
-            raise FormulaError(at, "The argument list contains text that is not an argument", hint)
-        at = match.end()
-        if match[1] == ")":
-            return (() if len(found) == 1 and not found[0].given else tuple(found)), at
+    found, end = list_at(
+        text,
+        at + 1,
+        lambda place: _argument(text, written, after_blanks(text, place)),
+        lambda place: _no_argument(text, at, place),
+    )
+    return (() if len(found) == 1 and not found[0].given else tuple(found)), end
+
+
+def _no_argument(text: str, start: int, at: int) -> FormulaError:
+    hint = "Write ( , , )."
+    if at >= len(text):
+        return FormulaError(start, "The argument list has no closing parenthesis", hint)
+    return FormulaError(at, "The argument list contains text that is not an argument", hint)
 
 
 def _argument(text: str, written: str, at: int) -> tuple[Argument, int]:
@@ -77,37 +76,34 @@ def _argument(text: str, written: str, at: int) -> tuple[Argument, int]:
         return Argument(None, quoted[1].strip(), column), quoted.end()
     if axis := _AXIS.match(text, at):
         return Argument(None, axis[1], column), axis.end()
-    reader = FormulaReader(GRAMMAR, text, at)
-    return Argument(reader.formula(), None, column), reader.at
+    formula, end = formula_at(text, at)
+    return Argument(formula, None, column), end
 
 
 def read_parameters(text: str, written: str, at: int) -> tuple[tuple[Parameter, ...], int]:
     """The parameters in the brackets that open at ``at``, and the index behind them. Raises FormulaError."""
-    found: list[Parameter] = []
-    at = _blanks(text, at + 1)
+    at = after_blanks(text, at + 1)
     if text[at : at + 1] == ")":
         return (), at + 1
-    while True:
-        match = _PARAMETER.match(text, at)
-        if match is None:
-            raise FormulaError(
-                at, "A parameter needs a type and a name", "Write, for example, PROC NAME(REAL LENGTH)."
-            )
-        sizes = _sizes(match)
-        at, default = match.end(), None
-        if match[5]:
-            default, at = _argument(text, written, at)
-        found.append(Parameter(match[3] or "", match[2], match[1] is not None, default, sizes))
-        end = _NEXT.match(text, at)
-        if end is None:
-            raise FormulaError(
-                at,
-                "The closing parenthesis of the parameter list is missing",
-                "Write ) after the last parameter.",
-            )
-        at = end.end()
-        if end[1] == ")":
-            return tuple(found), at
+    found, end = list_at(text, at, lambda place: _parameter(text, written, place), _unclosed)
+    return tuple(found), end
+
+
+def _parameter(text: str, written: str, at: int) -> tuple[Parameter, int]:
+    match = _PARAMETER.match(text, at)
+    if match is None:
+        raise FormulaError(
+            at, "A parameter needs a type and a name", "Write, for example, PROC NAME(REAL LENGTH)."
+        )
+    sizes = _sizes(match)
+    default, end = _argument(text, written, match.end()) if match[5] else (None, match.end())
+    return Parameter(match[3] or "", match[2], match[1] is not None, default, sizes), end
+
+
+def _unclosed(at: int) -> FormulaError:
+    return FormulaError(
+        at, "The closing parenthesis of the parameter list is missing", "Write ) after the last parameter."
+    )
 
 
 def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:
@@ -120,9 +116,3 @@ def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:
             "An array parameter needs VAR and whole numbers as its sizes",
                            "Write, for example, PROC NAME(VAR REAL LIST[3]).")  # fmt: skip
     return tuple(int(each[1][:9]) if each is not None and each[1] else None for each in found)
-
-
-def _blanks(text: str, at: int) -> int:
-    while text[at : at + 1].isspace():
-        at += 1
-    return at

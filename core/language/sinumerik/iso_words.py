@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple
 
+from core.language.line_reading import SIGNED
 from core.message import Message
 
 
@@ -17,7 +18,6 @@ class Habit(NamedTuple):
     hint: str
 
 
-_NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 _Rule = tuple[re.Pattern[str], Callable[[re.Match[str]], tuple[str, str]]]
 
 
@@ -161,20 +161,20 @@ _RULES: tuple[_Rule, ...] = (
     (re.compile(r"^\s*\("), _comment),
     (re.compile(r"^\s*(?P<word>O[0-9]+)"), _program),
     (re.compile(r"(?P<word>#(?P<number>[0-9]+))"), _variable),
-    (re.compile(rf"{_g('4')}(?!.*[FS][0-9=.]).*?(?<![A-Z])(?P<letter>[XUP])(?P<number>{_NUMBER})"), _dwell),
+    (re.compile(rf"{_g('4')}(?!.*[FS][0-9=.]).*?(?<![A-Z])(?P<letter>[XUP])(?P<number>{SIGNED})"), _dwell),
     (re.compile(rf"(?P<word>{_g('28|30')})"), _home),
-    (re.compile(rf"(?P<word>{_g('50|92')})\s*S(?P<number>{_NUMBER})"), _speed_limit),
-    (re.compile(rf"(?<![A-Z0-9_])G(?P<code>7[0-6])(?=.*(?<![A-Z])[PQRUW]{_NUMBER})"), _cycle),
-    (re.compile(rf"(?<![A-Z0-9_])G(?P<code>32|92)(?=.*F{_NUMBER})"), _cycle),
+    (re.compile(rf"(?P<word>{_g('50|92')})\s*S(?P<number>{SIGNED})"), _speed_limit),
+    (re.compile(rf"(?<![A-Z0-9_])G(?P<code>7[0-6])(?=.*(?<![A-Z])[PQRUW]{SIGNED})"), _cycle),
+    (re.compile(rf"(?<![A-Z0-9_])G(?P<code>32|92)(?=.*F{SIGNED})"), _cycle),
     (re.compile(rf"(?P<word>{_g('50|92')})"), _preset),
     (re.compile(r"(?<![A-Z0-9_])G(?P<code>20|21)(?![0-9.])"), _inches),
     (re.compile(r"(?<![A-Z0-9_])G(?P<code>98|99)(?![0-9.])"), _feed),
     (re.compile(r"(?P<word>M98)\s*P0*(?P<number>[0-9]+)"), _call),
     (re.compile(r"GOTO\s*(?P<number>[0-9]+)"), _jump),
-    (re.compile(rf"(?P<word>,\s*(?P<letter>[CR])(?P<number>{_NUMBER}))"), _corner),
-    (re.compile(rf"{_g('2|3')}.*?(?<![A-Z])R(?P<number>{_NUMBER})"), _radius),
-    (re.compile(rf"{_g('1')}.*?(?<![A-Z])(?P<word>(?P<letter>R)(?P<number>{_NUMBER}))"), _corner),
-    (re.compile(rf"(?<![A-Z0-9_])(?P<word>(?P<letter>[UW])(?P<number>{_NUMBER}))"), _distance),
+    (re.compile(rf"(?P<word>,\s*(?P<letter>[CR])(?P<number>{SIGNED}))"), _corner),
+    (re.compile(rf"{_g('2|3')}.*?(?<![A-Z])R(?P<number>{SIGNED})"), _radius),
+    (re.compile(rf"{_g('1')}.*?(?<![A-Z])(?P<word>(?P<letter>R)(?P<number>{SIGNED}))"), _corner),
+    (re.compile(rf"(?<![A-Z0-9_])(?P<word>(?P<letter>[UW])(?P<number>{SIGNED}))"), _distance),
 )
 """The first that fits a line is told. They are asked of lines alone that cannot be read as they stand."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from core.language.line_reading import after_signs
 from core.language.sinumerik.sinumerik_lexer import lex_line
 from core.language.sinumerik.sinumerik_words import CORNERS, KEYS
 from core.language.sinumerik.subprogram_files import HEADER
@@ -33,7 +34,8 @@ def spans(text: str) -> list[Span]:
         found.append(Span(at, len(line.block), Ink.NUMBER))
     for word in line.words:
         ink = Ink.KEY if word.name in KEYS | CORNERS else _OF_NAME.get(word.name, Ink.POSITION)
-        found.append(Span(word.column - 1, _written(code, word.column - 1, len(word.text)), ink))
+        at = word.column - 1
+        found.append(Span(at, after_signs(code, at, len(word.text)) - at, ink))
     if line.jump is not None:
         size = _WORD.match(code, line.jump.column - 1)
         found.append(Span(line.jump.column - 1, len(size.group()) if size else 1, Ink.CALL))
@@ -43,12 +45,3 @@ def spans(text: str) -> list[Span]:
         found.append(Span(line.comment_column - 1, len(text) - line.comment_column + 1, Ink.COMMENT))
     faults = (error.column for error in line.errors if error.column)
     return found + [Span(min(column, len(text)) - 1, 1, Ink.FAULT) for column in faults if text]
-
-
-def _written(code: str, at: int, signs: int) -> int:
-    """How far a word of so many signs reaches, blanks inside it counted."""
-    end = at
-    while signs and end < len(code):
-        signs -= not code[end].isspace()
-        end += 1
-    return end - at

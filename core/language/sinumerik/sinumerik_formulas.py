@@ -1,13 +1,16 @@
-"""Formulas of SINUMERIK: R parameters, variables of the program, operators and functions."""
+"""Formulas of SINUMERIK: R parameters, variables, operators and functions; lists in parentheses."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from typing import TypeVar
 
-from core.language.formulas import TRIGONOMETRY, Grammar
+from core.language.formulas import FUNCTIONS, Formula, FormulaError, FormulaReader, Grammar
+from core.language.line_reading import UNSIGNED
 
 GRAMMAR = Grammar(
-    number=re.compile(r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:EX[+-]?[0-9]{1,3})?"),
+    number=re.compile(rf"{UNSIGNED}(?:EX[+-]?[0-9]{{1,3}})?"),
     # $P_… and the like are system variables, their indices are part of the name.
     parameter=re.compile(r"(R(?=[0-9\[])|\$[A-Z][A-Z0-9_]*(?:\[[^\]]*\])?|[A-Z_][A-Z_][A-Z0-9_]*)([0-9]*)"),
     operators={
@@ -28,13 +31,9 @@ GRAMMAR = Grammar(
         "<": (10, "less"),
     },
     functions={
-        **TRIGONOMETRY,
+        **FUNCTIONS,
         "ATAN2": "direction",
-        "SQRT": "square root",
         "POT": "square",
-        "ABS": "absolute",
-        "LN": "natural logarithm",
-        "EXP": "exponential",
         "TRUNC": "integer part",
         "ROUND": "nearest whole number",
         "MINVAL": "smaller",
@@ -47,3 +46,32 @@ GRAMMAR = Grammar(
     indexed=True,
 )
 """Formulas behind ``=``, in brackets of a target, and of conditions. Comparisons bind weakest of all."""
+
+_Item = TypeVar("_Item")
+_NEXT = re.compile(r"\s*([,)])")
+
+
+def formula_at(text: str, at: int) -> tuple[Formula, int]:
+    """Return the formula that begins at ``at``, and the index behind it. Raises FormulaError."""
+    reader = FormulaReader(GRAMMAR, text, at)
+    return reader.formula(), reader.at
+
+
+def list_at(
+    text: str, at: int, read: Callable[[int], tuple[_Item, int]], unclosed: Callable[[int], FormulaError]
+) -> tuple[list[_Item], int]:
+    """Return the items up to the closing parenthesis, and the index behind it.
+
+    ``read`` returns the item at an index and the index behind it. Raises the error of ``unclosed`` where an
+    item is not followed by a comma or the parenthesis.
+    """
+    found: list[_Item] = []
+    while True:
+        item, at = read(at)
+        found.append(item)
+        sign = _NEXT.match(text, at)
+        if sign is None:
+            raise unclosed(at)
+        at = sign.end()
+        if sign[1] == ")":
+            return found, at

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic
-from core.language.formulas import Formula, FormulaError, FormulaReader, Number, Operation, Parameter
+from core.language.formulas import FormulaError, FormulaReader
+from core.language.line_reading import SIGNED, after_blanks, comment_start
 from core.language.sinumerik import sinumerik_words as known
 from core.language.sinumerik.array_values import read_values
 from core.language.sinumerik.call_arguments import Argument, read_arguments
@@ -17,87 +17,14 @@ from core.language.sinumerik.sinumerik_alarms import SYNTAX, fault
 from core.language.sinumerik.sinumerik_formulas import GRAMMAR
 from core.language.sinumerik.sinumerik_words import LONGEST_LINE, Form, Line, Word
 from core.language.sinumerik.third_axis_name import OWN, words_as_c
+from core.language.sinumerik.word_values import PARAMETER, Value, beyond, demand_parameters, value_at
 from core.language.typography import ascii_upper, typed
 from core.message import Message
 
-# --- values: a number, or an R parameter that gives it
-
-
-NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
-PARAMETER = re.compile(r"R([0-9]+)")
-_LONGEST_CODE = 4  # digits
-
-
-class Value(NamedTuple):
-    """A number, or the formula that gives it; and where it ends."""
-
-    number: float | None
-    formula: Formula | None
-    end: int
-
-
-def value_at(text: str, at: int) -> Value:
-    """The value that begins at this place. Raises FormulaError where none does."""
-    reader = FormulaReader(GRAMMAR, text, at)
-    made = reader.formula()
-    match made:
-        case Number(value):
-            return Value(value, None, reader.at)
-        case Operation("negative", (Number(value),)):
-            return Value(-value, None, reader.at)
-        case _:
-            _demand_parameters(made, at)
-            return Value(None, made, reader.at)
-
-
-def _demand_parameters(formula: Formula, at: int) -> None:
-    """R parameters that there are, all through a formula."""
-    match formula:
-        case Parameter("R", int(number), column) if number > known.MOST_R:
-            raise FormulaError(
-                column - 1,
-                Message("R{number} is not a valid parameter", number=number),
-                Message("Use a parameter from R0 to R{most_r}.", most_r=known.MOST_R),
-            )
-        case Operation(_, operands):
-            for each in operands:
-                _demand_parameters(each, at)
-
-
-def variable(name: str) -> bool:
-    """Whether a word sets an R parameter or a variable of the program."""
-    return PARAMETER.fullmatch(name) is not None or (len(name) > 1 and name not in known.VOCABULARY)
-
-
-def beyond(word: Word) -> tuple[str, str] | None:
-    """What is wrong with the number of a word, and what to do; None where nothing is."""
-    if word.value is None:
-        return None
-    if word.name in {"G", "M"}:
-        digits = word.text.rpartition("=")[2] if "=" in word.text else word.text[1:]
-        if digits.isdigit() and len(digits) <= _LONGEST_CODE:
-            return None
-        return Message(
-            "{word} is not a valid code", word=word.text
-        ), "Write a whole number of up to four digits."
-    if word.name in {"T", "D"} and not word.value.is_integer():
-        return Message("{word} is not a valid tool or edge number", word=word.text), "Enter a whole number."
-    low, high = known.REACH["R" if variable(word.name) else word.name]
-    if low <= word.value <= high:
-        return None
-    return Message("{word} is out of range", word=word.text), (
-        Message(
-            "Use a value of {word} between {low} and {high}.",
-            word=word.name,
-            low=f"{low:g}",
-            high=f"{high:g}",
-        )
-    )
-
-
+_NUMBER = re.compile(SIGNED)
 _HEAD = re.compile(r"\s*(?:/([0-9]?))?\s*(?:([N:])([0-9]+))?\s*(?:([A-Z_][A-Z_][A-Z0-9_]*)\s*:)?\s*")
 # Nearly all words are these; they need no look at each sign.
-_PLAIN = re.compile(rf"\s*([GMXYZCIJKFSTD])({NUMBER.pattern})(?=[\sA-Z]|$)")
+_PLAIN = re.compile(rf"\s*([GMXYZCIJKFSTD])({SIGNED})(?=[\sA-Z]|$)")
 _NAME = re.compile(r"[A-Z_][A-Z_][A-Z0-9_]*|L[0-9]+(?![0-9.])")
 _ASSIGNED = re.compile(r"(R[0-9]+|[A-Z_]+[0-9]*)\s*=(?!=)\s*")
 _OF_SPINDLE = re.compile(r"([MSTD])([0-9]+)")
@@ -125,7 +52,8 @@ def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
 
     ``third_axis`` is the name of the machine's third axis, whose words come out as those of C.
     """
-    code, comment = _without_comment(text)
+    end = comment_start(text)
+    code, comment = text[:end], end + 1 if end < len(text) else 0
     upper = ascii_upper(code)
     head = _HEAD.match(upper)
     assert head is not None  # every part of it may be missing
@@ -168,14 +96,6 @@ def lex_line(number: int, text: str, third_axis: str = OWN) -> Line:
         scanner.arguments,
         scanner.modal_call,
     )
-
-
-def _without_comment(text: str) -> tuple[str, int]:
-    """The code, and the column of the comment's semicolon; in the text of a message it begins none."""
-    at = text.find(";")
-    while at >= 0 and text.count('"', 0, at) % 2:
-        at = text.find(";", at + 1)
-    return (text, 0) if at < 0 else (text[:at], at + 1)
 
 
 class _Scanner:
@@ -286,7 +206,7 @@ class _Scanner:
         if letter not in known.LETTERS:
             why = known.LETTERS_OUTSIDE.get(letter, "this word does not exist on this control")
             return self._outside(at, at + 1, letter, why)
-        match = NUMBER.match(text, at + 1)
+        match = _NUMBER.match(text, at + 1)
         if match is None:
             instead = typed(self._text[at + 1 : at + 2])
             hint = (
@@ -337,17 +257,21 @@ class _Scanner:
 
     def _transformation(self, name: str, at: int, end: int) -> int:
         """TRANSMIT, TRACYL and TRAFOOF with what stands in their brackets."""
-        arguments: tuple[Argument, ...] = ()
+        arguments: tuple[Argument, ...] | None = ()
         if bracket := _BRACKET.match(self._text, end):
-            try:
-                arguments, end = read_arguments(self._text, self._written, bracket.end() - 1)
-            except FormulaError as problem:
-                self.refuse(
-                    problem.at + 1, Message("{name}: {problem}", name=name, problem=problem), problem.hint
-                )
-                return len(self._text)
-        self.words.append(Word(name, None, at + 1, name, arguments=arguments))
+            arguments, end = self._arguments(name, bracket)
+        if arguments is not None:
+            self.words.append(Word(name, None, at + 1, name, arguments=arguments))
         return end
+
+    def _arguments(self, name: str, bracket: re.Match[str]) -> tuple[tuple[Argument, ...] | None, int]:
+        """Return the arguments in this bracket, None if they cannot be read; and the index behind them."""
+        try:
+            return read_arguments(self._text, self._written, bracket.end() - 1)
+        except FormulaError as problem:
+            what = Message("{name}: {problem}", name=name, problem=problem)
+            self.refuse(problem.at + 1, what, problem.hint)
+            return None, len(self._text)
 
     def _of_a_spindle(self, name: str, at: int, end: int) -> int:
         """SETMS, WAITS, SETMS(1): with the number of a spindle behind, or meant for the first."""
@@ -374,13 +298,7 @@ class _Scanner:
     def _called(self, name: str, at: int, end: int) -> int:
         self.call, self.call_column = name, at + 1
         if bracket := _BRACKET.match(self._text, end):
-            try:
-                self.arguments, end = read_arguments(self._text, self._written, bracket.end() - 1)
-            except FormulaError as problem:
-                self.refuse(
-                    problem.at + 1, Message("{name}: {problem}", name=name, problem=problem), problem.hint
-                )
-                return len(self._text)
+            self.arguments, end = self._arguments(name, bracket)
         passes = _PASSES.match(self._text, end)
         if passes is not None:
             end = passes.end()
@@ -405,10 +323,12 @@ class _Scanner:
         if name in known.NAMES_OUTSIDE or _OF_AN_AXIS.match(self._text, match.end()):
             why = known.WHY_OUTSIDE.get(name, "this control does not support axis-specific words")
             return self._outside(at, match.end(), name, why)
+        if name in known.WITHOUT_EQUALS:
+            return self._without_equals(name, at)
         try:
             reader = FormulaReader(GRAMMAR, self._text, self._text.index("[", at))
             place = reader.index()
-            _demand_parameters(place, at)
+            demand_parameters(place, at)
             sign = _SET.match(self._text, reader.at)
             if sign is None:
                 return self._skip(
@@ -451,6 +371,8 @@ class _Scanner:
             word = Word("T", None, at + 1, f'T="{quoted[1]}"', string=quoted[1].strip())
             self.words.append(word)
             return quoted.end()
+        if name in known.WITHOUT_EQUALS:
+            return self._without_equals(name, at)
         assigned = name in known.ASSIGNED or name == "M"
         if is_r is None and not assigned and (len(name) == 1 or name in known.NAMES_OUTSIDE):
             why = known.LETTERS_OUTSIDE.get(name) or known.WHY_OUTSIDE.get(name)
@@ -463,6 +385,11 @@ class _Scanner:
         if found is not None and found[1] in _FORMS:
             return self._target(name, at, found)
         return self._value(name, at, end)
+
+    def _without_equals(self, name: str, at: int) -> int:
+        """Report a value that is assigned to a word without one."""
+        text = Message("{name} does not accept a value", name=name)
+        return self._skip(at, text, Message("Write {name} without an equals sign.", name=name))
 
     def _value(self, name: str, at: int, end: int) -> int:
         try:
@@ -484,29 +411,17 @@ class _Scanner:
                 Message("{name}= does not accept {form}", name=name, form=form),
                 Message("Use {allowed}.", allowed=allowed),
             )
+        hint = Message("Write {name}={form}(…).", name=name, form=form)
         if bracket is None:
-            return self._skip(
-                at,
-                Message("{form} needs parentheses", form=form),
-                Message("Write {name}={form}(…).", name=name, form=form),
-            )
+            return self._skip(at, Message("{form} needs parentheses", form=form), hint)
         try:
             value = value_at(self._text, found.end())
         except FormulaError as problem:
-            return self._skip(
-                at,
-                Message("{form} has no value in its parentheses: {problem}", form=form, problem=problem),
-                Message("Write {name}={form}(…).", name=name, form=form),
-            )
-        close = value.end
-        while self._text[close : close + 1].isspace():
-            close += 1
+            what = Message("{form} has no value in its parentheses: {problem}", form=form, problem=problem)
+            return self._skip(at, what, hint)
+        close = after_blanks(self._text, value.end)
         if self._text[close : close + 1] != ")":
-            return self._skip(
-                at,
-                Message("the closing parenthesis of {form} is missing", form=form),
-                Message("Write {name}={form}(…).", name=name, form=form),
-            )
+            return self._skip(at, Message("the closing parenthesis of {form} is missing", form=form), hint)
         written = "".join(self._text[at : close + 1].split())
         word = Word(name, value.number, at + 1, written, Form(form), value.formula)
         return self._keep(word, close + 1)

@@ -84,12 +84,12 @@ class Line(NamedTuple):
 AXES = ("X", "Y", "Z", "C")
 
 G_GROUPS: dict[int, str] = {
-    int(name[1:]): entry.group for name, entry in FUNCTIONS.items() if name[0] == "G" and name[1:].isdigit()
+    int(name[1:]): group for name, group in FUNCTIONS.items() if name[0] == "G" and name[1:].isdigit()
 }
 """G codes of this control by the group in which each excludes the others."""
 
 NAMED_GROUPS: dict[str, str] = {
-    name: entry.group for name, entry in FUNCTIONS.items() if name[0] != "G" or not name[1:].isdigit()
+    name: group for name, group in FUNCTIONS.items() if name[0] != "G" or not name[1:].isdigit()
 }
 """Functions that have a name, by their group."""
 
@@ -106,12 +106,15 @@ PLACES = frozenset({"X", "Y", "Z", "C", "RP", "AP", "ANG"})
 OF_A_SPINDLE = frozenset({"SETMS", "WAITS"})
 """Words that take the number of a spindle in brackets."""
 
-ASSIGNED = frozenset(WORDS) - OF_A_SPINDLE
+ASSIGNED = WORDS - OF_A_SPINDLE
 """Words that take a value behind =."""
 
 FRAMES = frozenset({"TRANS", "ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR"})
 KEYS = frozenset(NAMED_GROUPS)
 """Words without a value."""
+
+WITHOUT_EQUALS = KEYS | OF_A_SPINDLE
+"""Words that no equals sign can follow."""
 
 TARGETS = frozenset({"AC", "IC", "DC", "ACP", "ACN"})
 FORMS: dict[str, frozenset[str]] = {

@@ -1,0 +1,123 @@
+"""Code books as files: ``code_books/LANGUAGE`` has ``book.toml`` and a TOML file for each of its subjects.
+
+Each table ``[["Title of the chapter"]]`` is one entry, with the keys of ``Entry``; a chapter may continue in
+the next file. ``heads`` in the place of ``head`` makes one entry of each head. ``{name}`` in a text is the
+text with that name in ``[parts]``, or the text of that key of the entry. An entry has the texts of
+``[usual]`` for keys that it does not have. ``refused`` may be a table of replacements: the example with
+these texts replaced is rejected. ``[meanings]`` explains the words that follow codes.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections import ChainMap, Counter
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from core.language.code_book import CodeBook, Entry
+
+BOOKS = Path(__file__).with_name("code_books")
+
+_TEXTS = dict.fromkeys(("head", "words", "what", "example", "refused", "why", "behind", "insert"), "")
+_KINDS: Mapping[str, type | tuple[type, ...]] = {
+    **dict.fromkeys(_TEXTS, str),
+    "heads": list,
+    "refused": (str, dict),
+    "whole": bool,
+    "files": dict,
+}
+"""Keys of an entry, and what their values are."""
+
+_HOLE = re.compile(r"\{(\w+)\}")
+
+
+def read_book(folder: Path) -> CodeBook:
+    """Return the code book of a folder. Raises ValueError with file and code for an entry that is wrong."""
+    frame = tomllib.loads((folder / "book.toml").read_text(encoding="utf-8"))
+    chapters: dict[str, list[Entry]] = {}
+    meanings: dict[str, str] = {}
+    for path in (folder / f"{subject}.toml" for subject in frame["subjects"]):
+        try:
+            _read_subject(path.read_text(encoding="utf-8"), chapters, meanings)
+        except ValueError as error:
+            raise ValueError(f"{path.name}: {error}") from error
+    _check_once([entry.head for entries in chapters.values() for entry in entries])
+    return CodeBook(
+        tuple((title, tuple(entries)) for title, entries in chapters.items()),
+        head=_program(frame["head"]),
+        tail=_program(frame["tail"]),
+        comment=frame["comment"],
+        meanings=meanings,
+    )
+
+
+def _read_subject(text: str, chapters: dict[str, list[Entry]], meanings: dict[str, str]) -> None:
+    """Add the entries and meanings of a file to those of the book."""
+    tables = tomllib.loads(text)
+    parts, usual = tables.pop("parts", {}), tables.pop("usual", {})
+    meanings |= tables.pop("meanings", {})
+    for title, rows in tables.items():
+        entries = (entry for row in rows for entry in _entries(row, usual, parts))
+        chapters.setdefault(title, []).extend(entries)
+
+
+def _entries(row: dict[str, Any], usual: dict[str, Any], parts: dict[str, str]) -> Iterator[Entry]:
+    """Yield the entry of each head of a row. Raises ValueError for a row that is wrong."""
+    for head in row.get("heads") or [row.get("head", "")]:
+        try:
+            yield _entry({**_TEXTS, **usual, **row, "head": head}, parts)
+        except ValueError as error:
+            raise ValueError(f"{head}: {error}") from error
+
+
+def _entry(row: dict[str, Any], parts: dict[str, str]) -> Entry:
+    if wrong := [key for key, value in row.items() if not isinstance(value, _KINDS.get(key, ()))]:
+        raise ValueError(f"{wrong[0]} is an unknown key, or its value is of the wrong kind")
+    known = ChainMap(row, parts)
+    texts = {key: _filled(value, known) for key, value in row.items() if isinstance(value, str)}
+    texts["what"] = " ".join(texts["what"].split())
+    texts["behind"] = _program(texts["behind"])
+    if not (texts["head"] and texts["what"]):
+        raise ValueError("head or what is missing")
+    if isinstance(row["refused"], dict):
+        texts["refused"] = _replaced(texts["example"], row["refused"])
+    if bool(texts["refused"]) != bool(texts["why"]):
+        raise ValueError("refused and why must be together")
+    files = tuple((name, _program(_filled(text, known))) for name, text in row.get("files", {}).items())
+    return Entry(**texts, whole=row.get("whole", False), files=files)
+
+
+def _filled(text: str, known: Mapping[str, Any]) -> str:
+    """Return a text with its parts put in, without line breaks at its ends."""
+    if "{" not in text:
+        return text.strip("\n")
+
+    def part(hole: re.Match[str]) -> str:
+        found = known.get(hole[1])
+        if isinstance(found, str):
+            return _filled(found, {name: each for name, each in known.items() if name != hole[1]})
+        raise ValueError(f"{hole[0]} has no text")
+
+    return _HOLE.sub(part, text).strip("\n")
+
+
+def _replaced(example: str, pieces: Mapping[str, str]) -> str:
+    """Return the example with each of the pieces replaced. Raises ValueError for a piece that it lacks."""
+    for before, after in pieces.items():
+        if before not in example:
+            raise ValueError(f"the example does not contain {before}")
+        example = example.replace(before, after)
+    return example
+
+
+def _program(text: str) -> str:
+    """Return the lines of a program, each with its line break."""
+    return text.strip("\n") + "\n" if text else ""
+
+
+def _check_once(heads: list[str]) -> None:
+    """Raise ValueError for a code with two entries."""
+    if twice := [head for head, times in Counter(heads).items() if times > 1]:
+        raise ValueError(f"{', '.join(twice)}: each code must have only one entry")

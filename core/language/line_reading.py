@@ -1,0 +1,62 @@
+"""What the readers of all languages share: a place in a line, blanks, comments, the form of numbers."""
+
+from __future__ import annotations
+
+import re
+
+UNSIGNED = r"(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
+"""Pattern of a number without a sign."""
+
+SIGNED = rf"[+-]?{UNSIGNED}"
+
+
+class LineReader:
+    """A place in a line, from which patterns are matched. ``upper`` is the line in capitals."""
+
+    def __init__(self, upper: str, at: int = 0) -> None:
+        self.upper = upper
+        self.at = at
+
+    @property
+    def done(self) -> bool:
+        """Return whether nothing but blanks follows."""
+        return not self.upper[self.at :].strip()
+
+    def blanks(self) -> None:
+        """Move to the next character that is not a blank."""
+        if self.upper[self.at : self.at + 1].isspace():
+            self.at = after_blanks(self.upper, self.at)
+
+    def take(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
+        """Return what the pattern matches here, and move behind it; None without a match."""
+        match = pattern.match(self.upper, self.at)
+        if match is not None:
+            self.at = match.end()
+        return match
+
+
+def after_blanks(text: str, at: int) -> int:
+    """Return the index of the next character that is not a blank; the length of the text without one."""
+    end = len(text)
+    while at < end and text[at].isspace():
+        at += 1
+    return at
+
+
+def comment_start(text: str) -> int:
+    """Return the index of the semicolon that begins the comment; the length of the text without a comment.
+
+    In a text in quotes, a semicolon does not begin a comment.
+    """
+    at = text.find(";")
+    while at >= 0 and text.count('"', 0, at) % 2:
+        at = text.find(";", at + 1)
+    return len(text) if at < 0 else at
+
+
+def after_signs(text: str, at: int, signs: int) -> int:
+    """Return the index behind this number of characters that are not blanks."""
+    while signs and at < len(text):
+        signs -= not text[at].isspace()
+        at += 1
+    return at
