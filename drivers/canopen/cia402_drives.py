@@ -30,7 +30,7 @@ from drivers.canopen.canopen_objects import (
 from drivers.canopen.canopen_setup import Setup, axis_objects
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.canopen.drive_profiles import Entry
-from drivers.canopen.pvt_records import RecordQueue
+from drivers.canopen.driven_axes import RecordQueue
 
 _FOLLOWING = 0x8611  # EMCY
 SYNCS = 3  # answers that may be missing of what answers every 10 ms

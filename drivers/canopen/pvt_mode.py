@@ -13,8 +13,8 @@ from core.ports import DriverError, Fault, at_rest
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
 from drivers.canopen.cia402_drives import DrivenAxis
 from drivers.canopen.drive_profiles import QUEUED
+from drivers.canopen.driven_axes import RecordQueue
 from drivers.canopen.position_modes import Follower
-from drivers.canopen.pvt_records import RecordQueue
 from drivers.setpoint_queue import SetpointQueue
 
 # --- From setpoints to PVT records: points of the path in counts, times in whole milliseconds.
