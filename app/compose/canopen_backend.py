@@ -21,9 +21,8 @@ from drivers.canopen.canopen_config import (
     SpindleConfig,
 )
 from drivers.canopen.canopen_nodes import PLAIN_MODULE, CanNode, CanTerminal, Objects, can_terminal
-from drivers.canopen.canopen_table import CanopenTable
+from drivers.canopen.canopen_table import CanopenTable, EncoderTable
 from drivers.canopen.drive_profiles import CIA402, PROFILES
-from drivers.canopen.encoder_table import EncoderTable
 from drivers.feeder.feeder_server import Driven
 from drivers.operator_station import PanelStation
 

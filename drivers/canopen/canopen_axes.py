@@ -11,9 +11,8 @@ from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_homing import Homing
 from drivers.canopen.canopen_objects import DriveState
 from drivers.canopen.canopen_setup import limits
-from drivers.canopen.cia402_drives import MOTIONS, DriveSet
-from drivers.canopen.cyclic_mode import CyclicFollower, SyncSchedule
-from drivers.canopen.position_modes import Follower, ProfiledFollower
+from drivers.canopen.driven_axes import MOTIONS, DriveSet
+from drivers.canopen.position_modes import CyclicFollower, Follower, ProfiledFollower, SyncSchedule
 from drivers.canopen.pvt_mode import PvtFollower
 from drivers.setpoint_queue import SetpointQueue, Tolerance, check_limits
 

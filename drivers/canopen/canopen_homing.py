@@ -8,7 +8,8 @@ from core.message import Message
 from core.ports import DriverError, Fault
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_objects import BIT_12, BIT_13, HALT, HM, NEW, REACHED, DriveState
-from drivers.canopen.cia402_drives import Drive402, DrivenAxis
+from drivers.canopen.cia402_drives import Drive402
+from drivers.canopen.driven_axes import DrivenAxis
 
 _FIRST = 0.1  # s in which "target reached" may still be that of the last move
 _MODE = 0.5  # s for a change of mode

@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator, Mapping
 import canopen
 
 from core.message import Message
-from core.ports import DriverError, Fault, StationState
+from core.ports import PROBE, DriverError, Fault, Latch, StationState
 from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_axes import CanopenAxes
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_nodes import CanNode, CanTerminal
@@ -340,3 +341,32 @@ class CanopenIO:
     @staticmethod
     def _bit(data: bytearray, where: CanTerminal) -> bool:
         return bool(data[where.sub - 1] >> where.bit & 1)
+
+
+_LATE = 2  # SYNCs: a module answers one with what it had at the one before
+
+
+class CanopenProbe:
+    """``core.ports.TouchInput``: where the axes were when the probe's input came on, by the answers to each SYNC.
+
+    The drives' own latch (60B8) is not used: few have its input free."""
+
+    def __init__(self, axes: CanopenAxes, io: CanopenIO, sync: float) -> None:
+        self._axes, self._io, self._sync = axes, io, sync
+        self._made = False
+        self._kept: Latch | None = None
+
+    def arm(self) -> None:
+        """Forget what was kept."""
+        self._kept = None
+
+    def latched(self) -> Latch | None:
+        """The first touch since."""
+        return self._kept
+
+    def note(self) -> None:
+        """Once a round of the loop that owns the bus."""
+        before, self._made = self._made, self._io.inputs()[PROBE]
+        if self._made and not before and self._kept is None:
+            sample = self._axes.sample()
+            self._kept = Latch(sample.t, sample.actual, _LATE * self._sync)

@@ -11,9 +11,8 @@ from typing import NamedTuple
 from core.message import Message
 from core.ports import DriverError, Fault, at_rest
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
-from drivers.canopen.cia402_drives import DrivenAxis
 from drivers.canopen.drive_profiles import QUEUED
-from drivers.canopen.driven_axes import RecordQueue
+from drivers.canopen.driven_axes import DrivenAxis, RecordQueue
 from drivers.canopen.position_modes import Follower
 from drivers.setpoint_queue import SetpointQueue
 

@@ -42,7 +42,7 @@ from app.compose.feeder_process import driven
 from app.compose.machine_files import load_machine
 from app.compose.played_machine import play_peers
 from core.ports import DriverError, FloatArray, MachinePorts, Segments
-from drivers.canopen.cyclic_mode import CyclicFollower, SyncSchedule
+from drivers.canopen.position_modes import CyclicFollower, SyncSchedule
 from drivers.clocks import RealClock
 from drivers.feeder.feeder_line import Line
 from drivers.feeder.feeder_links import SocketLink
