@@ -13,7 +13,7 @@ from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_feed_hold import Holds
 from drivers.grblhal.grblhal_gcode import line_number, line_of
 from drivers.grblhal.grblhal_jog import Jogs
-from drivers.grblhal.grblhal_overrides import Overrides
+from drivers.grblhal.grblhal_operator import Overrides
 from drivers.grblhal.grblhal_report import Report
 
 AHEAD = 0.4  # s of motion beyond the block under way: so long it runs on when the host is lost

@@ -15,7 +15,7 @@ from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig
 from drivers.grblhal.grblhal_dialogue import Ask, Runner, Script, Stream
 from drivers.grblhal.grblhal_report import Identity, Report, read_report
-from drivers.grblhal.grblhal_waits import longest_wait
+from drivers.grblhal.grblhal_reported import longest_wait
 from drivers.grblhal.grblhal_wire import Wire, WireLostError
 from drivers.reopening import Opening
 

@@ -12,7 +12,7 @@ from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_dialogue import Ask
 from drivers.grblhal.grblhal_gcode import number
-from drivers.grblhal.grblhal_overrides import LEAST, MOST
+from drivers.grblhal.grblhal_operator import LEAST, MOST
 
 _OBEYS = 1.0  # s for a spindle that is stopped in a hold to be told as off
 _CLIPS = 2.0  # s in which report, override and S word may tell of different moments

@@ -10,7 +10,7 @@ from drivers.clocks import StepClock
 from drivers.grblhal.grblhal_dialogue import Stream
 from drivers.grblhal.grblhal_gcode import jog_line, line_of, number
 from drivers.grblhal.grblhal_machine import GrblMachine
-from drivers.grblhal.grblhal_overrides import steps_to
+from drivers.grblhal.grblhal_operator import steps_to
 from drivers.grblhal.grblhal_report import read_identity, read_report
 from drivers.grblhal.grblhal_scripts import MISSED
 from tests.coded import raises_code
