@@ -347,9 +347,10 @@ _LATE = 2  # SYNCs: a module answers one with what it had at the one before
 
 
 class CanopenProbe:
-    """``core.ports.TouchInput``: where the axes were when the probe's input came on, by the answers to each SYNC.
+    """``core.ports.TouchInput``: axis positions when the probe's input came on, by the answers to each SYNC.
 
-    The drives' own latch (60B8) is not used: few have its input free."""
+    The drives' own latch (60B8) is not used: few have its input free.
+    """
 
     def __init__(self, axes: CanopenAxes, io: CanopenIO, sync: float) -> None:
         self._axes, self._io, self._sync = axes, io, sync

@@ -8,12 +8,10 @@ from collections.abc import Callable
 from core.message import Message
 from core.ports import BlockOp, BlockState, DriverError, ThreadOp, code_of
 from drivers.grblhal import grblhal_codes, grblhal_scripts
+from drivers.grblhal.grblhal_codes import line_number, line_of
 from drivers.grblhal.grblhal_config import GrblAxis
 from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_feed_hold import Holds
-from drivers.grblhal.grblhal_gcode import line_number, line_of
-from drivers.grblhal.grblhal_jog import Jogs
-from drivers.grblhal.grblhal_operator import Overrides
+from drivers.grblhal.grblhal_operator import Holds, Jogs, Overrides
 from drivers.grblhal.grblhal_report import Report
 
 AHEAD = 0.4  # s of motion beyond the block under way: so long it runs on when the host is lost

@@ -1,12 +1,21 @@
-"""Overrides: the controller knows steps only. They go out from what it has told, and are read back."""
+"""Feed holds, jog and overrides: what the operator changes about motion.
+
+The controller knows steps of its overrides only. They go out from what it has told, and are read back. A jog is
+a lease: the controller never has more travel than the lease allows, so silence is the stop.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from core.message import Message
-from core.ports import FaultCode
+from core.ports import DriverError, FaultCode
 from drivers.grblhal import grblhal_codes
+from drivers.grblhal.grblhal_codes import jog_line
+from drivers.grblhal.grblhal_controller import Controller
+from drivers.grblhal.grblhal_dialogue import Ask
+from drivers.grblhal.grblhal_report import Report
 
 _APART = 0.1  # s between two corrections
 _AGAIN = 2.5  # s without a word of the overrides, which every twentieth plain report carries at least
@@ -110,3 +119,144 @@ class Overrides:
         data = steps_to(feed, reported[0])
         data += bytes([grblhal_codes.RAPIDS[rapid]]) if reported[1] != rapid else b""
         return data + (steps_to(spindle, reported[2], grblhal_codes.SPINDLE) if len(reported) > 2 else b"")
+
+
+_LATE = 3  # reports that may still tell of before a hold, or of one that has just been ended
+
+
+class Holds:
+    """0x82 and 0x81, from report to report."""
+
+    def __init__(self, controller: Controller) -> None:
+        self._c = controller
+        self._asked = False  # and not yet taken back
+        self._ours = False  # the hold that stands is our own
+        self._released = self._again = 0  # reports from which a hold is one again, or has to be said again
+
+    @property
+    def stands(self) -> bool:
+        """Whether the controller rests in a hold."""
+        c = self._c
+        held = c.report is not None and c.report.state == "Hold" and not c.report.sub
+        return held and c.reports >= self._released and not c.busy
+
+    def begin(self) -> None:
+        """At once."""
+        self._asked = self._ours = True
+        self._released = 0
+        self._say()
+
+    def end(self) -> None:
+        """At once where it rests, or as soon as it does; the operator's word ends any hold."""
+        self._asked, self._ours = False, True
+        self._go_on()
+
+    def forget(self) -> None:
+        """What stops for good needs no hold."""
+        self._asked = self._ours = False
+
+    def reported(self, report: Report) -> None:
+        """Look at a report."""
+        if report.state == "Hold":
+            self._go_on()
+        elif self._asked and report.state == "Run" and self._c.reports >= self._again:
+            self._say()  # a button at the controller has ended it
+        else:
+            self._ours = self._ours and (self._asked or report.state in {"Run", "Jog"})
+
+    # --- inside -------------------------------------------------------------------------------------------
+
+    def _say(self) -> None:
+        self._again = self._c.reports + _LATE
+        self._c.realtime(grblhal_codes.HOLD)
+        self._c.question()
+
+    def _go_on(self) -> None:
+        """Out of a hold once it rests and somebody has said so; never out of another's by itself."""
+        report = self._c.report
+        if (
+            self._ours
+            and not self._asked
+            and report is not None
+            and report.state == "Hold"
+            and not report.sub
+        ):
+            self._ours = False
+            self._released = self._c.reports + _LATE
+            self._c.realtime(grblhal_codes.START)
+            self._c.question()
+
+
+_LEAST = 0.002  # mm; less is no way
+_ROOM = 0.02  # s; a renewal that is worth less is not sent
+
+
+class Jogs:
+    """``$J`` lines, one unanswered at a time.
+
+    At ``t`` the way ends where a slide that had moved at full speed since the begin would be a lease later:
+    none can be further than that, so what is left to run is lease · v, and the braking.
+    """
+
+    def __init__(self, controller: Controller) -> None:
+        self._c = controller
+        self.active = False
+        self._axis, self._velocity = "", 0.0
+        self._from, self._since = 0.0, 0.0
+        self._sent = 0.0  # target of the last line
+        self._wanted = 0.0
+        self._ask: Ask | None = None
+
+    def move(self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None) -> bool:
+        """Begin or renew; False at the end of the travel."""
+        now = self._c.clock.now()
+        if not self.active or axis != self._axis or velocity != self._velocity:
+            self._begin(axis, velocity, now)
+        target = self._from + velocity * (now - self._since + lease)
+        if limits is not None:
+            target = min(max(target, limits[0]), limits[1])
+        if (target - self._from) * math.copysign(1.0, velocity) < _LEAST:
+            self.active = False
+            return False
+        self._wanted, self.active = target, True
+        self.pump()
+        return True
+
+    def step(self, axis: str, target: float, speed: float) -> None:
+        """One jog from rest to rest."""
+        self._begin(axis, speed, self._c.clock.now())
+        self._wanted, self.active = target, True
+        self.pump()
+
+    def pump(self) -> None:
+        """Send the way that has been added, when the last line has been answered."""
+        if not self.active or (self._ask is not None and not self._ask.done):
+            return
+        added = abs(self._wanted - self._sent)
+        if added < max(_LEAST, _ROOM * abs(self._velocity)) and self._ask is not None:
+            return
+        self._sent = self._wanted
+        target = self._wanted + self._c.origin.get(self._axis, 0.0)
+        self._ask = self._c.send(jog_line(self._axis, target, abs(self._velocity)))
+
+    def rested(self) -> None:
+        """The controller says that nothing is left."""
+        if self._ask is None or self._ask.done:
+            self.forget()
+
+    def forget(self) -> None:
+        """Nothing is jogged any more."""
+        self.active, self._ask = False, None
+
+    def _begin(self, axis: str, velocity: float, now: float) -> None:
+        place = self._c.position.get(axis)
+        if place is None:
+            raise DriverError(
+                Message("the controller does not have an axis {axis} to jog", axis=axis), "controller-refuses"
+            )
+        if self.active:
+            # Another speed or direction: from where the way that it has ends.
+            place = self._sent
+        self._axis, self._velocity = axis, velocity
+        self._from = self._sent = place
+        self._since, self._ask = now, None

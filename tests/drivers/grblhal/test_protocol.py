@@ -7,8 +7,8 @@ import pytest
 from app.compose.grblhal_backend import grblhal_config
 from core.ports import ArcOp, DriverError, LineOp, RapidOp, ThreadOp
 from drivers.clocks import StepClock
+from drivers.grblhal.grblhal_codes import jog_line, line_of, number
 from drivers.grblhal.grblhal_dialogue import Stream
-from drivers.grblhal.grblhal_gcode import jog_line, line_of, number
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_operator import steps_to
 from drivers.grblhal.grblhal_report import read_identity, read_report
