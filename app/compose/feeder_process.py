@@ -23,7 +23,7 @@ from drivers.feeder.feeder_loop import TRIAL, keep_memory, late_at_trial, real_t
 from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, fault_of, packed, with_code
 from drivers.feeder.feeder_server import Driven
 from drivers.reopening import Opening
-from drivers.wakeup import Bell
+from drivers.waiting import Bell
 
 
 def driven(machine: Machine, clock: Clock) -> Driven:

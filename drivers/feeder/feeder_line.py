@@ -12,7 +12,7 @@ from core.message import Message as Text
 from core.ports import ALL_UNKNOWN, Clock, DriverError, Fault, FloatArray, TrippedError, Unknown, code_of
 from drivers.feeder.feeder_messages import NOTHING, VERSION, Message, fault_of, text, texts
 from drivers.reopening import Opening
-from drivers.wakeup import Bell
+from drivers.waiting import Bell
 
 _log = logging.getLogger(__name__)
 _FRESH = 0.002  # s for which one look serves all ports

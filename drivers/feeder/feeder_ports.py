@@ -31,7 +31,7 @@ from drivers.feeder.feeder_messages import (
     rows,
     texts,
 )
-from drivers.wakeup import Bell
+from drivers.waiting import Bell
 
 
 class _OnLine:

@@ -10,7 +10,7 @@ from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
 from drivers.hal.hal_orientation import HalOrientation
 from drivers.hal.hal_session import BridgeLink, bridge_config
-from drivers.hal.hal_spindle_c import HalSpindleC
+from drivers.hal.hal_spindle import HalSpindleC
 from drivers.hal.hal_terminals import HalSpindle, HalTerminals
 from drivers.sample_log import KEPT, SampleLog
 

@@ -34,7 +34,7 @@ from drivers.simulators.servo_axis import Servo
 from drivers.simulators.spindle_motor import SpindleMotor
 from drivers.simulators.tool_setter import ToolSetter
 from drivers.spindle_gear import GearedQueue, Phase, Slides
-from drivers.wakeup import Touch, Wakeup
+from drivers.waiting import Touch, Wakeup
 
 _NEVER = float("inf")
 Motion = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]

@@ -18,7 +18,7 @@ from drivers.feeder.feeder_messages import LARGEST, NOTHING, Inbox, Message, pac
 from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import PERIOD, RESTS, Driven, Feeder, TripGuard, act
 from drivers.simulated.simulated_machine import Simulation, build_simulation
-from drivers.wakeup import Bell
+from drivers.waiting import Bell
 from tests.coded import raises_code
 from tests.drivers.contract.simulated import simulation_driven
 from tests.drivers.machines import CONFIG, ramp
