@@ -9,7 +9,6 @@ from app.compose.inverter_backend import with_inverter
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
 from core.ports import Clock, DriverError
-from drivers.clocks import RealClock
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig, GrblInput, GrblOutput
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_table import GrblhalTable
@@ -17,6 +16,7 @@ from drivers.grblhal.grblhal_wire import tcp_address
 from drivers.inverter.inverter_spindle import InverterSpindle
 from drivers.simulators.grblhal_far_end import PtyEnd, TcpEnd, serve
 from drivers.simulators.grblhal_firmware import Firmware
+from drivers.waiting import RealClock
 
 _WIRED = frozenset(("X", "Z"))
 _HERE = frozenset((35, 37))  # homing methods of CiA 402 that take the present place

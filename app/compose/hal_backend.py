@@ -12,7 +12,6 @@ from core.machine.hardware_model import HomeModel
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
 from core.ports import Clock, DriverError
-from drivers.clocks import RealClock
 from drivers.feeder.feeder_server import Driven
 from drivers.hal.boards.board_table import ETHERCAT, MESA_SERVO, SIM, BoardTable
 from drivers.hal.hal_config import HalAxis, HalConfig, HalInput, HalOutput, HalPot, HalSpindle
@@ -20,6 +19,7 @@ from drivers.hal.hal_machine import HalMachine
 from drivers.hal.hal_session import HalSession
 from drivers.hal.hal_table import HalTable
 from drivers.operator_station import PanelStation
+from drivers.waiting import RealClock
 
 
 def hal_config(machine: Machine) -> HalConfig:

@@ -10,10 +10,10 @@ from app.compose.serial_ports import open_wire
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import AxisSink, Clock, DriverError, FloatArray, MachinePorts, SampleSource, Unknown
-from drivers.clocks import StepClock
 from drivers.inverter.inverter_attendant import AttendantThread
 from drivers.inverter.inverter_spindle import Encoder, InverterSpindle, attendant
 from drivers.inverter.inverter_table import InverterTable
+from drivers.waiting import StepClock
 
 BY_FREQUENCY = (
     "no spindle encoder is connected, so the spindle speed is the inverter's output "

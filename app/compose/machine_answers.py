@@ -21,13 +21,13 @@ from core.message import Message
 from core.ports import Clock, DriverError, MachinePorts, StationState
 from core.sharing.sharing_errors import SharingError
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.clocks import RealClock, StepClock
 from drivers.grblhal.grblhal_config import HARDWARE
 from drivers.inverter.inverter_spindle import InverterSpindle
 from drivers.inverter.inverter_table import InverterTable
 from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.pendant.pendant_station import PendantStation
 from drivers.pendant.pendant_table import PendantModel
+from drivers.waiting import RealClock, StepClock
 
 MISSING, NOT_CHECKED = "missing", "not checked"
 FAILED = (

@@ -14,8 +14,8 @@ from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.clocks import StepClock
 from drivers.feeder.feeder_loop import PRIORITY, keep_memory, real_time
+from drivers.waiting import StepClock
 
 if TYPE_CHECKING:
     from drivers.simulators.canopen_devices import CanopenDevices

@@ -12,12 +12,10 @@ from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
-from drivers.clocks import RealClock
-from drivers.mtconnect.agent_links import listening
-from drivers.mtconnect.devices_xml import devices_xml
-from drivers.mtconnect.mtconnect_adapter import Adapter, AdapterThread, utc_now
+from drivers.mtconnect.mtconnect_adapter import Adapter, AdapterThread, devices_xml, utc_now
 from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Active, Report
+from drivers.mtconnect.shdr_lines import Active, Report, listening
+from drivers.waiting import RealClock
 
 
 def open_shop_floor(

@@ -15,7 +15,7 @@ from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_nodes import CanNode, CanTerminal
 from drivers.canopen.canopen_setup import Setup, watching
 from drivers.canopen.cia402_drives import Drive402
-from drivers.station_inputs import station_of
+from drivers.operator_station import station_of
 
 # --- A CiA 401 module: inputs, outputs with a safe state of their own, analog words.
 
@@ -341,6 +341,9 @@ class CanopenIO:
     @staticmethod
     def _bit(data: bytearray, where: CanTerminal) -> bool:
         return bool(data[where.sub - 1] >> where.bit & 1)
+
+
+# --- The probe.
 
 
 _LATE = 2  # SYNCs: a module answers one with what it had at the one before

@@ -10,7 +10,7 @@ from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_wire import Wire
-from drivers.reopening import Opening
+from drivers.waiting import Opening
 
 _REPORTED = 0.002  # mm between where a block has ended and a report, which has three decimals
 _STEPS = 100  # setting, steps in a millimetre

@@ -122,6 +122,9 @@ def error_text(number: int, line: str) -> str:
     )
 
 
+# --- Blocks as lines.
+
+
 _LAST_NUMBER = 9_000_000
 _DOT = 0.002  # mm; see ``_arc``
 _SAME = 1.01  # rapids that differ by so much are one

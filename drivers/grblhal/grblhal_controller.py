@@ -17,7 +17,7 @@ from drivers.grblhal.grblhal_dialogue import Ask, Runner, Script, Stream
 from drivers.grblhal.grblhal_report import Report, read_report
 from drivers.grblhal.grblhal_reported import ReportedState
 from drivers.grblhal.grblhal_wire import Wire, WireLostError
-from drivers.reopening import Opening
+from drivers.waiting import Opening
 
 _LINE = 1024  # bytes; the controller sends no longer line
 _RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # s between two questions for a report

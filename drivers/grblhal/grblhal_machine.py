@@ -15,7 +15,7 @@ from drivers.grblhal.grblhal_spindle import GrblEncoder, GrblSpindle
 from drivers.grblhal.grblhal_terminals import LETTERS, GrblInputs, GrblIO, GrblProbe
 from drivers.grblhal.grblhal_wire import Wire, open_wire
 from drivers.operator_station import PanelStation
-from drivers.reopening import Opening
+from drivers.waiting import Opening
 
 _ROUND = 0.005  # s between two looks while it connects
 _CONNECTING = 15.0

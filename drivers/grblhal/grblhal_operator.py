@@ -1,7 +1,7 @@
 """Feed holds, jog and overrides: what the operator changes about motion.
 
-The controller knows steps of its overrides only. They go out from what it has told, and are read back. A jog is
-a lease: the controller never has more travel than the lease allows, so silence is the stop.
+The controller knows steps of its overrides only. They go out from what it has told, and are read back. A jog
+is a lease: the controller never has more travel than the lease allows, so silence is the stop.
 """
 
 from __future__ import annotations
@@ -121,6 +121,9 @@ class Overrides:
         return data + (steps_to(spindle, reported[2], grblhal_codes.SPINDLE) if len(reported) > 2 else b"")
 
 
+# --- Feed holds: ours, other people's, and the way out of each.
+
+
 _LATE = 3  # reports that may still tell of before a hold, or of one that has just been ended
 
 
@@ -185,6 +188,9 @@ class Holds:
             self._released = self._c.reports + _LATE
             self._c.realtime(grblhal_codes.START)
             self._c.question()
+
+
+# --- Jog as a lease.
 
 
 _LEAST = 0.002  # mm; less is no way

@@ -233,6 +233,9 @@ class GrblIO:
         return ["M9", *on]
 
 
+# --- The probe: a report tells its pin and the place at once.
+
+
 _ASKS = 60.0  # s from arming on in which it asks more often
 _BEHIND = 0.5  # s behind a touch in which it still does
 

@@ -13,7 +13,7 @@ from drivers.hal.bridge.packets import pieces_of as pieces_told
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_homing import Homing
 from drivers.hal.hal_link import HalLink, told_fault
-from drivers.hal.hal_touch import HalTouch
+from drivers.hal.hal_terminals import HalTouch
 from drivers.setpoint_pieces import Piece
 from drivers.setpoint_queue import Tolerance, check_limits, pieces_of
 from drivers.spindle_gear import GearedQueue, Motion, Phase, Slides

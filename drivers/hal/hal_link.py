@@ -9,8 +9,7 @@ from typing import get_args
 
 from core.message import Message
 from core.ports import Clock, DriverError, Fault, FaultCode
-from drivers.hal.bridge.hal_bridge import BridgeConfig
-from drivers.hal.bridge.packets import Head, number, pack, packets_of, text
+from drivers.hal.bridge.packets import BridgeConfig, Head, number, pack, packets_of, text
 from drivers.hal.hal_session import BridgeLink
 from drivers.setpoint_pieces import Piece
 

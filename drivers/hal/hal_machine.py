@@ -8,10 +8,9 @@ from core.ports import ALL_UNKNOWN, Clock, DriverError, FloatArray, MachinePorts
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
-from drivers.hal.hal_orientation import HalOrientation
 from drivers.hal.hal_session import BridgeLink, bridge_config
-from drivers.hal.hal_spindle import HalSpindleC
-from drivers.hal.hal_terminals import HalSpindle, HalTerminals
+from drivers.hal.hal_spindle import HalOrientation, HalSpindle, HalSpindleC
+from drivers.hal.hal_terminals import HalTerminals
 from drivers.sample_log import KEPT, SampleLog
 
 

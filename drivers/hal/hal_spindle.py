@@ -1,8 +1,11 @@
-"""C on the spindle's own drive behind HAL: changed over at standstill to positions and back.
+"""The spindle behind HAL: its speed, index and stop at an angle, and C on its own drive.
 
-``hal.spindle.position_mode`` asks for it, ``in_position_mode`` tells it where that is named. Free, C keeps
-its count whatever the spindle does; held, it is one more axis. Its feedback counts the spindle's encoder,
-360 a turn.
+An angle goes to the pins of LinuxCNC's component ``orient``; how the spindle turns there, and what makes
+``is_oriented`` come on, is said by the HAL file alone.
+
+As C it is changed over at standstill to positions and back. ``hal.spindle.position_mode`` asks for it,
+``in_position_mode`` tells it where that is named. Free, C keeps its count whatever the spindle does; held, it
+is one more axis. Its feedback counts the spindle's encoder, 360 a turn.
 """
 
 from __future__ import annotations
@@ -14,11 +17,197 @@ from enum import Enum
 from core.message import Message
 from core.ports import DriverError, Fault
 from drivers.hal.hal_axes import HalAxes
+from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
-from drivers.hal.hal_terminals import HalSpindle
 from drivers.setpoint_queue import straight
 
+_MODES = {0: 0, 1: 1, -1: 2}
+_ANGLE_SETTLES = 0.05  # s from the rising of ``orient`` until ``is_oriented`` is that of the new angle
 _STANDS = 2.0  # rpm
+
+
+class HalOrientation:
+    """``core.ports.SpindleOrientation``. ``tick`` with the rounds of the loop."""
+
+    def __init__(self, axes: HalAxes, spindle: HalSpindle, link: HalLink) -> None:
+        self._axes, self._spindle, self._link = axes, spindle, link
+        self._order: int | None = None
+        self._since: float | None = None  # when HAL was first seen to go there
+
+    def orient(self, angle: float, sense: int = 0) -> None:
+        """Bring it to an angle. Raises DriverError while it turns, with a fault or an open chain."""
+        if why := self._spindle.fault() or self._axes.fault:
+            raise DriverError(Message("the spindle stays off: {problem}", problem=why), "spindle-off")
+        if self._link.told.get("ok") is not True:
+            raise DriverError(
+                "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
+            )
+        if self._order is None and (self._spindle.ordered or abs(self._spindle.measured()) >= _STANDS):
+            raise DriverError(
+                "the spindle cannot be oriented while it is turning; stop it first", "spindle-off"
+            )
+        self._since = None
+        self._order = self._link.say("orient", on=True, angle=angle, mode=_MODES[sense])
+
+    def release(self) -> None:
+        """Hold it no longer."""
+        self._order = self._since = None
+        if not self._link.lost:
+            self._link.say("orient", on=False)
+
+    def oriented(self) -> bool:
+        """Whether HAL says so, and of the angle that was asked for last."""
+        since = self._since
+        if since is None or self._axes.now() < since + _ANGLE_SETTLES:
+            return False
+        return self._link.bit("spindle.is_oriented")
+
+    def tick(self) -> None:
+        """See whether HAL goes to the angle, and whether something has let it go."""
+        if self._order is None or not self._link.done(self._order):
+            return
+        goes = self._link.told.get("orients") is True
+        if goes and self._since is None:
+            self._since = self._axes.now()
+        elif not goes and self._since is not None:
+            self._order = self._since = None
+
+
+# --- The spindle itself.
+
+
+class HalSpindle:
+    """``core.ports.Spindle``. What E-stop has switched off does not come back by itself."""
+
+    def __init__(self, config: HalConfig, link: HalLink, axes: HalAxes) -> None:
+        self._config = config.spindle
+        self._link = link
+        self._axes = axes
+        self.ordered = 0.0  # rpm
+        self.lent = False  # its drive is C, or becomes it: what it turns then is not the spindle's speed
+        self.index = SpindleIndex(axes, link, wired=bool(config.spindle.pins.index_enable))
+        self._unknown: tuple[float, float] | None = None  # what is told of its angle before its index was
+
+    def tick(self) -> None:
+        """An open chain has switched it off."""
+        if self._link.told.get("ok") is not True:
+            self.ordered = 0.0
+        self.index.look()
+
+    def run(self, rpm: float) -> None:
+        """Turn at ``rpm``, signed. Raises DriverError with a fault or an open chain, unless asked to stop."""
+        if rpm and (why := self.fault() or self._axes.fault):
+            raise DriverError(Message("the spindle stays off: {problem}", problem=why), "spindle-off")
+        if rpm and self._link.told.get("ok") is not True:
+            raise DriverError(
+                "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
+            )
+        limit = self._config.rpm_max
+        self.ordered = min(max(rpm, -limit), limit)
+        if not self._link.lost:
+            self._link.say("spindle", rpm=self.ordered, on=bool(self.ordered))
+
+    def coast(self) -> None:
+        """Speed 0, and off: what its drive makes of that is the drive's."""
+        self.run(0.0)
+
+    def speed(self) -> float:
+        """Measured rpm, signed; without turns or velocity, what it was told once it is at speed."""
+        return 0.0 if self.lent else self.measured()
+
+    def measured(self) -> float:
+        """The same, whatever its drive is."""
+        pins = self._config.pins
+        if pins.position or pins.velocity:
+            return 60.0 * self._axes.rps
+        return self.ordered if self._link.bit("spindle.at_speed") else 0.0
+
+    def angle(self) -> tuple[float, float] | None:
+        """(time, turns) by the encoder, whole turns at its index where it has one; None without one.
+
+        Before its index has come by it is an old reading: who needs the angle waits for a new one.
+        """
+        if not self._config.encoder or self._axes.spindle_at is None:
+            return None
+        if not self.index.known:
+            self._unknown = self._unknown or self._axes.spindle_at
+            return self._unknown
+        self._unknown = None
+        t, turns = self._axes.spindle_at
+        return t, turns - self._axes.index_at
+
+    def fault(self) -> str:
+        """What is wrong with it; empty when well."""
+        if why := self._link.trouble:
+            return why
+        if self.index.trouble:
+            return self.index.trouble
+        wrong = self._link.bit("spindle.fault")
+        return Fault("the spindle drive reports a fault", "spindle") if wrong else ""
+
+
+# --- Its index: asked for with the first turn of a session, so that a thread is found again.
+
+
+_PIN = "spindle-index"
+_TURNING = 0.1  # turns/s
+_TURNS = 3.0  # within which it must come by
+_SETTLES = 0.02  # s until what was made up for is told as well
+
+
+class SpindleIndex:
+    """``known`` once it has come by; a spindle without an index begins to count anywhere, and is known."""
+
+    def __init__(self, axes: HalAxes, link: HalLink, *, wired: bool) -> None:
+        self._axes, self._link, self._wired = axes, link, wired
+        self.forget()
+
+    def forget(self) -> None:
+        """HAL counts anew."""
+        self.known = not self._wired
+        self.trouble: Fault | str = ""
+        self._order: int | None = None
+        self._from = 0.0  # turns, where it was asked for
+        self._fell: float | None = None  # when it was seen to have come by
+        self._axes.index_at = 0.0
+
+    def clear(self) -> None:
+        """It is asked for again."""
+        if self.trouble:
+            self.forget()
+
+    def look(self) -> None:
+        """Once in a while."""
+        reading = self._axes.spindle_at
+        if self.known or self.trouble or self._link.blind or reading is None:
+            return
+        t, turns = reading
+        if self._order is None:
+            if abs(self._axes.rps) > _TURNING:
+                self._from, self._order = turns, self._link.say("index", pin=_PIN, on=True)
+        elif self._fell is None:
+            self._wait(t, turns)
+        elif t > self._fell + _SETTLES:
+            self._axes.index_at = self._link.figure(f"{_PIN}-at")
+            self.known = True
+
+    def _wait(self, t: float, turns: float) -> None:
+        if self._order is not None and self._link.done(self._order) and not self._link.bit(_PIN):
+            self._fell = t
+        elif abs(turns - self._from) > _TURNS:
+            self.trouble = Fault(
+                Message(
+                    "no spindle index pulse was detected in {revolutions} revolutions; check phase Z of the "
+                    "spindle encoder, and check that hal.spindle.index_enable belongs to the same encoder",
+                    revolutions=f"{_TURNS:g}",
+                ),
+                "spindle-encoder",
+            )
+
+
+# --- C on the spindle's own drive.
+
+
 _SEARCH = 60.0  # rpm to look for the index
 _INDEX, _CHANGE = 15.0, 2.0  # s
 _TURN = 360.0

@@ -1,86 +1,14 @@
-"""Spindle, inputs, outputs, pots and the operator station on HAL's pins, by the names of the machine file."""
+"""Inputs, outputs, pots, operator station and probe on HAL's pins, by the names of the machine file."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
 from core.message import Message
-from core.ports import DriverError, Fault, StationState
-from drivers.hal.hal_axes import HalAxes
+from core.ports import DriverError, Latch, StationState
 from drivers.hal.hal_config import HalConfig
-from drivers.hal.hal_index import SpindleIndex
 from drivers.hal.hal_link import HalLink
-from drivers.station_inputs import station_of
-
-
-class HalSpindle:
-    """``core.ports.Spindle``. What E-stop has switched off does not come back by itself."""
-
-    def __init__(self, config: HalConfig, link: HalLink, axes: HalAxes) -> None:
-        self._config = config.spindle
-        self._link = link
-        self._axes = axes
-        self.ordered = 0.0  # rpm
-        self.lent = False  # its drive is C, or becomes it: what it turns then is not the spindle's speed
-        self.index = SpindleIndex(axes, link, wired=bool(config.spindle.pins.index_enable))
-        self._unknown: tuple[float, float] | None = None  # what is told of its angle before its index was
-
-    def tick(self) -> None:
-        """An open chain has switched it off."""
-        if self._link.told.get("ok") is not True:
-            self.ordered = 0.0
-        self.index.look()
-
-    def run(self, rpm: float) -> None:
-        """Turn at ``rpm``, signed. Raises DriverError with a fault or an open chain, unless asked to stop."""
-        if rpm and (why := self.fault() or self._axes.fault):
-            raise DriverError(Message("the spindle stays off: {problem}", problem=why), "spindle-off")
-        if rpm and self._link.told.get("ok") is not True:
-            raise DriverError(
-                "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
-            )
-        limit = self._config.rpm_max
-        self.ordered = min(max(rpm, -limit), limit)
-        if not self._link.lost:
-            self._link.say("spindle", rpm=self.ordered, on=bool(self.ordered))
-
-    def coast(self) -> None:
-        """Speed 0, and off: what its drive makes of that is the drive's."""
-        self.run(0.0)
-
-    def speed(self) -> float:
-        """Measured rpm, signed; without turns or velocity, what it was told once it is at speed."""
-        return 0.0 if self.lent else self.measured()
-
-    def measured(self) -> float:
-        """The same, whatever its drive is."""
-        pins = self._config.pins
-        if pins.position or pins.velocity:
-            return 60.0 * self._axes.rps
-        return self.ordered if self._link.bit("spindle.at_speed") else 0.0
-
-    def angle(self) -> tuple[float, float] | None:
-        """(time, turns) by the encoder, whole turns at its index where it has one; None without one.
-
-        Before its index has come by it is an old reading: who needs the angle waits for a new one.
-        """
-        if not self._config.encoder or self._axes.spindle_at is None:
-            return None
-        if not self.index.known:
-            self._unknown = self._unknown or self._axes.spindle_at
-            return self._unknown
-        self._unknown = None
-        t, turns = self._axes.spindle_at
-        return t, turns - self._axes.index_at
-
-    def fault(self) -> str:
-        """What is wrong with it; empty when well."""
-        if why := self._link.trouble:
-            return why
-        if self.index.trouble:
-            return self.index.trouble
-        wrong = self._link.bit("spindle.fault")
-        return Fault("the spindle drive reports a fault", "spindle") if wrong else ""
+from drivers.operator_station import station_of
 
 
 class HalTerminals:
@@ -176,3 +104,29 @@ class HalTerminals:
         if not isinstance(told, list) or name not in names:
             return otherwise
         return float(told[names.index(name)])
+
+
+# --- The probe: HAL samples its input and the places of the axes in one period.
+
+
+class HalTouch:
+    """``core.ports.TouchInput``."""
+
+    def __init__(self, period: float, *, active_low: bool) -> None:
+        self._period, self._low = period, active_low
+        self._on = False
+        self._kept: Latch | None = None
+
+    def arm(self) -> None:
+        """Forget what was kept."""
+        self._kept = None
+
+    def latched(self) -> Latch | None:
+        """The first touch since."""
+        return self._kept
+
+    def see(self, t: float, place: tuple[float, ...], raw: bool) -> None:
+        """One period of the servo thread: its input, and where the slides were."""
+        before, self._on = self._on, raw is not self._low
+        if self._on and not before and self._kept is None:
+            self._kept = Latch(t, place, self._period)

@@ -11,9 +11,8 @@ from core.ports import Clock, DriverError, Fault
 from drivers.inverter.delta_vfdb import DeltaVfdB
 from drivers.inverter.hitachi_wj200 import HitachiWj200
 from drivers.inverter.huanyang_hy import HuanyangHy
-from drivers.inverter.inverter_attendant import DEAD, Attendant
+from drivers.inverter.inverter_attendant import DEAD, PRESS, Agreement, Attendant
 from drivers.inverter.inverter_family import Family
-from drivers.inverter.inverter_obedience import PRESS, Agreement
 from drivers.inverter.inverter_table import InverterTable
 from drivers.inverter.modbus_rtu import Modbus
 from drivers.serial_line import Wire

@@ -26,13 +26,11 @@ from core.ports import (
 from drivers.operator_station import Panel
 from drivers.sample_log import SampleLog
 from drivers.setpoint_queue import Tolerance, straight
-from drivers.simulators.drive_limits import check_cam, check_drives
 from drivers.simulators.foreseen_motion import ForeseenMotion, foresee
 from drivers.simulators.plant_config import SimConfig
-from drivers.simulators.plant_terminals import Terminals
-from drivers.simulators.servo_axis import Servo
+from drivers.simulators.plant_terminals import Terminals, ToolSetter
+from drivers.simulators.servo_axis import Servo, check_cam, check_drives
 from drivers.simulators.spindle_motor import SpindleMotor
-from drivers.simulators.tool_setter import ToolSetter
 from drivers.spindle_gear import GearedQueue, Phase, Slides
 from drivers.waiting import Touch, Wakeup
 

@@ -10,8 +10,7 @@ from core.ports import DriverError
 from drivers.operator_station import StationHands
 from drivers.simulated.simulated_table import PlannedFault
 from drivers.simulators.plant import Plant
-from drivers.simulators.servo_axis import Servo
-from drivers.simulators.worn_axis import TURN
+from drivers.simulators.servo_axis import TURN, Servo
 
 
 class PlantHands(StationHands):

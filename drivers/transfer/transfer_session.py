@@ -8,8 +8,16 @@ from dataclasses import dataclass
 from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.serial_line import FlowWire, table_of
-from drivers.transfer.program_framing import Incoming, IncompleteError, Phase, Program
-from drivers.transfer.transfer_settings import DC1, DC3, DC4, TransferSettings
+from drivers.transfer.program_framing import (
+    DC1,
+    DC3,
+    DC4,
+    Incoming,
+    IncompleteError,
+    Phase,
+    Program,
+    TransferSettings,
+)
 
 CHUNK = 64  # bytes: what a USB adapter may still send after the other side has said stop
 TICK = 0.05  # s
