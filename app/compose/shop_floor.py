@@ -12,9 +12,9 @@ from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
+from drivers.mtconnect.agent_links import Active, Report, listening
 from drivers.mtconnect.mtconnect_adapter import Adapter, AdapterThread, devices_xml, utc_now
 from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Active, Report, listening
 from drivers.waiting import RealClock
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.message import Message
 from core.ports import AxisSample, DriverError, Segments, Stop, at_rest, code_of
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
@@ -103,8 +102,7 @@ class CanopenAxes:
         homing = self.homing or self._given_up
         if homing is not None:
             raise DriverError(
-                Message("{name} is homing; wait until homing is complete", name=homing.config.name),
-                reason="homing",
+                "{name} is homing; wait until homing is complete", reason="homing", name=homing.config.name
             )
         check_limits(segments, self.config.axes, self._homed())
         self.follower.check(segments)
@@ -140,11 +138,9 @@ class CanopenAxes:
             return
         if self.fault:
             raise DriverError(
-                Message(
-                    "the drives stay off because of a fault ({fault}); clear the fault first",
-                    fault=self.fault,
-                ),
+                "the drives stay off because of a fault ({fault}); clear the fault first",
                 "no-power",
+                fault=self.fault,
             )
         if self._powered():
             return
@@ -165,18 +161,17 @@ class CanopenAxes:
     def home(self, axis: str) -> None:
         """Start the drive's homing. Raises DriverError."""
         if axis not in self.axes:
-            raise DriverError(Message("axis {axis} does not exist", axis=f"{axis!r}"), reason="no-axis")
+            raise DriverError("axis {axis} does not exist", reason="no-axis", axis=f"{axis!r}")
         driven = next((a for a in self.drives.axes if a.config.name == axis), None)
         if driven is None or driven.config.absolute:
             return
         self._need_power()
         if self.sample().moving:
             raise DriverError(
-                Message(
-                    "{axis} cannot home while an axis is moving; wait until all axes are at rest", axis=axis
-                ),
+                "{axis} cannot home while an axis is moving; wait until all axes are at rest",
                 "homing",
                 reason="axis-moves",
+                axis=axis,
             )
         self.follower.abort()
         self.homing = Homing(driven, self.follower.mode, self.now())
@@ -265,9 +260,7 @@ class CanopenAxes:
 
     def _need_power(self) -> None:
         if self.fault:
-            raise DriverError(
-                Message("{fault}; clear the fault first", fault=self.fault), code_of(self.fault, "axis")
-            )
+            raise DriverError("{fault}; clear the fault first", code_of(self.fault, "axis"), fault=self.fault)
         if not self._powered():
             raise DriverError("the drives are off; switch them on first", "power-lost")
 

@@ -85,7 +85,7 @@ class CanEncoder:
             self.connect()
             self.operational()
         except DriverError as error:
-            self.trouble = Fault(Message("spindle encoder {error}", error=error), "spindle-encoder")
+            self.trouble = Fault("spindle encoder {error}", "spindle-encoder", error=error)
 
     def speed(self) -> float:
         """rpm, signed, over the last tenth of a second."""
@@ -110,14 +110,12 @@ class CanEncoder:
         if counts != abs(config.counts_per_rev):
             where = "6001:0" if scaled else "6501:0"
             raise DriverError(
-                Message(
-                    "{name}: the encoder reports {counts} counts per revolution (object {place}), but "
-                    "spindle.encoder.counts_per_rev is {counts_per_rev}",
-                    name=config.name,
-                    counts=counts,
-                    place=where,
-                    counts_per_rev=abs(config.counts_per_rev),
-                )
+                "{name}: the encoder reports {counts} counts per revolution (object {place}), but "
+                "spindle.encoder.counts_per_rev is {counts_per_rev}",
+                name=config.name,
+                counts=counts,
+                place=where,
+                counts_per_rev=abs(config.counts_per_rev),
             )
         turns = setup.read(od.ENCODER_TURNS)
         self._range = (setup.read(od.ENCODER_RANGE) if scaled else counts * max(turns, 1)) or _WORD
@@ -125,15 +123,13 @@ class CanEncoder:
         between = (SYNCS + 1) * wait * config.rpm_max / 60.0  # turns, at most
         if self._range < 2.0 * between * counts:
             raise DriverError(
-                Message(
-                    "{name}: the encoder count wraps around after {range} rev, but the spindle may turn "
-                    "{between} rev between two responses; use an encoder whose count covers at least "
-                    "{between2} rev",
-                    name=config.name,
-                    range=f"{self._range / counts:.3g}",
-                    between=f"{between:.2g}",
-                    between2=f"{2.0 * between:.3g}",
-                )
+                "{name}: the encoder count wraps around after {range} rev, but the spindle may turn "
+                "{between} rev between two responses; use an encoder whose count covers at least "
+                "{between2} rev",
+                name=config.name,
+                range=f"{self._range / counts:.3g}",
+                between=f"{between:.2g}",
+                between2=f"{2.0 * between:.3g}",
             )
 
     def _told(self, map_: canopen.pdo.PdoMap) -> None:
@@ -186,8 +182,7 @@ class CanEncoder:
 
     def _wrong(self, what: str) -> None:
         self.trouble = self.trouble or Fault(
-            Message("spindle encoder {name}: {what}", name=self._config.name, what=what),
-            "spindle-encoder",
+            "spindle encoder {name}: {what}", "spindle-encoder", name=self._config.name, what=what
         )
 
 

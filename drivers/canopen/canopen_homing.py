@@ -97,9 +97,7 @@ class Homing:
 
     def _fail(self, why: str) -> None:
         self._drive.extra &= ~NEW
-        self.trouble = Fault(
-            Message("{name}: homing failed: {why}", name=self.config.name, why=why), "homing"
-        )
+        self.trouble = Fault("{name}: homing failed: {why}", "homing", name=self.config.name, why=why)
 
     def _write(self) -> None:
         """Method, speeds, acceleration and place, as far as the drive has them. Raises DriverError."""
@@ -115,14 +113,12 @@ class Homing:
         place = round(config.home_offset / config.count)
         if not setup.try_write(config.profile.home_place, 0, place) and place:
             raise DriverError(
-                Message(
-                    "{name}: the drive has no object {home_place}h (home offset), so "
-                    "axis.{name2}.home.offset must be 0",
-                    name=config.name,
-                    home_place=f"{config.profile.home_place:04X}",
-                    name2=config.name,
-                ),
+                "{name}: the drive has no object {home_place}h (home offset), so "
+                "axis.{name2}.home.offset must be 0",
                 "homing",
+                name=config.name,
+                home_place=f"{config.profile.home_place:04X}",
+                name2=config.name,
             )
 
     _braking = False
@@ -172,12 +168,10 @@ class Referencing:
                 drive.extra, self._told, self._since = NEW, True, now
             elif waited > _CHANGE:
                 raise DriverError(
-                    Message(
-                        "C: the spindle drive remains in state {state}, mode {shown_mode}",
-                        state=drive.state,
-                        shown_mode=drive.shown_mode,
-                    ),
+                    "C: the spindle drive remains in state {state}, mode {shown_mode}",
                     "c-coupling",
+                    state=drive.state,
+                    shown_mode=drive.shown_mode,
                 )
             return False
         if drive.status & BIT_13 or waited > self._limit:

@@ -82,16 +82,14 @@ class Setup:
         if kept != data:
             shown = int.from_bytes(kept, "little")
             raise DriverError(
-                Message(
-                    "{name}: object {index}:{sub} remains at {shown} instead of {value}; check which "
-                    "values the drive allows, and check [canopen.sdo]",
-                    name=self._name,
-                    index=f"{index:04X}",
-                    sub=sub,
-                    shown=shown,
-                    value=value,
-                ),
+                "{name}: object {index}:{sub} remains at {shown} instead of {value}; check which "
+                "values the drive allows, and check [canopen.sdo]",
                 "drive-setup",
+                name=self._name,
+                index=f"{index:04X}",
+                sub=sub,
+                shown=shown,
+                value=value,
             )
 
     def write_bytes(self, index: int, sub: int, data: bytes) -> None:
@@ -113,25 +111,21 @@ class Setup:
         missing = [f"{index:04X}h {self.lacks[index]}" for index in needed if index in self.lacks]
         if missing:
             raise DriverError(
-                Message(
-                    "{name}: node {node} cannot be used because it lacks these objects: {missing}",
-                    name=self._name,
-                    node=self.node.id,
-                    missing="; ".join(missing),
-                ),
+                "{name}: node {node} cannot be used because it lacks these objects: {missing}",
                 "drive-setup",
+                name=self._name,
+                node=self.node.id,
+                missing="; ".join(missing),
             )
         if absent:
             where = "; remove these objects from [canopen.sdo], or check the EDS file"
             raise DriverError(
-                Message(
-                    "{name}: node {node} has no object {absent}{place}",
-                    name=self._name,
-                    node=self.node.id,
-                    absent=", ".join(absent),
-                    place=where,
-                ),
+                "{name}: node {node} has no object {absent}{place}",
                 "drive-setup",
+                name=self._name,
+                node=self.node.id,
+                absent=", ".join(absent),
+                place=where,
             )
 
     def try_write(self, index: int, sub: int, value: int) -> bool:
@@ -158,15 +152,13 @@ class Setup:
         found = self.read(od.DEVICE_TYPE) & _PROFILE
         if found != profile:
             raise DriverError(
-                Message(
-                    "{name}: node {node} has device profile {value} instead of {profile}; check the node "
-                    "numbers in [canopen.nodes]",
-                    name=self._name,
-                    node=self.node.id,
-                    value=found,
-                    profile=profile,
-                ),
+                "{name}: node {node} has device profile {value} instead of {profile}; check the node "
+                "numbers in [canopen.nodes]",
                 "drive-setup",
+                name=self._name,
+                node=self.node.id,
+                value=found,
+                profile=profile,
             )
 
     def demand_modes(self, modes: int, known: int = 0) -> None:
@@ -175,12 +167,10 @@ class Setup:
         lacking = [_NAMES[mode] for mode, bit in MODE_BITS.items() if modes & bit and not offered & bit]
         if lacking:
             raise DriverError(
-                Message(
-                    "{name}: the drive does not support mode {lacking}; check [canopen] mode",
-                    name=self._name,
-                    lacking=", ".join(lacking),
-                ),
+                "{name}: the drive does not support mode {lacking}; check [canopen] mode",
                 "drive-setup",
+                name=self._name,
+                lacking=", ".join(lacking),
             )
 
     def demand(self, *entries: Entry) -> None:
@@ -190,14 +180,12 @@ class Setup:
         ]
         if missing:
             raise DriverError(
-                Message(
-                    "{name}: node {node} cannot be used in this mode because it lacks these objects: "
-                    "{missing}; check [canopen] mode and the node's EDS file",
-                    name=self._name,
-                    node=self.node.id,
-                    missing=", ".join(missing),
-                ),
+                "{name}: node {node} cannot be used in this mode because it lacks these objects: "
+                "{missing}; check [canopen] mode and the node's EDS file",
                 "drive-setup",
+                name=self._name,
+                node=self.node.id,
+                missing=", ".join(missing),
             )
 
     def demand_homing(self, method: int) -> None:
@@ -207,15 +195,13 @@ class Setup:
         if offered and method not in offered:
             known = ", ".join(map(str, offered))
             raise DriverError(
-                Message(
-                    "{name}: the drive does not support homing method {method} (60E3h: {known}); check "
-                    "axis.{name2}.home",
-                    name=self._name,
-                    method=method,
-                    known=known,
-                    name2=self._name,
-                ),
+                "{name}: the drive does not support homing method {method} (60E3h: {known}); check "
+                "axis.{name2}.home",
                 "drive-setup",
+                name=self._name,
+                method=method,
+                known=known,
+                name2=self._name,
             )
 
     def demand_turn(self, counts: int) -> None:
@@ -229,15 +215,13 @@ class Setup:
         found = feed * shaft / (turns * motor)
         if abs(found - counts) > 0.5:
             raise DriverError(
-                Message(
-                    "{name}: the drive uses {value} counts per motor revolution (6091h, 6092h), but "
-                    "canopen.nodes.{name2}.counts_per_rev is {counts}",
-                    name=self._name,
-                    value=f"{found:g}",
-                    name2=self._name,
-                    counts=counts,
-                ),
+                "{name}: the drive uses {value} counts per motor revolution (6091h, 6092h), but "
+                "canopen.nodes.{name2}.counts_per_rev is {counts}",
                 "drive-setup",
+                name=self._name,
+                value=f"{found:g}",
+                name2=self._name,
+                counts=counts,
             )
 
     def entries(self, index: int) -> int:
@@ -276,18 +260,16 @@ class Setup:
                 raise
             now, wanted = (self._number(index, sub, each) for each in (there, data))
             raise DriverError(
-                Message(
-                    "{name}: node {node}, object {index}:{sub} is read-only; its value is {now}, but "
-                    "{expected} is needed. Set it with the drive's own software, or correct [canopen.sdo]",
-                    name=self._name,
-                    node=self.node.id,
-                    index=f"{index:04X}",
-                    sub=sub,
-                    now=now,
-                    expected=wanted,
-                ),
+                "{name}: node {node}, object {index}:{sub} is read-only; its value is {now}, but "
+                "{expected} is needed. Set it with the drive's own software, or correct [canopen.sdo]",
                 "drive-setup",
                 reason="read-only",
+                name=self._name,
+                node=self.node.id,
+                index=f"{index:04X}",
+                sub=sub,
+                now=now,
+                expected=wanted,
             ) from error
         return True
 
@@ -323,8 +305,10 @@ class Setup:
             found: PdoMap = pdos[number]
         except KeyError as error:
             raise DriverError(
-                Message("{name}: PDO {number} is not in the node's EDS file", name=self._name, number=number),
+                "{name}: PDO {number} is not in the node's EDS file",
                 "drive-setup",
+                name=self._name,
+                number=number,
             ) from error
         return found
 
@@ -382,16 +366,16 @@ class Setup:
             return do()
         except SdoAbortedError as error:
             raise DriverError(
-                Message("{place}: the node rejected the request: {error}", place=where, error=error),
-                "drive-setup",
+                "{place}: the node rejected the request: {error}", "drive-setup", place=where, error=error
             ) from error
         except SdoCommunicationError as error:
             why = self._bus.trouble or Message("{error}; check cable, power and node number", error=error)
-            raise DriverError(Message("{place}: {why}", place=where, why=why), "drive-silent") from error
+            raise DriverError("{place}: {why}", "drive-silent", place=where, why=why) from error
         except KeyError as error:
             raise DriverError(
-                Message("{place} is not in the node's object dictionary; check its EDS file", place=where),
+                "{place} is not in the node's object dictionary; check its EDS file",
                 "drive-setup",
+                place=where,
             ) from error
 
 

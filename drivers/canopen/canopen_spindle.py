@@ -99,8 +99,9 @@ class CanopenSpindle:
         """Turn at ``rpm``, signed. Raises DriverError with a fault, unless asked to stop."""
         if rpm and (self._bus.trouble or self.drive.trouble):
             raise DriverError(
-                Message("the spindle stays off: {problem}", problem=self._bus.trouble or self.drive.trouble),
+                "the spindle stays off: {problem}",
                 "spindle-off",
+                problem=self._bus.trouble or self.drive.trouble,
             )
         if rpm and self.kept:
             raise DriverError(
@@ -305,11 +306,9 @@ class SpindleC:
             self._drive.mode = IP
             if self._axis.records is None:
                 raise DriverError(
-                    Message(
-                        "C axis not available: {title} does not have a position queue",
-                        title=self._drive.profile.title,
-                    ),
+                    "C axis not available: {title} does not have a position queue",
                     "c-coupling",
+                    title=self._drive.profile.title,
                 )
             self._axis.records.clear()
             self._enter(Step.POWER, now)

@@ -57,14 +57,12 @@ class Module401:
             if where.sub > self.sizes[where.index]:
                 has = ", ".join(f"{self.sizes[index]} {what}" for index, what in _KINDS)
                 raise DriverError(
-                    Message(
-                        "{name}: the module has {has}, so object {index}.{sub} does not exist; check the "
-                        "module's terminals in the machine file",
-                        name=self.config.name,
-                        has=has,
-                        index=f"{where.index:04X}",
-                        sub=where.sub,
-                    )
+                    "{name}: the module has {has}, so object {index}.{sub} does not exist; check the "
+                    "module's terminals in the machine file",
+                    name=self.config.name,
+                    has=has,
+                    index=f"{where.index:04X}",
+                    sub=where.sub,
                 )
 
     def connect(self, safe: bytes, keep: bytes) -> None:
@@ -189,11 +187,9 @@ class CanopenIO:
             drive = self._drives.get(where.node)
             if drive is not None and not drive.tells_inputs:
                 raise DriverError(
-                    Message(
-                        "{node}: the drive does not report digital inputs; in the machine file, assign the "
-                        "inputs to an I/O module",
-                        node=where.node,
-                    )
+                    "{node}: the drive does not report digital inputs; in the machine file, assign the "
+                    "inputs to an I/O module",
+                    node=where.node,
                 )
         for name, module in self.modules.items():
             module.measure(where for where in self._needed() if where.node == name)
@@ -254,18 +250,15 @@ class CanopenIO:
         output = self._config.outputs.get(name)
         if output is None:
             raise DriverError(
-                Message("output {name} is not in the machine file; add it under [io.out]", name=f"{name!r}"),
-                "output",
+                "output {name} is not in the machine file; add it under [io.out]", "output", name=f"{name!r}"
             )
         module = self._module(output.terminal)
         if on and (self._bus.trouble or module.trouble):
             raise DriverError(
-                Message(
-                    "output {name} stays off: {problem}",
-                    name=name,
-                    problem=self._bus.trouble or module.trouble,
-                ),
+                "output {name} stays off: {problem}",
                 "output",
+                name=name,
+                problem=self._bus.trouble or module.trouble,
             )
         self._switch(name, output.terminal, on)
 

@@ -176,20 +176,19 @@ class Drive402:
         now = self.bus.clock.now()
         if self._beats and now - self.heard > patience:
             self._wrong(
-                Message(
-                    "{name}: no heartbeat from the drive for {now} s; check cable and power",
-                    name=self.name,
-                    now=f"{now - self.heard:.2f}",
-                ),
+                "{name}: no heartbeat from the drive for {now} s; check cable and power",
                 "drive-silent",
+                name=self.name,
+                now=f"{now - self.heard:.2f}",
             )
         elif self.silent:
             self._wrong(
-                Message("{name}: the drive does not respond to SYNC; check cable and power", name=self.name),
+                "{name}: the drive does not respond to SYNC; check cable and power",
                 "drive-silent",
+                name=self.name,
             )
         elif self.state in {DriveState.FAULT, DriveState.REACTING} and not self._resetting:
-            self._wrong(Message("{name}: drive fault", name=self.name), "axis")
+            self._wrong("{name}: drive fault", "axis", name=self.name)
 
     def forget(self) -> None:
         """The operator has seen it."""
@@ -207,8 +206,8 @@ class Drive402:
             return QUICK
         return 0
 
-    def _wrong(self, what: str, code: FaultCode) -> None:
-        self.trouble = self.trouble or Fault(what, code)
+    def _wrong(self, what: str, code: FaultCode, **values: object) -> None:
+        self.trouble = self.trouble or Fault(what, code, **values)
 
     def _shown(self, map_: canopen.pdo.PdoMap) -> None:
         self.status, self.shown_mode, self.position = _SHOWN.unpack(map_.data)
@@ -231,11 +230,10 @@ class Drive402:
         if state == 0:
             self.rebooted = True
             self._wrong(
-                Message("{name}: the drive has restarted; its position is lost", name=self.name),
-                "drive-restarted",
+                "{name}: the drive has restarted; its position is lost", "drive-restarted", name=self.name
             )
         elif state == 4:
-            self._wrong(Message("{name}: the drive was stopped by an NMT command", name=self.name), "axis")
+            self._wrong("{name}: the drive was stopped by an NMT command", "axis", name=self.name)
 
     def _emergency(self, error: EmcyError) -> None:
         if error.code & 0xFF00:

@@ -331,14 +331,12 @@ def _driven(config: AxisConfig, drive: Drive402) -> DrivenAxis:
     if profile.rpm and not config.counts_per_rev:
         where = f"canopen.nodes.{config.name}.counts_per_rev"
         raise DriverError(
-            Message(
-                "{name}: {title} reports speeds in rpm, but {place} is missing; enter 4 × the "
-                "encoder pulses per revolution",
-                name=config.name,
-                title=profile.title,
-                place=where,
-            ),
+            "{name}: {title} reports speeds in rpm, but {place} is missing; enter 4 × the "
+            "encoder pulses per revolution",
             "drive-setup",
+            name=config.name,
+            title=profile.title,
+            place=where,
         )
     return DrivenAxis(replace(config, profile=profile), drive)
 

@@ -14,7 +14,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.message import Message
 from core.ports import DriverError, Fault, Segments, at_rest
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_nodes import EVENED_OUT
@@ -157,7 +156,7 @@ class ProfiledFollower(Follower):
                 axis.drive.extra &= ~(NEW | AT_ONCE)
         elif now - self._told > _ANSWER:
             self.trouble = self.trouble or Fault(
-                Message("{late}: the drive did not accept its target position", late=", ".join(late)), "axis"
+                "{late}: the drive did not accept its target position", "axis", late=", ".join(late)
             )
 
 
@@ -236,11 +235,9 @@ class CyclicFollower(Follower):
         self.lag += away
         if self.lag > LONGEST:
             self.trouble = self.trouble or Fault(
-                Message(
-                    "setpoints were {lag} ms late because this computer stalled for too long",
-                    lag=f"{1000 * self.lag:.0f}",
-                ),
+                "setpoints were {lag} ms late because this computer stalled for too long",
                 "queue-dry",
+                lag=f"{1000 * self.lag:.0f}",
             )
 
     def feed(self, now: float) -> None:
@@ -263,6 +260,5 @@ class CyclicFollower(Follower):
         stand = [a.config.name for a in self._axes if not a.drive.status & BIT_12]
         if stand and now - self._asked > _BEGIN:
             self.trouble = self.trouble or Fault(
-                Message("{stand}: the drive did not start interpolated motion", stand=", ".join(stand)),
-                "queue-dry",
+                "{stand}: the drive did not start interpolated motion", "queue-dry", stand=", ".join(stand)
             )

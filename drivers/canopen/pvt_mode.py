@@ -206,13 +206,11 @@ def _records(axis: DrivenAxis) -> RecordQueue:
     """The queue in its drive. Raises DriverError where its family has none."""
     if axis.records is None:
         raise DriverError(
-            Message(
-                '{name}: {title} has no queue for [canopen] mode = "pvt"; choose "csp" or "ip", or '
-                "set drive = {by_name}",
-                name=axis.config.name,
-                title=axis.config.profile.title,
-                by_name=_BY_NAME,
-            ),
+            '{name}: {title} has no queue for [canopen] mode = "pvt"; choose "csp" or "ip", or '
+            "set drive = {by_name}",
             "drive-setup",
+            name=axis.config.name,
+            title=axis.config.profile.title,
+            by_name=_BY_NAME,
         )
     return axis.records

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from core.message import Message
 from core.ports import BlockOp, BlockState, DriverError, ThreadOp, code_of
 from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_codes import line_number, line_of
@@ -190,8 +189,7 @@ class GrblBlocks:
             raise DriverError(why, code_of(why, "controller-refuses"))  # the cause, and no more than that
         if why:
             raise DriverError(
-                Message("the controller does not accept blocks: {why}", why=why),
-                code_of(why, "controller-refuses"),
+                "the controller does not accept blocks: {why}", code_of(why, "controller-refuses"), why=why
             )
         self.demand_power()
 

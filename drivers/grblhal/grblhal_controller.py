@@ -9,7 +9,6 @@ import re
 from collections import deque
 from collections.abc import Callable
 
-from core.message import Message
 from core.ports import Clock, DriverError, Fault, FaultCode, code_of
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import GrblConfig
@@ -173,13 +172,13 @@ class Controller(ReportedState):
         """Bytes that bypass every buffer."""
         self._write(bytes(codes_))
 
-    def fail(self, why: str, code: FaultCode) -> None:
+    def fail(self, why: str, code: FaultCode, **values: object) -> None:
         """Something is wrong: no more lines, what moves comes to rest, and the operator has to clear it.
 
         A jog knows no feed hold, and everything else no jog cancel.
         """
         if not self.fault:
-            self.fault = Fault(why, code)
+            self.fault = Fault(why, code, **values)
         self.ready = False
         self.stream.waiting.clear()
         if not self.lost and self.report is not None and self.report.moves and self.alarm == 0:
@@ -234,11 +233,9 @@ class Controller(ReportedState):
             return
         if moving or not self.stream.quiet or len(self._garbage) >= _GARBAGE:
             self.fail(
-                Message(
-                    "interference on the line to the controller: {line} is not a valid response",
-                    line=f"{line!r}",
-                ),
+                "interference on the line to the controller: {line} is not a valid response",
                 "controller-silent",
+                line=f"{line!r}",
             )
             self.doubtful = True
 
@@ -313,19 +310,15 @@ class Controller(ReportedState):
             self.alarm, self.ready = number, False
         elif report.state == "Door":
             self.fail(
-                Message(
-                    "{door}; spindle and coolant are off. Close the door, then press Reset",
-                    door=grblhal_codes.DOOR,
-                ),
+                "{door}; spindle and coolant are off. Close the door, then press Reset",
                 "door",
+                door=grblhal_codes.DOOR,
             )
         elif report.state in _IDLERS:
             self.fail(
-                Message(
-                    "the controller is in state {state} and cannot run a program from TurnDesk",
-                    state=report.state,
-                ),
+                "the controller is in state {state} and cannot run a program from TurnDesk",
                 "controller-modes",
+                state=report.state,
             )
 
     # --- the wire, and what is watched ---------------------------------------------------------------
@@ -344,9 +337,7 @@ class Controller(ReportedState):
             wire = opening.take()
         except DriverError as error:
             self._opening = None
-            self.fail(
-                Message("the connection to the controller is lost: {error}", error=error), "controller-lost"
-            )
+            self.fail("the connection to the controller is lost: {error}", "controller-lost", error=error)
             return
         if wire is None:
             return
@@ -363,12 +354,10 @@ class Controller(ReportedState):
         self.lost = self.mute = True
         self.runner.drop()
         self.fail(
-            Message(
-                "the connection to the controller is lost: {error}; the controller finishes its "
-                "buffered moves, then stops",
-                error=error,
-            ),
+            "the connection to the controller is lost: {error}; the controller finishes its "
+            "buffered moves, then stops",
             "controller-lost",
+            error=error,
         )
         self.void()
 
@@ -434,8 +423,7 @@ class Controller(ReportedState):
         patience = _INDEX if self.index_wait else _UNANSWERED + self.wait_of(first.line)
         if self.listened - max(first.sent_at, self.answered_at) > patience:
             self.fail(
-                Message(
-                    "no response to {line}; there may be interference on the line", line=f"{first.line!r}"
-                ),
+                "no response to {line}; there may be interference on the line",
                 "controller-silent",
+                line=f"{first.line!r}",
             )

@@ -258,7 +258,7 @@ class Jogs:
         place = self._c.position.get(axis)
         if place is None:
             raise DriverError(
-                Message("the controller does not have an axis {axis} to jog", axis=axis), "controller-refuses"
+                "the controller does not have an axis {axis} to jog", "controller-refuses", axis=axis
             )
         if self.active:
             # Another speed or direction: from where the way that it has ends.

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from core.message import Message
 from core.ports import DriverError
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
@@ -86,18 +85,16 @@ class GrblSpindle:
         """
         if rpm and self._blocks.hindrance():
             raise DriverError(
-                Message("the spindle stays off: {problem}", problem=self._blocks.hindrance()), "spindle-off"
+                "the spindle stays off: {problem}", "spindle-off", problem=self._blocks.hindrance()
             )
         rpm = math.copysign(min(abs(rpm), self._c.config.rpm_max), rpm)
         highest = self.highest
         if highest and abs(rpm) > 1.001 * highest:
             raise DriverError(
-                Message(
-                    "spindle: the controller allows {highest} rpm ($30), not {rpm} rpm",
-                    highest=f"{highest:g}",
-                    rpm=f"{abs(rpm):.0f}",
-                ),
+                "spindle: the controller allows {highest} rpm ($30), not {rpm} rpm",
                 "spindle-off",
+                highest=f"{highest:g}",
+                rpm=f"{abs(rpm):.0f}",
             )
         self._wanted = rpm
         self.pump()
@@ -200,14 +197,12 @@ class GrblSpindle:
             self._unlike_since = now
         elif now - self._unlike_since > _CLIPS:
             c.fail(
-                Message(
-                    "the controller runs the spindle at {details} rpm instead of {expected} rpm "
-                    "because the controller limits the speed ($30, $31; a changed setting may take "
-                    "effect only after the controller restarts)",
-                    details=f"{told[1]:g}",
-                    expected=f"{expected:.0f}",
-                ),
+                "the controller runs the spindle at {details} rpm instead of {expected} rpm "
+                "because the controller limits the speed ($30, $31; a changed setting may take "
+                "effect only after the controller restarts)",
                 "controller-refuses",
+                details=f"{told[1]:g}",
+                expected=f"{expected:.0f}",
             )
 
     def _follow(self, base: float) -> None:

@@ -140,20 +140,17 @@ class GrblIO:
         """Raises DriverError for an output that the machine or the controller has not."""
         if name not in self._wanted:
             raise DriverError(
-                Message("output {name} is not in the machine file; add it under [io.out]", name=f"{name!r}"),
-                "output",
+                "output {name} is not in the machine file; add it under [io.out]", "output", name=f"{name!r}"
             )
         why = self.lacking(name)
         if on and why:
             terminal = self._c.config.outputs[name].terminal
             raise DriverError(
-                Message(
-                    "output {name} ({terminal}) cannot be switched: {why}",
-                    name=name,
-                    terminal=terminal,
-                    why=why,
-                ),
+                "output {name} ({terminal}) cannot be switched: {why}",
                 "output",
+                name=name,
+                terminal=terminal,
+                why=why,
             )
         if self.outputs().get(name, on) is not on:
             self._sent[name] = not on  # whatever it was told before: to be said, as soon as it listens

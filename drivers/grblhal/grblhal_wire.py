@@ -7,7 +7,6 @@ import socket
 from contextlib import suppress
 from typing import TYPE_CHECKING, Protocol
 
-from core.message import Message
 from core.ports import DriverError
 from drivers.serial_line import why
 
@@ -38,7 +37,7 @@ def tcp_address(port: str) -> tuple[str, int] | None:
         return None
     found = _TCP.fullmatch(port)
     if found is None or not found["host"]:
-        raise DriverError(Message("{port} must have the form tcp://host:port", port=port))
+        raise DriverError("{port} must have the form tcp://host:port", port=port)
     return found["host"].strip("[]"), int(found["number"])
 
 
@@ -63,10 +62,10 @@ class SerialWire:
             self._port.open()
         except (OSError, ValueError) as error:
             raise DriverError(
-                Message(
-                    "{port} cannot be opened: {error}; check [grblhal] port", port=port, error=why(error)
-                ),
+                "{port} cannot be opened: {error}; check [grblhal] port",
                 reason="not-opened",
+                port=port,
+                error=why(error),
             ) from error
 
     def read(self) -> bytes:
@@ -97,7 +96,7 @@ class TcpWire:
             self._socket = socket.create_connection((host, port), _OPENING)
         except OSError as error:
             raise DriverError(
-                Message("no response from tcp://{host}:{port}: {error}", host=host, port=port, error=error)
+                "no response from tcp://{host}:{port}: {error}", host=host, port=port, error=error
             ) from error
         self._socket.setblocking(False)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

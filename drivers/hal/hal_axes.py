@@ -6,7 +6,6 @@ import math
 from collections import deque
 from collections.abc import Callable, Sequence
 
-from core.message import Message
 from core.ports import AxisSample, Cam, DriverError, Fault, Geared, Segments, Stop, at_rest, code_of
 from drivers.hal.bridge.packets import number
 from drivers.hal.bridge.packets import pieces_of as pieces_told
@@ -218,8 +217,7 @@ class HalAxes:
         self._need_power()
         if self.homing is not None:
             raise DriverError(
-                Message("{name} is homing; wait until homing is complete", name=self.homing.name),
-                reason="homing",
+                "{name} is homing; wait until homing is complete", reason="homing", name=self.homing.name
             )
         self._check(segments)
         self.queue.splice(segments, self._now())
@@ -271,11 +269,9 @@ class HalAxes:
             return
         if self.fault:
             raise DriverError(
-                Message(
-                    "the drives stay off because of a fault ({fault}); clear the fault first",
-                    fault=self.fault,
-                ),
+                "the drives stay off because of a fault ({fault}); clear the fault first",
                 "no-power",
+                fault=self.fault,
             )
         if self._powered:
             return
@@ -307,7 +303,7 @@ class HalAxes:
     def home(self, axis: str) -> None:
         """Look for home; ``sample().homed`` says when it is found. Raises DriverError."""
         if axis not in self.axes:
-            raise DriverError(Message("axis {axis} does not exist", axis=f"{axis!r}"), reason="no-axis")
+            raise DriverError("axis {axis} does not exist", reason="no-axis", axis=f"{axis!r}")
         index = self.axes.index(axis)
         figures = self.config.axes[index]
         if figures.absolute or figures.pins is None:
@@ -315,11 +311,10 @@ class HalAxes:
         self._need_power()
         if self.sample().moving:
             raise DriverError(
-                Message(
-                    "{axis} cannot home while an axis is moving; wait until all axes are at rest", axis=axis
-                ),
+                "{axis} cannot home while an axis is moving; wait until all axes are at rest",
                 "homing",
                 reason="axis-moves",
+                axis=axis,
             )
         self._homed[index] = False
         self.homing = Homing(figures, index, self)
@@ -419,9 +414,7 @@ class HalAxes:
 
     def _need_power(self) -> None:
         if self.fault:
-            raise DriverError(
-                Message("{fault}; clear the fault first", fault=self.fault), code_of(self.fault, "axis")
-            )
+            raise DriverError("{fault}; clear the fault first", code_of(self.fault, "axis"), fault=self.fault)
         if not self._powered:
             raise DriverError("the drives are off; switch them on first", "power-lost")
 

@@ -6,7 +6,6 @@ import math
 from enum import Enum
 from typing import Protocol
 
-from core.message import Message
 from core.ports import DriverError, Segments, at_rest
 from drivers.hal.hal_config import HalAxis
 from drivers.hal.hal_table import HERE, NEEDS
@@ -179,6 +178,4 @@ class Homing:
 
     def _failed(self, why: str, reason: str) -> DriverError:
         self._slides.let_limit(self.name, False)
-        return DriverError(
-            Message("{name}: homing failed: {why}", name=self.name, why=why), "homing", reason=reason
-        )
+        return DriverError("{name}: homing failed: {why}", "homing", reason=reason, name=self.name, why=why)

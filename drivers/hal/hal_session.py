@@ -220,7 +220,7 @@ class HalSession:
             machine = config.file.read_text(encoding="utf-8")
         except (OSError, UnicodeError) as error:
             raise DriverError(
-                Message("{file}: the HAL file cannot be read: {error}", file=config.file, error=error)
+                "{file}: the HAL file cannot be read: {error}", file=config.file, error=error
             ) from error
         folder, session = self._folder, session_text(machine, border, config.table.thread, str(config.file))
         (folder / "bridge.json").write_text(
@@ -248,7 +248,7 @@ class HalSession:
         while True:
             head = self._first_words(deadline)
             if why := text(head, "error"):
-                raise DriverError(Message("HAL: {why}", why=why), "hal-setup")
+                raise DriverError("HAL: {why}", "hal-setup", why=why)
             if isinstance(said := head.get("verdicts"), list):
                 self.verdicts = tuple(Verdict(*each) for each in said)
                 wrong = [each for each in self.verdicts if each.trouble]
@@ -324,7 +324,7 @@ class HalSession:
             raise DriverError("the HAL bridge no longer accepts data", "hal-silent") from error
         except OSError as error:
             raise DriverError(
-                Message("the HAL bridge has ended ({cause})", cause=error.strerror), "hal-bridge"
+                "the HAL bridge has ended ({cause})", "hal-bridge", cause=error.strerror
             ) from error
 
     def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:

@@ -14,7 +14,6 @@ import math
 from collections.abc import Callable
 from enum import Enum
 
-from core.message import Message
 from core.ports import DriverError, Fault
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
@@ -37,7 +36,7 @@ class HalOrientation:
     def orient(self, angle: float, sense: int = 0) -> None:
         """Bring it to an angle. Raises DriverError while it turns, with a fault or an open chain."""
         if why := self._spindle.fault() or self._axes.fault:
-            raise DriverError(Message("the spindle stays off: {problem}", problem=why), "spindle-off")
+            raise DriverError("the spindle stays off: {problem}", "spindle-off", problem=why)
         if self._link.told.get("ok") is not True:
             raise DriverError(
                 "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
@@ -97,7 +96,7 @@ class HalSpindle:
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed. Raises DriverError with a fault or an open chain, unless asked to stop."""
         if rpm and (why := self.fault() or self._axes.fault):
-            raise DriverError(Message("the spindle stays off: {problem}", problem=why), "spindle-off")
+            raise DriverError("the spindle stays off: {problem}", "spindle-off", problem=why)
         if rpm and self._link.told.get("ok") is not True:
             raise DriverError(
                 "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
@@ -196,12 +195,10 @@ class SpindleIndex:
             self._fell = t
         elif abs(turns - self._from) > _TURNS:
             self.trouble = Fault(
-                Message(
-                    "no spindle index pulse was detected in {revolutions} revolutions; check phase Z of the "
-                    "spindle encoder, and check that hal.spindle.index_enable belongs to the same encoder",
-                    revolutions=f"{_TURNS:g}",
-                ),
+                "no spindle index pulse was detected in {revolutions} revolutions; check phase Z of the "
+                "spindle encoder, and check that hal.spindle.index_enable belongs to the same encoder",
                 "spindle-encoder",
+                revolutions=f"{_TURNS:g}",
             )
 
 
@@ -348,7 +345,7 @@ class HalSpindleC:
 
     def _fail(self, why: str) -> None:
         self._let_go()
-        self._axes.fault = self._axes.fault or Fault(Message("C: {why}", why=why), "c-coupling")
+        self._axes.fault = self._axes.fault or Fault("C: {why}", "c-coupling", why=why)
 
     def _late(self, longest: float) -> bool:
         return self._axes.now() > self._since + longest

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from core.message import Message
 from core.ports import DriverError, Latch, StationState
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
@@ -44,20 +43,18 @@ class HalTerminals:
         output = self._config.outputs.get(name)
         if output is None:
             raise DriverError(
-                Message("output {name} is not in the machine file; add it under [io.out]", name=f"{name!r}"),
-                "output",
+                "output {name} is not in the machine file; add it under [io.out]", "output", name=f"{name!r}"
             )
         if on and self._link.trouble:
             raise DriverError(
-                Message("output {name} stays off: {problem}", name=name, problem=self._link.trouble), "output"
+                "output {name} stays off: {problem}", "output", name=name, problem=self._link.trouble
             )
         chained = output.safe is not None and not output.lamp
         if chained and on is not output.safe and self._link.told.get("ok") is not True:
             raise DriverError(
-                Message(
-                    "output {name} does not change because the E-stop chain is open; press Reset", name=name
-                ),
+                "output {name} does not change because the E-stop chain is open; press Reset",
                 "output",
+                name=name,
             )
         self._say(name, on)
 

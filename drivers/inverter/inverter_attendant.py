@@ -152,14 +152,12 @@ class Agreement:
         if now - self._off_since < _LONG:
             return ""
         return Fault(
-            Message(
-                "the encoder measures {measured} rpm, but the inverter output corresponds to {given} "
-                "rpm; check the coupling, the belt and counts_per_rev; {press}",
-                measured=f"{measured:.0f}",
-                given=f"{given:.0f}",
-                press=PRESS,
-            ),
+            "the encoder measures {measured} rpm, but the inverter output corresponds to {given} "
+            "rpm; check the coupling, the belt and counts_per_rev; {press}",
             "spindle-disagrees",
+            measured=f"{measured:.0f}",
+            given=f"{given:.0f}",
+            press=PRESS,
         )
 
 
@@ -249,11 +247,9 @@ class Attendant:
             if self.warm:
                 return
         raise DriverError(
-            Message(
-                "the inverter did not send {warm_up} valid responses in a row: {missed}",
-                warm_up=self._familiar.warm_up,
-                missed=self.missed,
-            )
+            "the inverter did not send {warm_up} valid responses in a row: {missed}",
+            warm_up=self._familiar.warm_up,
+            missed=self.missed,
         )
 
     def exchange(self) -> None:

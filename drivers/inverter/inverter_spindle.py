@@ -65,7 +65,7 @@ class InverterSpindle:
                     "spindle-off",
                 )
             if why := self.fault() or self._lost():
-                raise DriverError(Message("the spindle stays off: {problem}", problem=why), "spindle-off")
+                raise DriverError("the spindle stays off: {problem}", "spindle-off", problem=why)
             # One that turns goes on: a surface speed that is refused for a lost answer costs the part.
             if not (self._attendant.want or self._attendant.warm):
                 raise DriverError(
@@ -137,17 +137,13 @@ class InverterSpindle:
             attendant.want = 0.0
             return self._unmeasured
         if not self._alive():
-            return Fault(
-                Message("TurnDesk no longer monitors the inverter; {press}", press=PRESS), "inverter-silent"
-            )
+            return Fault("TurnDesk no longer monitors the inverter; {press}", "inverter-silent", press=PRESS)
         if attendant.silent_for > DEAD:
             return Fault(
-                Message(
-                    "no response from the inverter for {dead} s; {press}",
-                    dead=f"{DEAD:g}",
-                    press=PRESS,
-                ),
+                "no response from the inverter for {dead} s; {press}",
                 "inverter-silent",
+                dead=f"{DEAD:g}",
+                press=PRESS,
             )
         return ""
 

@@ -18,11 +18,8 @@ from datetime import UTC, datetime
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from core.message import Message
 from core.ports import Clock, DriverError
-from drivers.mtconnect.mtconnect_items import Component, DataItem
-from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import (
+from drivers.mtconnect.agent_links import (
     AgentLink,
     AgentsState,
     GoneError,
@@ -32,6 +29,8 @@ from drivers.mtconnect.shdr_lines import (
     listening,
     stamp,
 )
+from drivers.mtconnect.mtconnect_items import Component, DataItem
+from drivers.mtconnect.mtconnect_table import MtconnectTable
 
 LOOK = 0.1  # s between two looks at the machine
 MOST = 8  # agents at a time
@@ -253,11 +252,8 @@ def devices_xml(device: Component, described: str, at: datetime) -> str:
     """
     if not _NAME.fullmatch(device.name):
         raise DriverError(
-            Message(
-                "[mtconnect] device = {device}: use only letters, digits, ., - and _, and begin with "
-                "a letter",
-                device=f"{device.name!r}",
-            )
+            "[mtconnect] device = {device}: use only letters, digits, ., - and _, and begin with a letter",
+            device=f"{device.name!r}",
         )
     root = Element("MTConnectDevices", {"xmlns": NAMESPACE, "xmlns:xsi": _XSI, "xsi:schemaLocation": _SCHEMA})
     root.append(_header(at))

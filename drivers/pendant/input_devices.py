@@ -166,43 +166,36 @@ def chosen(
     if not meant:
         of = Message(" with serial number {serial}", serial=serial) if serial else ""
         raise DriverError(
-            Message("the pendant {device}{total} is not plugged in", device=device, total=of),
-            reason="missing",
+            "the pendant {device}{total} is not plugged in", reason="missing", device=device, total=of
         )
     groups: dict[str, list[DeviceEntry]] = {}
     for each in meant:
         groups.setdefault(each.stem, []).append(each)
     if len(groups) > 1:
         raise DriverError(
-            Message(
-                "{groups_count} devices match {device}; unplug all but one of these devices; {meant}",
-                groups_count=len(groups),
-                device=device,
-                meant=_apart(meant),
-            ),
+            "{groups_count} devices match {device}; unplug all but one of these devices; {meant}",
             reason="several",
+            groups_count=len(groups),
+            device=device,
+            meant=_apart(meant),
         )
     able = frozenset().union(*(each.able for each in meant))
     lacking = [name for name, control in wanted.items() if control[:2] not in able]
     if lacking:
         names = ", ".join(lacking)
         raise DriverError(
-            Message(
-                "the pendant {device} does not have the button or handwheel that the machine file "
-                "assigns to {names}",
-                device=device,
-                names=names,
-            ),
+            "the pendant {device} does not have the button or handwheel that the machine file "
+            "assigns to {names}",
             reason="lacks-control",
+            device=device,
+            names=names,
         )
     if any(each.bluetooth for each in meant):
         raise DriverError(
-            Message(
-                "the pendant {device} uses Bluetooth, where a lost link cannot be distinguished from "
-                "a button held down; use a pendant with a cable",
-                device=device,
-            ),
+            "the pendant {device} uses Bluetooth, where a lost link cannot be distinguished from "
+            "a button held down; use a pendant with a cable",
             reason="bluetooth",
+            device=device,
         )
     needed = {control[:2] for control in wanted.values()}
     return tuple(each for each in meant if each.able & needed)
@@ -253,12 +246,10 @@ class KernelDevice:
             raise DriverError(_not_allowed(entry, path)) from error
         except OSError as error:
             raise DriverError(
-                Message(
-                    "the pendant {entry} cannot be opened: {cause}",
-                    entry=entry.name,
-                    cause=error.strerror,
-                ),
+                "the pendant {entry} cannot be opened: {cause}",
                 reason="not-opened",
+                entry=entry.name,
+                cause=error.strerror,
             ) from error
         self._able = entry.able
         try:
@@ -267,12 +258,10 @@ class KernelDevice:
         except OSError as error:
             os.close(self._fd)
             raise DriverError(
-                Message(
-                    "another program is using the pendant {entry}; close that program ({cause})",
-                    entry=entry.name,
-                    cause=error.strerror,
-                ),
+                "another program is using the pendant {entry}; close that program ({cause})",
                 reason="taken",
+                entry=entry.name,
+                cause=error.strerror,
             ) from error
 
     def fileno(self) -> int:

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
-from core.message import Message
 from core.ports import (
     AxisSample,
     Cam,
@@ -91,7 +90,7 @@ class SimAxes(_OnPlant):
     def home(self, axis: str) -> None:
         """Start looking for the home switch; ``sample().homed`` says when it is found."""
         if axis not in self.axes:
-            raise DriverError(Message("axis {axis} does not exist", axis=f"{axis!r}"), reason="no-axis")
+            raise DriverError("axis {axis} does not exist", reason="no-axis", axis=f"{axis!r}")
         self._plant.home(axis)
 
     def clear_fault(self) -> None:
@@ -145,8 +144,7 @@ class SimSpindlePort(_OnPlant):
                 )
             if rpm and plant.spindle.faults.fault:
                 raise DriverError(
-                    Message("the spindle stays off: {problem}", problem=plant.spindle.faults.fault),
-                    "spindle-off",
+                    "the spindle stays off: {problem}", "spindle-off", problem=plant.spindle.faults.fault
                 )
             plant.spindle.order(now, rpm)
 
@@ -189,8 +187,7 @@ class SimOrientation(_OnPlant):
                 )
             if plant.spindle.faults.fault:
                 raise DriverError(
-                    Message("the spindle stays off: {problem}", problem=plant.spindle.faults.fault),
-                    "spindle-off",
+                    "the spindle stays off: {problem}", "spindle-off", problem=plant.spindle.faults.fault
                 )
             plant.spindle.orient(now, angle, sense)
 

@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from core.message import Message
 from core.ports import (
     BoolArray,
     Cam,
@@ -159,11 +158,9 @@ class Plant:
                 )
             if self.fault:
                 raise DriverError(
-                    Message(
-                        "the drives stay off because of a fault ({fault}); clear the fault first",
-                        fault=self.fault,
-                    ),
+                    "the drives stay off because of a fault ({fault}); clear the fault first",
                     "no-power",
+                    fault=self.fault,
                 )
             if not self.enabled:
                 self.queue.rest_at(self._readings())
@@ -193,11 +190,9 @@ class Plant:
             rest, velocity = self.queue.demand_at(now)
             if any(velocity) or self._homing is not None:
                 raise DriverError(
-                    Message(
-                        "{axis} cannot home while an axis is moving; wait until all axes are at rest",
-                        axis=name,
-                    ),
+                    "{axis} cannot home while an axis is moving; wait until all axes are at rest",
                     reason="axis-moves",
+                    axis=name,
                 )
             pieces = straight(
                 now + self.config.commit,
@@ -246,15 +241,14 @@ class Plant:
 
     def _need_power(self) -> None:
         if self.fault:
-            raise DriverError(
-                Message("{fault}; clear the fault first", fault=self.fault), code_of(self.fault, "axis")
-            )
+            raise DriverError("{fault}; clear the fault first", code_of(self.fault, "axis"), fault=self.fault)
         if not self.enabled or self._off_at < _NEVER:
             raise DriverError("the drives are off; switch them on first", "power-lost")
         if self._homing is not None:
             raise DriverError(
-                Message("{name} is homing; wait until homing is complete", name=self._homing[0].axis.name),
+                "{name} is homing; wait until homing is complete",
                 reason="homing",
+                name=self._homing[0].axis.name,
             )
 
     def _power_off(self) -> None:
@@ -343,7 +337,7 @@ class Plant:
         """One step towards setpoint ``p`` ``v``; whether a drive has given up, now or before."""
         for servo, position, speed in zip(self.servos, p, v, strict=True):
             if servo.follow(position, speed, dt) and not self.fault:
-                self.fault = Fault(Message("{axis}: following error", axis=servo.axis.name), "following")
+                self.fault = Fault("{axis}: following error", "following", axis=servo.axis.name)
         if self.fault and self._off_at == _NEVER:
             self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
         return bool(self.fault)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from core.message import Message
 from core.ports import DriverError
 from drivers.operator_station import StationHands
 from drivers.simulated.simulated_table import PlannedFault
@@ -222,6 +221,6 @@ def _acts(machine: PlantHands, fault: PlannedFault) -> tuple[Callable[[], None],
         "pot_noise": ((value,), (0.0,)),
     }
     if fault.what not in known:
-        raise DriverError(Message("the simulator cannot simulate the fault {what}", what=f"{fault.what!r}"))
+        raise DriverError("the simulator cannot simulate the fault {what}", what=f"{fault.what!r}")
     act, (breaks, mends) = getattr(machine, fault.what), known[fault.what]
     return partial(act, *breaks), None if mends is None else partial(act, *mends)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from collections.abc import Mapping
 
-from core.message import Message
 from core.ports import PROBE, DriverError
 from drivers.simulators.plant_config import SimCollet, SimOutput, SimSetter
 
@@ -56,8 +55,7 @@ class Terminals:
         """Switch an output; raises DriverError for a name that the machine has not."""
         if name not in self.outputs:
             raise DriverError(
-                Message("output {name} is not in the machine file; add it under [io.out]", name=f"{name!r}"),
-                "output",
+                "output {name} is not in the machine file; add it under [io.out]", "output", name=f"{name!r}"
             )
         if name == self._collet.output and on != self.outputs[name]:
             self._closed_at = now + self._late(self._collet.close_time) if on else float("inf")
@@ -75,7 +73,7 @@ class Terminals:
         """Close or open a terminal by hand; raises DriverError for an unknown name."""
         if name not in self.inputs:
             raise DriverError(
-                Message("input {name} is not in the machine file; add it under [io.in]", name=f"{name!r}")
+                "input {name} is not in the machine file; add it under [io.in]", name=f"{name!r}"
             )
         self.inputs[name] = on
 

@@ -11,7 +11,6 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
 
-from core.message import Message
 from core.ports import Cam, DriverError, FloatArray, Segments
 from drivers.setpoint_queue import check_limits
 from drivers.simulators.plant_config import SimAxis
@@ -199,11 +198,9 @@ def check_drives(segments: Segments, servos: Sequence[Servo], rpm: float) -> Non
     for i, axis in enumerate(axes):
         if axis.name == "C" and not axis.own_drive and abs(rpm) > _STANDS and segments.v[:, i].any():
             raise DriverError(
-                Message(
-                    "C axis: the spindle is turning at {rpm} rpm, so no setpoints were queued",
-                    rpm=f"{rpm:.0f}",
-                ),
+                "C axis: the spindle is turning at {rpm} rpm, so no setpoints were queued",
                 "drive-limits",
+                rpm=f"{rpm:.0f}",
             )
 
 

@@ -375,19 +375,15 @@ def _check(line: bytes, number: int, wrap: bytes, *, seven: bool) -> None:
     for character in line:
         if character < 0x20 and character != 0x09:
             raise DriverError(
-                Message(
-                    "line {number} contains the control character {character}; remove this character",
-                    number=number,
-                    character=f"{character:02X}",
-                ),
+                "line {number} contains the control character {character}; remove this character",
                 reason="control-character",
+                number=number,
+                character=f"{character:02X}",
             )
         if seven and character >= _TOP:
             raise DriverError(
-                Message(
-                    "line {number} contains a character that 7 bits cannot represent; remove this "
-                    "character, or use 8 bits",
-                    number=number,
-                ),
+                "line {number} contains a character that 7 bits cannot represent; remove this "
+                "character, or use 8 bits",
                 reason="eighth-bit",
+                number=number,
             )

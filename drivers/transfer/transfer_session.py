@@ -128,12 +128,10 @@ class Sending(_Transfer):
         still = now - self._moved
         if still > PATIENCE:
             raise DriverError(
-                Message(
-                    "the other device paused the transfer after {file} bytes and has not continued "
-                    "for 2 minutes; check whether that device is ready",
-                    file=out,
-                ),
+                "the other device paused the transfer after {file} bytes and has not continued "
+                "for 2 minutes; check whether that device is ready",
                 reason="held",
+                file=out,
             )
         self._tell(out, HELD_BACK if still > HELD else "")
 

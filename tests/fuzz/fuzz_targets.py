@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator
 from core.ports import DriverError
 from drivers.grblhal.grblhal_report import read_identity, read_report
 from drivers.inverter.modbus_rtu import answer_in
+from drivers.mtconnect.agent_links import Active, AgentLink, LostError, clean, text_of, values_line
 from drivers.mtconnect.mtconnect_items import Category, DataItem
-from drivers.mtconnect.shdr_lines import Active, AgentLink, LostError, clean, text_of, values_line
 from drivers.serial_line import LineSettings
 from drivers.transfer.program_framing import Incoming, Phase, TransferSettings, outgoing
 from tests.fuzz.fuzz_files import FILES

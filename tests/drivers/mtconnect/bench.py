@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 
+from drivers.mtconnect.agent_links import Active, Report, Value
 from drivers.mtconnect.mtconnect_adapter import Adapter, devices_xml
 from drivers.mtconnect.mtconnect_items import Component, Layout, machine_items
 from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Active, Report, Value
 from drivers.waiting import StepClock
 from tests.drivers.mtconnect.agent import FakeAgent
 

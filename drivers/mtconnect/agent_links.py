@@ -1,5 +1,6 @@
-"""Lines of SHDR as the reference agent reads them: ``time|key|value|key|value``; a condition stands alone.
+"""Agents of MTConnect: the lines of SHDR that they read, what waits for each, and the socket they come in by.
 
+The lines are as the reference agent reads them: ``time|key|value|key|value``; a condition stands alone.
 Source of the rules: the C++ agent's tokenizer, token mapper and adapter. There is no escaping in them.
 """
 
@@ -280,11 +281,9 @@ def listening(bind: str, port: int) -> socket.socket:
         wire = socket.socket(family, kind, proto)
     except OSError as error:
         raise DriverError(
-            Message(
-                "[mtconnect] bind = {bind} is not an address of this computer: {cause}",
-                bind=f"{bind!r}",
-                cause=error.strerror,
-            )
+            "[mtconnect] bind = {bind} is not an address of this computer: {cause}",
+            bind=f"{bind!r}",
+            cause=error.strerror,
         ) from error
     try:
         if sys.platform != "win32":  # elsewhere this would share a port that somebody else has
@@ -294,13 +293,11 @@ def listening(bind: str, port: int) -> socket.socket:
     except OSError as error:
         wire.close()
         raise DriverError(
-            Message(
-                "[mtconnect] port {port} of {bind} cannot be opened ({cause}): choose another "
-                "port, or end the program that uses this port",
-                bind=bind,
-                port=port,
-                cause=error.strerror,
-            )
+            "[mtconnect] port {port} of {bind} cannot be opened ({cause}): choose another "
+            "port, or end the program that uses this port",
+            bind=bind,
+            port=port,
+            cause=error.strerror,
         ) from error
     wire.setblocking(False)
     return wire
