@@ -90,8 +90,9 @@ class DriverError(CodedError):
     """A driver cannot do what it was asked; the sentence says what, where and what to do.
 
     ``values`` fill the holes of the sentence, like those of a ``Message``. ``code`` is the alarm that it
-    becomes when nobody deals with it. The code of a ``Fault`` that is handed on goes with it. ``reason`` tells
-    causes with the same code apart, in lower case and with hyphens; it is empty where the code is enough.
+    becomes when nobody deals with it. The code of a ``Fault`` that is handed on goes with it. ``reason``
+    tells causes with the same code apart, in lower case and with hyphens; it is empty where the code is
+    enough.
     """
 
     def __init__(

@@ -10,6 +10,7 @@ import random
 import threading
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
+from typing import Protocol
 
 from core.ports import Clock, Station, StationState
 
@@ -231,30 +232,49 @@ class PanelStation(StationHands):
 # --- A station whose buttons are inputs.
 
 
+class Pot(Protocol):
+    """A pot in the machine file: its values at both ends, and the input that says whether it counts."""
+
+    @property
+    def low(self) -> float: ...
+    @property
+    def high(self) -> float: ...
+    @property
+    def switch(self) -> str: ...
+
+
 def station_of(
     inputs: Mapping[str, bool],
+    pots: Mapping[str, Pot],
+    read: Callable[[str], float],
     *,
-    pot_switch: str,
-    spindle_pot: float,
-    feed_pot: float,
     handwheel: int,
     age: float,
-    spindle_load: float | None,
 ) -> StationState:
-    """What the station tells. A button that the machine file does not have is never pressed.
+    """Return the state of the station. A button that the machine file does not have is never pressed.
 
-    ``pot_switch`` is the input that the machine file names beside the spindle's pot, empty where it names
-    none. Without an input ``spindle_auto`` that one says whether the spindle is on AUTO.
+    ``read`` returns the fraction of a pot's range by the name of the pot. Without an input ``spindle_auto``
+    the switch of the spindle's pot says whether the spindle is on AUTO.
     """
-    auto = inputs.get(pot_switch, True) if pot_switch else True
+    pot, load = pots.get("spindle_pot"), pots.get("spindle_load")
+    auto = inputs.get(pot.switch, True) if pot is not None and pot.switch else True
+
+    def override(name: str) -> float:
+        return _scaled(pots[name], min(max(read(name), 0.0), 1.0)) if name in pots else 1.0
+
     return StationState(
         estop=inputs.get("estop", False),
         start=inputs.get("start", False),
         hold=inputs.get("hold", False),
         spindle_auto=inputs.get("spindle_auto", auto),
-        spindle_pot=spindle_pot,
-        feed_pot=feed_pot,
+        spindle_pot=override("spindle_pot"),
+        feed_pot=override("feed_pot"),
         handwheel=handwheel,
         age=age,
-        spindle_load=spindle_load,
+        # Per cent; what is below 0 is the noise of an idle motor.
+        spindle_load=_scaled(load, max(read("spindle_load"), 0.0)) if load is not None else None,
     )
+
+
+def _scaled(pot: Pot, fraction: float) -> float:
+    return pot.low + (pot.high - pot.low) * fraction

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.ports import AxisSample, DriverError, Segments, Stop, at_rest, code_of
+from core.ports import AxisSample, DriverError, Segments, Stop, at_rest
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_homing import Homing
@@ -13,6 +13,7 @@ from drivers.canopen.canopen_setup import limits
 from drivers.canopen.driven_axes import MOTIONS, DriveSet
 from drivers.canopen.position_modes import CyclicFollower, Follower, ProfiledFollower, SyncSchedule
 from drivers.canopen.pvt_mode import PvtFollower
+from drivers.port_rules import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
 from drivers.setpoint_queue import SetpointQueue, Tolerance, check_limits
 
 
@@ -100,10 +101,7 @@ class CanopenAxes:
         """Queue setpoints. Raises DriverError as the port says, and for what the drives cannot follow."""
         self._need_power()
         homing = self.homing or self._given_up
-        if homing is not None:
-            raise DriverError(
-                "{name} is homing; wait until homing is complete", reason="homing", name=homing.config.name
-            )
+        demand_no_homing(homing.config.name if homing is not None else "")
         check_limits(segments, self.config.axes, self._homed())
         self.follower.check(segments)
         self.queue.splice(segments, self.now())
@@ -136,12 +134,7 @@ class CanopenAxes:
             self._off(DriveState.OFF)
             self.drives.power_off()
             return
-        if self.fault:
-            raise DriverError(
-                "the drives stay off because of a fault ({fault}); clear the fault first",
-                "no-power",
-                fault=self.fault,
-            )
+        demand_no_fault(self.fault)
         if self._powered():
             return
         self.follower.prepare()
@@ -160,19 +153,12 @@ class CanopenAxes:
 
     def home(self, axis: str) -> None:
         """Start the drive's homing. Raises DriverError."""
-        if axis not in self.axes:
-            raise DriverError("axis {axis} does not exist", reason="no-axis", axis=f"{axis!r}")
+        demand_axis(axis, self.axes)
         driven = next((a for a in self.drives.axes if a.config.name == axis), None)
         if driven is None or driven.config.absolute:
             return
         self._need_power()
-        if self.sample().moving:
-            raise DriverError(
-                "{axis} cannot home while an axis is moving; wait until all axes are at rest",
-                "homing",
-                reason="axis-moves",
-                axis=axis,
-            )
+        demand_standstill(axis, self.sample().moving)
         self.follower.abort()
         self.homing = Homing(driven, self.follower.mode, self.now())
 
@@ -259,10 +245,7 @@ class CanopenAxes:
             self.queue.rest_at(self._actual())  # the path goes on from where the drive has stopped
 
     def _need_power(self) -> None:
-        if self.fault:
-            raise DriverError("{fault}; clear the fault first", code_of(self.fault, "axis"), fault=self.fault)
-        if not self._powered():
-            raise DriverError("the drives are off; switch them on first", "power-lost")
+        demand_power(self.fault, self._powered())
 
     def _powered(self) -> bool:
         return self._on and self.drives.powered

@@ -22,6 +22,7 @@ from drivers.canopen.canopen_objects import HM, IP, MODE_BITS, PV, DriveState
 from drivers.canopen.canopen_setup import stopping
 from drivers.canopen.cia402_drives import SPEED, SPEED_TARGET, Drive402, DriveWork
 from drivers.canopen.driven_axes import DrivenAxis
+from drivers.port_rules import demand_free_drive, demand_spindle
 from drivers.setpoint_queue import straight
 
 _STANDS = 2.0  # rpm
@@ -97,12 +98,8 @@ class CanopenSpindle:
 
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed. Raises DriverError with a fault, unless asked to stop."""
-        if rpm and (self._bus.trouble or self.drive.trouble):
-            raise DriverError(
-                "the spindle stays off: {problem}",
-                "spindle-off",
-                problem=self._bus.trouble or self.drive.trouble,
-            )
+        if rpm:
+            demand_spindle(self._bus.trouble or self.drive.trouble)
         if rpm and self.kept:
             raise DriverError(
                 "the spindle stays off because its drive is engaged as the C axis; release the "
@@ -220,18 +217,8 @@ class SpindleC:
         if on and self.trouble:
             raise DriverError(self.trouble)
         if on and not self._wanted:
-            if not self._axes.sample().enabled:
-                raise DriverError(
-                    "C uses the spindle drive, and the drives are off; switch them on first",
-                    "c-coupling",
-                    reason="drives-off",
-                )
-            if self.step is Step.FREE and (self._spindle.commanded or abs(self._drive.speed) >= _STANDS):
-                raise DriverError(
-                    "C uses the spindle drive, and the spindle is turning; stop the spindle first",
-                    "c-coupling",
-                    reason="spindle-turns",
-                )
+            turning = self._spindle.commanded or abs(self._drive.speed) >= _STANDS
+            demand_free_drive(self._axes.sample().enabled, self.step is Step.FREE and turning)
             self._orient = orient
         self._want(on)
 

@@ -16,6 +16,7 @@ from drivers.canopen.canopen_nodes import CanNode, CanTerminal
 from drivers.canopen.canopen_setup import Setup, watching
 from drivers.canopen.cia402_drives import Drive402
 from drivers.operator_station import station_of
+from drivers.port_rules import FirstTouch, demand_output, output_of
 
 # --- A CiA 401 module: inputs, outputs with a safe state of their own, analog words.
 
@@ -247,19 +248,9 @@ class CanopenIO:
 
     def write(self, name: str, on: bool) -> None:
         """Switch one output; it goes out with the next tick. Raises DriverError."""
-        output = self._config.outputs.get(name)
-        if output is None:
-            raise DriverError(
-                "output {name} is not in the machine file; add it under [io.out]", "output", name=f"{name!r}"
-            )
+        output = output_of(name, self._config.outputs)
         module = self._module(output.terminal)
-        if on and (self._bus.trouble or module.trouble):
-            raise DriverError(
-                "output {name} stays off: {problem}",
-                "output",
-                name=name,
-                problem=self._bus.trouble or module.trouble,
-            )
+        demand_output(name, on, self._bus.trouble or module.trouble)
         self._switch(name, output.terminal, on)
 
     def _switch(self, name: str, where: CanTerminal, on: bool) -> None:
@@ -282,23 +273,19 @@ class CanopenIO:
         """The operator station as its inputs have it; its age is that of the oldest module."""
         now = self._bus.clock.now()
         age = max((now - module.answered for module in self.modules.values()), default=0.0)
-        pot = self._config.pots.get("spindle_pot")
         return station_of(
             self.inputs(),
-            pot_switch=pot.switch if pot is not None else "",
-            spindle_pot=self._pot("spindle_pot"),
-            feed_pot=self._pot("feed_pot"),
+            self._config.pots,
+            lambda name: self._word(name) / _FULL,
             handwheel=self._turned(),
             age=age,
-            spindle_load=self._load(),
         )
 
     def _turned(self) -> int:
         """The wheel's counter goes round after 16 bits; nobody turns half of that between two looks."""
-        wheel = self._config.pots.get("handwheel")
-        if wheel is None:
+        if "handwheel" not in self._config.pots:
             return 0
-        raw = self._module(wheel.terminal).analog[wheel.terminal.sub - 1]
+        raw = self._word("handwheel")
         if self._wheel is None:
             self._wheel = (raw, 0)
         last, count = self._wheel
@@ -306,20 +293,10 @@ class CanopenIO:
         self._wheel = (raw, count)
         return count
 
-    def _load(self) -> float | None:
-        """Per cent: ``low`` at 0, ``high`` at the full word; what is below is the noise of an idle motor."""
-        load = self._config.pots.get("spindle_load")
-        if load is None:
-            return None
-        raw = self._module(load.terminal).analog[load.terminal.sub - 1]
-        return load.low + (load.high - load.low) * max(raw / _FULL, 0.0)
-
-    def _pot(self, name: str) -> float:
-        pot = self._config.pots.get(name)
-        if pot is None:
-            return 1.0
-        raw = self._module(pot.terminal).analog[pot.terminal.sub - 1]
-        return pot.low + (pot.high - pot.low) * min(max(raw / _FULL, 0.0), 1.0)
+    def _word(self, name: str) -> int:
+        """The analog word of a pot or wheel."""
+        where = self._config.pots[name].terminal
+        return self._module(where).analog[where.sub - 1]
 
     def _read(self, where: CanTerminal) -> bool:
         if where.node in self.modules:
@@ -342,28 +319,18 @@ class CanopenIO:
 _LATE = 2  # SYNCs: a module answers one with what it had at the one before
 
 
-class CanopenProbe:
-    """``core.ports.TouchInput``: axis positions when the probe's input came on, by the answers to each SYNC.
+class CanopenProbe(FirstTouch):
+    """Touches by the answers to each SYNC.
 
     The drives' own latch (60B8) is not used: few have its input free.
     """
 
     def __init__(self, axes: CanopenAxes, io: CanopenIO, sync: float) -> None:
+        super().__init__()
         self._axes, self._io, self._sync = axes, io, sync
-        self._made = False
-        self._kept: Latch | None = None
-
-    def arm(self) -> None:
-        """Forget what was kept."""
-        self._kept = None
-
-    def latched(self) -> Latch | None:
-        """The first touch since."""
-        return self._kept
 
     def note(self) -> None:
         """Once a round of the loop that owns the bus."""
-        before, self._made = self._made, self._io.inputs()[PROBE]
-        if self._made and not before and self._kept is None:
+        if self._touches(self._io.inputs()[PROBE]):
             sample = self._axes.sample()
             self._kept = Latch(sample.t, sample.actual, _LATE * self._sync)

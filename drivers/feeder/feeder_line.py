@@ -164,12 +164,10 @@ class Line:
         hello = self.ask(Message({"do": "hello"}, NOTHING)).head
         if hello.get("version") != VERSION:
             raise DriverError(
-                Text(
-                    "the driver host uses version {version}, but TurnDesk uses version {expected}: exit "
-                    "TurnDesk, complete the installation, then start TurnDesk again",
-                    version=hello.get("version"),
-                    expected=VERSION,
-                )
+                "the driver host uses version {version}, but TurnDesk uses version {expected}: exit "
+                "TurnDesk, complete the installation, then start TurnDesk again",
+                version=hello.get("version"),
+                expected=VERSION,
             )
         return hello
 
@@ -255,15 +253,13 @@ class SocketLink:
             return self._answer(limit)
         except TimeoutError as error:
             raise DriverError(
-                Text(
-                    "no response from the driver host for {seconds} s; the axes stop on their path",
-                    seconds=f"{limit:g}",
-                ),
+                "no response from the driver host for {seconds} s; the axes stop on their path",
                 "feeder-silent",
+                seconds=f"{limit:g}",
             ) from error
         except OSError as error:
             raise DriverError(
-                Text("the driver host has ended ({cause})", cause=error.strerror), "feeder-gone"
+                "the driver host has ended ({cause})", "feeder-gone", cause=error.strerror
             ) from error
 
     def hang_up(self) -> None:

@@ -9,7 +9,6 @@ from typing import NamedTuple, get_args
 
 import numpy as np
 
-from core.message import Message as Text
 from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, Segments, code_of
 
 _LENGTHS = struct.Struct("<II")  # of the head, of the numbers, in bytes
@@ -107,9 +106,10 @@ def number(head: Mapping[str, object], key: str) -> float:
     value = head.get(key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _HUGE:
         raise DriverError(
-            Text("the driver host received an invalid number for {key}", key=key),
+            "the driver host received an invalid number for {key}",
             "feeder-silent",
             reason="no-number",
+            key=key,
         )
     return float(value)
 

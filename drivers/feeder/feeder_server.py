@@ -61,12 +61,10 @@ def use_hand(hands: object | None, head: Mapping[str, object]) -> object:
         return use(*values)
     except TypeError as error:
         raise DriverError(
-            Text(
-                "the simulated operator station does not support {name} with {values}",
-                name=name,
-                values=values,
-            ),
+            "the simulated operator station does not support {name} with {values}",
             reason="wrong-values",
+            name=name,
+            values=values,
         ) from error
 
 
@@ -102,8 +100,7 @@ def _how(word: str) -> Stop:
         return Stop(word)
     except ValueError as error:
         raise DriverError(
-            Text("the driver host does not recognize the stop command '{word}'", word=word),
-            reason="unknown-stop",
+            "the driver host does not recognize the stop command '{word}'", reason="unknown-stop", word=word
         ) from error
 
 

@@ -12,6 +12,7 @@ from drivers.grblhal.grblhal_config import GrblAxis
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_operator import Holds, Jogs, Overrides
 from drivers.grblhal.grblhal_report import Report
+from drivers.port_rules import demand_power
 
 AHEAD = 0.4  # s of motion beyond the block under way: so long it runs on when the host is lost
 _ABORT = "abort"
@@ -165,8 +166,7 @@ class GrblBlocks:
 
     def demand_power(self) -> None:
         """Raises DriverError while there is no leave to move."""
-        if not self.powered:
-            raise DriverError("the drives are off; switch them on first", "power-lost")
+        demand_power("", self.powered)
 
     # --- inside -------------------------------------------------------------------------------------------
 

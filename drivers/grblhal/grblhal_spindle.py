@@ -12,6 +12,7 @@ from drivers.grblhal.grblhal_codes import number
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_dialogue import Ask
 from drivers.grblhal.grblhal_operator import LEAST, MOST
+from drivers.port_rules import demand_spindle
 
 _OBEYS = 1.0  # s for a spindle that is stopped in a hold to be told as off
 _CLIPS = 2.0  # s in which report, override and S word may tell of different moments
@@ -83,10 +84,8 @@ class GrblSpindle:
         """Signed rpm, at most the machine's; 0 stops. Raises DriverError above the controller's own limit,
         beyond which it would turn slower than the program has it, and while it takes no lines.
         """
-        if rpm and self._blocks.hindrance():
-            raise DriverError(
-                "the spindle stays off: {problem}", "spindle-off", problem=self._blocks.hindrance()
-            )
+        if rpm:
+            demand_spindle(self._blocks.hindrance())
         rpm = math.copysign(min(abs(rpm), self._c.config.rpm_max), rpm)
         highest = self.highest
         if highest and abs(rpm) > 1.001 * highest:

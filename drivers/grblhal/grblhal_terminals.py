@@ -12,6 +12,7 @@ from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_dialogue import Ask
 from drivers.grblhal.grblhal_report import Report
+from drivers.port_rules import FirstTouch, output_of
 
 # --- Inputs: pins come with every report, auxiliary ones are asked for while nothing moves.
 
@@ -138,10 +139,7 @@ class GrblIO:
 
     def write(self, name: str, on: bool) -> None:
         """Raises DriverError for an output that the machine or the controller has not."""
-        if name not in self._wanted:
-            raise DriverError(
-                "output {name} is not in the machine file; add it under [io.out]", "output", name=f"{name!r}"
-            )
+        output_of(name, self._wanted)
         why = self.lacking(name)
         if on and why:
             terminal = self._c.config.outputs[name].terminal
@@ -237,27 +235,22 @@ _ASKS = 60.0  # s from arming on in which it asks more often
 _BEHIND = 0.5  # s behind a touch in which it still does
 
 
-class GrblProbe:
-    """``core.ports.TouchInput``, by reports that are asked for more often meanwhile.
+class GrblProbe(FirstTouch):
+    """Touches by reports that are asked for more often meanwhile.
 
     G38.2 is not used: it runs to its end when nobody is there any more, where a jog ends with its lease.
     """
 
     def __init__(self, controller: Controller, axes: GrblAxes, inputs: GrblInputs) -> None:
+        super().__init__()
         self._c, self._axes, self._inputs = controller, axes, inputs
         self._report: Report | None = None
         self._at = controller.clock.now()  # of the last report that was looked at
-        self._made = False
-        self._kept: Latch | None = None
 
     def arm(self) -> None:
         """Forget what was kept, and look often."""
-        self._kept = None
+        super().arm()
         self._c.hurry_until = self._c.clock.now() + _ASKS
-
-    def latched(self) -> Latch | None:
-        """The first touch since."""
-        return self._kept
 
     def pump(self) -> None:
         """Once a round, behind the conversation's own."""
@@ -265,8 +258,7 @@ class GrblProbe:
         if report is self._report or report is None:
             return
         late, self._report, self._at = now - self._at, report, now
-        before, self._made = self._made, self._inputs.states().get(PROBE, False)
-        if self._made and not before and self._kept is None:
+        if self._touches(self._inputs.states().get(PROBE, False)):
             sample = self._axes.sample()
             self._kept = Latch(sample.t, sample.actual, late)
             self._c.hurry_until = min(self._c.hurry_until, now + _BEHIND)

@@ -6,13 +6,14 @@ import math
 from collections import deque
 from collections.abc import Callable, Sequence
 
-from core.ports import AxisSample, Cam, DriverError, Fault, Geared, Segments, Stop, at_rest, code_of
+from core.ports import AxisSample, Cam, DriverError, Fault, Geared, Segments, Stop, at_rest
 from drivers.hal.bridge.packets import number
 from drivers.hal.bridge.packets import pieces_of as pieces_told
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_homing import Homing
 from drivers.hal.hal_link import HalLink, told_fault
 from drivers.hal.hal_terminals import HalTouch
+from drivers.port_rules import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
 from drivers.setpoint_pieces import Piece
 from drivers.setpoint_queue import Tolerance, check_limits, pieces_of
 from drivers.spindle_gear import GearedQueue, Motion, Phase, Slides
@@ -215,10 +216,7 @@ class HalAxes:
     def splice(self, segments: Segments) -> None:
         """Queue setpoints. Raises DriverError as the port says, and for what the axes cannot do."""
         self._need_power()
-        if self.homing is not None:
-            raise DriverError(
-                "{name} is homing; wait until homing is complete", reason="homing", name=self.homing.name
-            )
+        demand_no_homing(self.homing.name if self.homing is not None else "")
         self._check(segments)
         self.queue.splice(segments, self._now())
         self._send("splice", pieces_of(segments, len(self.axes)))
@@ -267,12 +265,7 @@ class HalAxes:
             if not self._link.lost:
                 self._link.say("off")
             return
-        if self.fault:
-            raise DriverError(
-                "the drives stay off because of a fault ({fault}); clear the fault first",
-                "no-power",
-                fault=self.fault,
-            )
+        demand_no_fault(self.fault)
         if self._powered:
             return
         self._order = self._link.say("enable")
@@ -302,20 +295,13 @@ class HalAxes:
 
     def home(self, axis: str) -> None:
         """Look for home; ``sample().homed`` says when it is found. Raises DriverError."""
-        if axis not in self.axes:
-            raise DriverError("axis {axis} does not exist", reason="no-axis", axis=f"{axis!r}")
+        demand_axis(axis, self.axes)
         index = self.axes.index(axis)
         figures = self.config.axes[index]
         if figures.absolute or figures.pins is None:
             return
         self._need_power()
-        if self.sample().moving:
-            raise DriverError(
-                "{axis} cannot home while an axis is moving; wait until all axes are at rest",
-                "homing",
-                reason="axis-moves",
-                axis=axis,
-            )
+        demand_standstill(axis, self.sample().moving)
         self._homed[index] = False
         self.homing = Homing(figures, index, self)
 
@@ -413,10 +399,7 @@ class HalAxes:
         return self._on and self._link.told.get("powered") is True and not self.fault
 
     def _need_power(self) -> None:
-        if self.fault:
-            raise DriverError("{fault}; clear the fault first", code_of(self.fault, "axis"), fault=self.fault)
-        if not self._powered:
-            raise DriverError("the drives are off; switch them on first", "power-lost")
+        demand_power(self.fault, self._powered)
 
     def _check(self, segments: Segments) -> None:
         check_limits(segments, self.config.axes, self._homed, self._actual)

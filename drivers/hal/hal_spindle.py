@@ -18,6 +18,7 @@ from core.ports import DriverError, Fault
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
+from drivers.port_rules import demand_free_drive, demand_spindle
 from drivers.setpoint_queue import straight
 
 _MODES = {0: 0, 1: 1, -1: 2}
@@ -35,13 +36,8 @@ class HalOrientation:
 
     def orient(self, angle: float, sense: int = 0) -> None:
         """Bring it to an angle. Raises DriverError while it turns, with a fault or an open chain."""
-        if why := self._spindle.fault() or self._axes.fault:
-            raise DriverError("the spindle stays off: {problem}", "spindle-off", problem=why)
-        if self._link.told.get("ok") is not True:
-            raise DriverError(
-                "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
-            )
-        if self._order is None and (self._spindle.ordered or abs(self._spindle.measured()) >= _STANDS):
+        self._spindle.demand_ready()
+        if self._order is None and self._spindle.turns:
             raise DriverError(
                 "the spindle cannot be oriented while it is turning; stop it first", "spindle-off"
             )
@@ -95,16 +91,25 @@ class HalSpindle:
 
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed. Raises DriverError with a fault or an open chain, unless asked to stop."""
-        if rpm and (why := self.fault() or self._axes.fault):
-            raise DriverError("the spindle stays off: {problem}", "spindle-off", problem=why)
-        if rpm and self._link.told.get("ok") is not True:
-            raise DriverError(
-                "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
-            )
+        if rpm:
+            self.demand_ready()
         limit = self._config.rpm_max
         self.ordered = min(max(rpm, -limit), limit)
         if not self._link.lost:
             self._link.say("spindle", rpm=self.ordered, on=bool(self.ordered))
+
+    def demand_ready(self) -> None:
+        """Raise DriverError with a fault or an open chain."""
+        demand_spindle(self.fault() or self._axes.fault)
+        if self._link.told.get("ok") is not True:
+            raise DriverError(
+                "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
+            )
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is told to turn, or measured to."""
+        return bool(self.ordered) or abs(self.measured()) >= _STANDS
 
     def coast(self) -> None:
         """Speed 0, and off: what its drive makes of that is the drive's."""
@@ -244,18 +249,7 @@ class HalSpindleC:
             return
         if self.step is not Step.FREE:
             return
-        if not self._axes.sample().enabled:
-            raise DriverError(
-                "C uses the spindle drive, and the drives are off; switch them on first",
-                "c-coupling",
-                reason="drives-off",
-            )
-        if self._spindle.ordered or abs(self._spindle.measured()) >= _STANDS:
-            raise DriverError(
-                "C uses the spindle drive, and the spindle is turning; stop the spindle first",
-                "c-coupling",
-                reason="spindle-turns",
-            )
+        demand_free_drive(self._axes.sample().enabled, self._spindle.turns)
         self._orient = orient
         if orient and not self._spindle.index.known:
             self._spindle.run(_SEARCH)

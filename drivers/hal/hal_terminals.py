@@ -8,6 +8,7 @@ from core.ports import DriverError, Latch, StationState
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
 from drivers.operator_station import station_of
+from drivers.port_rules import FirstTouch, demand_output, output_of
 
 
 class HalTerminals:
@@ -40,15 +41,8 @@ class HalTerminals:
 
     def write(self, name: str, on: bool) -> None:
         """Switch one output. Raises DriverError."""
-        output = self._config.outputs.get(name)
-        if output is None:
-            raise DriverError(
-                "output {name} is not in the machine file; add it under [io.out]", "output", name=f"{name!r}"
-            )
-        if on and self._link.trouble:
-            raise DriverError(
-                "output {name} stays off: {problem}", "output", name=name, problem=self._link.trouble
-            )
+        output = output_of(name, self._config.outputs)
+        demand_output(name, on, self._link.trouble)
         chained = output.safe is not None and not output.lamp
         if chained and on is not output.safe and self._link.told.get("ok") is not True:
             raise DriverError(
@@ -72,58 +66,33 @@ class HalTerminals:
 
     def snapshot(self) -> StationState:
         """The operator station as its pins have it; its age is that of the inputs."""
-        pot = self._config.pots.get("spindle_pot")
         return station_of(
             self.inputs(),
-            pot_switch=pot.switch if pot is not None else "",
-            spindle_pot=self._pot("spindle_pot"),
-            feed_pot=self._pot("feed_pot"),
-            handwheel=round(self._analog("handwheel", 0.0)),
+            self._config.pots,
+            self._analog,
+            handwheel=round(self._analog("handwheel")),
             age=self._link.input_age,
-            spindle_load=self._load(),
         )
 
-    def _load(self) -> float | None:
-        """Per cent; its pin is 1 where the machine file's range ends."""
-        load = self._config.pots.get("spindle_load")
-        if load is None:
-            return None
-        return load.low + (load.high - load.low) * max(self._analog("spindle_load", 0.0), 0.0)
-
-    def _pot(self, name: str) -> float:
-        pot = self._config.pots.get(name)
-        if pot is None:
-            return 1.0
-        return pot.low + (pot.high - pot.low) * min(max(self._analog(name, 0.0), 0.0), 1.0)
-
-    def _analog(self, name: str, otherwise: float) -> float:
+    def _analog(self, name: str) -> float:
+        """The number at a pin: 1 at the end of a pot's range; 0 where it is not wired."""
         told, names = self._link.told.get("analog"), list(self._config.pots)
         if not isinstance(told, list) or name not in names:
-            return otherwise
+            return 0.0
         return float(told[names.index(name)])
 
 
 # --- The probe: HAL samples its input and the places of the axes in one period.
 
 
-class HalTouch:
-    """``core.ports.TouchInput``."""
+class HalTouch(FirstTouch):
+    """Touches by HAL's samples."""
 
     def __init__(self, period: float, *, active_low: bool) -> None:
+        super().__init__()
         self._period, self._low = period, active_low
-        self._on = False
-        self._kept: Latch | None = None
-
-    def arm(self) -> None:
-        """Forget what was kept."""
-        self._kept = None
-
-    def latched(self) -> Latch | None:
-        """The first touch since."""
-        return self._kept
 
     def see(self, t: float, place: tuple[float, ...], raw: bool) -> None:
         """One period of the servo thread: its input, and where the slides were."""
-        before, self._on = self._on, raw is not self._low
-        if self._on and not before and self._kept is None:
+        if self._touches(raw is not self._low):
             self._kept = Latch(t, place, self._period)

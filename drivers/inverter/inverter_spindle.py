@@ -15,6 +15,7 @@ from drivers.inverter.inverter_attendant import DEAD, PRESS, Agreement, Attendan
 from drivers.inverter.inverter_family import Family
 from drivers.inverter.inverter_table import InverterTable
 from drivers.inverter.modbus_rtu import Modbus
+from drivers.port_rules import demand_estop_released, demand_spindle
 from drivers.serial_line import Wire
 
 
@@ -59,13 +60,8 @@ class InverterSpindle:
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed. Raises DriverError with a fault or in E-stop, unless asked to stop."""
         if rpm:
-            if self._estop():
-                raise DriverError(
-                    "the spindle stays off while the E-stop is pressed; release the E-stop first",
-                    "spindle-off",
-                )
-            if why := self.fault() or self._lost():
-                raise DriverError("the spindle stays off: {problem}", "spindle-off", problem=why)
+            demand_estop_released(self._estop())
+            demand_spindle(self.fault() or self._lost())
             # One that turns goes on: a surface speed that is refused for a lost answer costs the part.
             if not (self._attendant.want or self._attendant.warm):
                 raise DriverError(

@@ -10,7 +10,6 @@ from core.ports import (
     AxisSample,
     Cam,
     Clock,
-    DriverError,
     FloatArray,
     Geared,
     Latch,
@@ -19,6 +18,7 @@ from core.ports import (
     StationState,
     Stop,
 )
+from drivers.port_rules import demand_axis, demand_estop_released, demand_spindle
 from drivers.sample_log import KEPT, SampleLog
 from drivers.simulators.plant import Plant
 from drivers.simulators.plant_config import SimConfig
@@ -89,8 +89,7 @@ class SimAxes(_OnPlant):
 
     def home(self, axis: str) -> None:
         """Start looking for the home switch; ``sample().homed`` says when it is found."""
-        if axis not in self.axes:
-            raise DriverError("axis {axis} does not exist", reason="no-axis", axis=f"{axis!r}")
+        demand_axis(axis, self.axes)
         self._plant.home(axis)
 
     def clear_fault(self) -> None:
@@ -137,15 +136,8 @@ class SimSpindlePort(_OnPlant):
         plant = self._plant
         with plant.lock:
             now = plant.advance()
-            if rpm and plant.panel.estop:
-                raise DriverError(
-                    "the spindle stays off while the E-stop is pressed; release the E-stop first",
-                    "spindle-off",
-                )
-            if rpm and plant.spindle.faults.fault:
-                raise DriverError(
-                    "the spindle stays off: {problem}", "spindle-off", problem=plant.spindle.faults.fault
-                )
+            if rpm:
+                _demand_spindle(plant)
             plant.spindle.order(now, rpm)
 
     def coast(self) -> None:
@@ -172,6 +164,12 @@ class SimSpindlePort(_OnPlant):
         return self._plant.spindle.faults.fault
 
 
+def _demand_spindle(plant: Plant) -> None:
+    """Raise DriverError in E-stop, or with a fault of the inverter."""
+    demand_estop_released(plant.panel.estop)
+    demand_spindle(plant.spindle.faults.fault)
+
+
 class SimOrientation(_OnPlant):
     """``core.ports.SpindleOrientation`` on the plant."""
 
@@ -180,15 +178,7 @@ class SimOrientation(_OnPlant):
         plant = self._plant
         with plant.lock:
             now = plant.advance()
-            if plant.panel.estop:
-                raise DriverError(
-                    "the spindle stays off while the E-stop is pressed; release the E-stop first",
-                    "spindle-off",
-                )
-            if plant.spindle.faults.fault:
-                raise DriverError(
-                    "the spindle stays off: {problem}", "spindle-off", problem=plant.spindle.faults.fault
-                )
+            _demand_spindle(plant)
             plant.spindle.orient(now, angle, sense)
 
     def release(self) -> None:

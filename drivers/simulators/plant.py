@@ -20,9 +20,9 @@ from core.ports import (
     Segments,
     StationState,
     Stop,
-    code_of,
 )
 from drivers.operator_station import Panel
+from drivers.port_rules import demand_no_fault, demand_no_homing, demand_power
 from drivers.sample_log import SampleLog
 from drivers.setpoint_queue import Tolerance, straight
 from drivers.simulators.foreseen_motion import ForeseenMotion, foresee
@@ -156,12 +156,7 @@ class Plant:
                 raise DriverError(
                     "the drives stay off while the E-stop is pressed; release the E-stop first", "no-power"
                 )
-            if self.fault:
-                raise DriverError(
-                    "the drives stay off because of a fault ({fault}); clear the fault first",
-                    "no-power",
-                    fault=self.fault,
-                )
+            demand_no_fault(self.fault)
             if not self.enabled:
                 self.queue.rest_at(self._readings())
             self.enabled, self._off_at = True, _NEVER
@@ -240,16 +235,8 @@ class Plant:
         return tuple(servo.reading for servo in self.servos)
 
     def _need_power(self) -> None:
-        if self.fault:
-            raise DriverError("{fault}; clear the fault first", code_of(self.fault, "axis"), fault=self.fault)
-        if not self.enabled or self._off_at < _NEVER:
-            raise DriverError("the drives are off; switch them on first", "power-lost")
-        if self._homing is not None:
-            raise DriverError(
-                "{name} is homing; wait until homing is complete",
-                reason="homing",
-                name=self._homing[0].axis.name,
-            )
+        demand_power(self.fault, self.enabled and self._off_at >= _NEVER)
+        demand_no_homing(self._homing[0].axis.name if self._homing is not None else "")
 
     def _power_off(self) -> None:
         self.enabled, self._off_at, self._homing = False, _NEVER, None

@@ -6,6 +6,7 @@ import random
 from collections.abc import Mapping
 
 from core.ports import PROBE, DriverError
+from drivers.port_rules import output_of
 from drivers.simulators.plant_config import SimCollet, SimOutput, SimSetter
 
 
@@ -53,10 +54,7 @@ class Terminals:
 
     def write(self, name: str, on: bool, now: float) -> None:
         """Switch an output; raises DriverError for a name that the machine has not."""
-        if name not in self.outputs:
-            raise DriverError(
-                "output {name} is not in the machine file; add it under [io.out]", "output", name=f"{name!r}"
-            )
+        output_of(name, self.outputs)
         if name == self._collet.output and on != self.outputs[name]:
             self._closed_at = now + self._late(self._collet.close_time) if on else float("inf")
             self._opened_at = now + self._late(self._collet.open_time)

@@ -157,10 +157,8 @@ class Incoming:
         self.count += len(come)
         if self.count > LARGEST:
             raise IncompleteError(
-                Message(
-                    "more than {largest} MB were received; the received data is not a program",
-                    largest=LARGEST // 1000000,
-                )
+                "more than {largest} MB were received; the received data is not a program",
+                largest=LARGEST // 1000000,
             )
         for character in come:
             if self.phase is Phase.WAITING:
@@ -203,24 +201,20 @@ class Incoming:
     def _check(self, line: bytes, number: int) -> None:
         if self._wrap and line.lstrip().startswith(self._wrap):
             raise IncompleteError(
-                Message(
-                    "line {number} begins with {wrap}, so more than one program was received; send "
-                    "only one program",
-                    number=number,
-                    wrap=self._settings.wrap,
-                ),
+                "line {number} begins with {wrap}, so more than one program was received; send "
+                "only one program",
                 reason="several",
+                number=number,
+                wrap=self._settings.wrap,
             )
         for character in line:
             if character < 0x20 and character != _TAB:
                 raise IncompleteError(
-                    Message(
-                        "line {number} contains the control character {character} because of "
-                        "interference on the serial line. Nothing was saved; send the program again",
-                        number=number,
-                        character=f"{character:02X}",
-                    ),
+                    "line {number} contains the control character {character} because of "
+                    "interference on the serial line. Nothing was saved; send the program again",
                     reason="control-character",
+                    number=number,
+                    character=f"{character:02X}",
                 )
 
     def _wait(self, character: int) -> None:
@@ -272,14 +266,12 @@ class Incoming:
             self._wait(character)
             return
         raise IncompleteError(
-            Message(
-                "parity error in line {lines}; nothing was saved. Check the serial port "
-                "settings ({line}) and the shield and ground of the cable, then send the "
-                "program again",
-                lines=self.lines,
-                line=self._settings.line.words,
-            ),
+            "parity error in line {lines}; nothing was saved. Check the serial port "
+            "settings ({line}) and the shield and ground of the cable, then send the "
+            "program again",
             reason="parity",
+            lines=self.lines,
+            line=self._settings.line.words,
         )
 
     def _at_end(self) -> bool:
@@ -300,21 +292,16 @@ class Incoming:
                 else "nothing came"
             )
             return IncompleteError(
-                Message(
-                    "{came}; check the serial port settings and the other device, then send the "
-                    "program again",
-                    came=came,
-                ),
+                "{came}; check the serial port settings and the other device, then send the program again",
                 reason="no-begin" if self.count else "nothing",
+                came=came,
             )
         return IncompleteError(
-            Message(
-                "the end character {wrap} is missing after {lines} lines: the program is incomplete "
-                "and was not saved; send the program again",
-                wrap=wrap,
-                lines=self.lines,
-            ),
+            "the end character {wrap} is missing after {lines} lines: the program is incomplete "
+            "and was not saved; send the program again",
             reason="no-end",
+            wrap=wrap,
+            lines=self.lines,
         )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass
 
-from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.serial_line import FlowWire, table_of
 from drivers.transfer.program_framing import (
@@ -188,13 +187,11 @@ class Receiving(_Transfer):
         incoming.feed(come)
         if self._wire.damaged and incoming.phase is not Phase.WAITING:
             raise IncompleteError(
-                Message(
-                    "a character in line {lines} is damaged; nothing was saved. Check the serial "
-                    "port settings and the shield and ground of the cable, then send the program "
-                    "again",
-                    lines=incoming.lines,
-                ),
+                "a character in line {lines} is damaged; nothing was saved. Check the serial "
+                "port settings and the shield and ground of the cable, then send the program "
+                "again",
                 reason="damaged",
+                lines=incoming.lines,
             )
         if incoming.phase is not Phase.WAITING:
             self.reach = Reach(incoming.count, 0, incoming.lines)
