@@ -13,7 +13,7 @@ from drivers.canopen.canopen_setup import limits
 from drivers.canopen.driven_axes import MOTIONS, DriveSet
 from drivers.canopen.position_modes import CyclicFollower, Follower, ProfiledFollower, SyncSchedule
 from drivers.canopen.pvt_mode import PvtFollower
-from drivers.port_rules import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
+from drivers.port_parts import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
 from drivers.setpoint_queue import SetpointQueue, Tolerance, check_limits
 
 

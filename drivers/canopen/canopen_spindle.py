@@ -22,7 +22,7 @@ from drivers.canopen.canopen_objects import HM, IP, MODE_BITS, PV, DriveState
 from drivers.canopen.canopen_setup import stopping
 from drivers.canopen.cia402_drives import SPEED, SPEED_TARGET, Drive402, DriveWork
 from drivers.canopen.driven_axes import DrivenAxis
-from drivers.port_rules import demand_free_drive, demand_spindle
+from drivers.port_parts import demand_free_drive, demand_spindle
 from drivers.setpoint_queue import straight
 
 _STANDS = 2.0  # rpm

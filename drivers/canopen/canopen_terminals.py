@@ -16,7 +16,7 @@ from drivers.canopen.canopen_nodes import CanNode, CanTerminal
 from drivers.canopen.canopen_setup import Setup, watching
 from drivers.canopen.cia402_drives import Drive402
 from drivers.operator_station import station_of
-from drivers.port_rules import FirstTouch, demand_output, output_of
+from drivers.port_parts import FirstTouch, demand_output, output_of
 
 # --- A CiA 401 module: inputs, outputs with a safe state of their own, analog words.
 

@@ -12,7 +12,7 @@ from drivers.grblhal.grblhal_config import GrblAxis
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_operator import Holds, Jogs, Overrides
 from drivers.grblhal.grblhal_report import Report
-from drivers.port_rules import demand_power
+from drivers.port_parts import demand_power
 
 AHEAD = 0.4  # s of motion beyond the block under way: so long it runs on when the host is lost
 _ABORT = "abort"

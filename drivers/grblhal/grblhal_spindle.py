@@ -12,7 +12,7 @@ from drivers.grblhal.grblhal_codes import number
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_dialogue import Ask
 from drivers.grblhal.grblhal_operator import LEAST, MOST
-from drivers.port_rules import demand_spindle
+from drivers.port_parts import demand_spindle
 
 _OBEYS = 1.0  # s for a spindle that is stopped in a hold to be told as off
 _CLIPS = 2.0  # s in which report, override and S word may tell of different moments

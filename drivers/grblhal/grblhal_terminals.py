@@ -12,7 +12,7 @@ from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_dialogue import Ask
 from drivers.grblhal.grblhal_report import Report
-from drivers.port_rules import FirstTouch, output_of
+from drivers.port_parts import FirstTouch, output_of
 
 # --- Inputs: pins come with every report, auxiliary ones are asked for while nothing moves.
 

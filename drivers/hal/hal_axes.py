@@ -13,7 +13,7 @@ from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_homing import Homing
 from drivers.hal.hal_link import HalLink, told_fault
 from drivers.hal.hal_terminals import HalTouch
-from drivers.port_rules import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
+from drivers.port_parts import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
 from drivers.setpoint_pieces import Piece
 from drivers.setpoint_queue import Tolerance, check_limits, pieces_of
 from drivers.spindle_gear import GearedQueue, Motion, Phase, Slides

@@ -18,7 +18,7 @@ from core.ports import DriverError, Fault
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
-from drivers.port_rules import demand_free_drive, demand_spindle
+from drivers.port_parts import demand_free_drive, demand_spindle
 from drivers.setpoint_queue import straight
 
 _MODES = {0: 0, 1: 1, -1: 2}

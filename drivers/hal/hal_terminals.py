@@ -8,7 +8,7 @@ from core.ports import DriverError, Latch, StationState
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
 from drivers.operator_station import station_of
-from drivers.port_rules import FirstTouch, demand_output, output_of
+from drivers.port_parts import FirstTouch, demand_output, output_of
 
 
 class HalTerminals:

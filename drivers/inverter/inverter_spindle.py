@@ -15,7 +15,7 @@ from drivers.inverter.inverter_attendant import DEAD, PRESS, Agreement, Attendan
 from drivers.inverter.inverter_family import Family
 from drivers.inverter.inverter_table import InverterTable
 from drivers.inverter.modbus_rtu import Modbus
-from drivers.port_rules import demand_estop_released, demand_spindle
+from drivers.port_parts import demand_estop_released, demand_spindle
 from drivers.serial_line import Wire
 
 

@@ -18,7 +18,7 @@ from core.ports import (
     StationState,
     Stop,
 )
-from drivers.port_rules import demand_axis, demand_estop_released, demand_spindle
+from drivers.port_parts import demand_axis, demand_estop_released, demand_spindle
 from drivers.sample_log import KEPT, SampleLog
 from drivers.simulators.plant import Plant
 from drivers.simulators.plant_config import SimConfig

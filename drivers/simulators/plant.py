@@ -22,7 +22,7 @@ from core.ports import (
     Stop,
 )
 from drivers.operator_station import Panel
-from drivers.port_rules import demand_no_fault, demand_no_homing, demand_power
+from drivers.port_parts import demand_no_fault, demand_no_homing, demand_power
 from drivers.sample_log import SampleLog
 from drivers.setpoint_queue import Tolerance, straight
 from drivers.simulators.foreseen_motion import ForeseenMotion, foresee

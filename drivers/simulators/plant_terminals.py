@@ -6,7 +6,7 @@ import random
 from collections.abc import Mapping
 
 from core.ports import PROBE, DriverError
-from drivers.port_rules import output_of
+from drivers.port_parts import output_of
 from drivers.simulators.plant_config import SimCollet, SimOutput, SimSetter
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from drivers.hal.boards.board_parts import turns
 from drivers.hal.boards.hal_lines import HalFile, LatheAxis
-from drivers.hal.boards.spindle_as_c import turns
 
 _WATCHDOG = 5_000_000  # ns without a word of this computer until the card lets everything fall
 NOTES = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from drivers.hal.boards import spindle_as_c
+from drivers.hal.boards import board_parts
 from drivers.hal.boards.hal_lines import C, HalFile, Lathe, LatheAxis, Terminal
 from drivers.hal.boards.mesa_card import NOTES, encoder, load_card, load_pid, spindle_encoder
 
@@ -46,7 +46,7 @@ def mesa_servo_lathe(lathe: Lathe) -> HalFile:
     load_card(file, _CARD, f"num_encoders={encoders} num_pwmgens={1 + max(channels)} num_stepgens=0")
     load_pid(file, lathe.driven)
     if lathe.c is not None:
-        spindle_as_c.load(file, chosen=True)
+        board_parts.load(file, chosen=True)
     file.section("Analog outputs")
     file.setp(f"{_CARD}.pwmgen.pwm_frequency", _PWM_HZ)
     for axis in lathe.driven:
@@ -121,6 +121,6 @@ def _speed(file: HalFile) -> None:
     file.section(f"Spindle: analog output {board.channel}")
     _analog(file, pin, board.full_speed, "spindle speed at 10 V, in rpm")
     speed = "speed" if file.lathe.names.get("hal.spindle.speed") else "speed_abs"
-    value, enable = spindle_as_c.chosen_speed(file, f"{pin}.value", f"{pin}.enable")
+    value, enable = board_parts.chosen_speed(file, f"{pin}.value", f"{pin}.enable")
     file.role(f"hal.spindle.{speed}", "spindle-rpm-cmd", value, place=place, needed=True)
     file.role("hal.spindle.on", "spindle-on", enable, place=f"enable of {place}", needed=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from drivers.hal.boards import spindle_as_c
+from drivers.hal.boards import board_parts
 from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
 from drivers.hal.boards.mesa_card import NOTES, load_card, load_pid, spindle_encoder
 
@@ -138,15 +138,15 @@ def _steps(file: HalFile, axis: LatheAxis) -> str:
 
 def _spindle_c(file: HalFile, axis: LatheAxis) -> None:
     """The same drive takes steps once it is changed over; its place is the spindle's encoder."""
-    spindle_as_c.load(file, chosen=False)
+    board_parts.load(file, chosen=False)
     file.section(
         f"C: step generator {file.lathe.board.axes[axis.name].channel} for the spindle drive, "
         "with feedback from the spindle encoder"
     )
     pin = _steps(file, axis)
     file.setp(f"{pin}.control-type", 1)
-    spindle_as_c.loop(file, axis, f"{pin}.velocity-cmd")
-    spindle_as_c.changed_over(file)
+    board_parts.loop(file, axis, f"{pin}.velocity-cmd")
+    board_parts.changed_over(file)
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
