@@ -25,7 +25,7 @@ from drivers.canopen.canopen_spindle import CanopenSpindle, SpindleC
 from drivers.canopen.canopen_terminals import CanopenIO, CanopenProbe
 from drivers.canopen.cia402_drives import Drive402
 from drivers.canopen.position_modes import CyclicFollower
-from drivers.sample_log import KEPT, SampleLog
+from drivers.port_parts import KEPT, SampleLog
 
 _NAN = float("nan")
 _UNTRACED = (

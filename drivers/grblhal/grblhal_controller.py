@@ -12,10 +12,9 @@ from collections.abc import Callable
 from core.ports import Clock, DriverError, Fault, FaultCode, code_of
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import GrblConfig
-from drivers.grblhal.grblhal_dialogue import Ask, Runner, Script, Stream
 from drivers.grblhal.grblhal_report import Report, read_report
 from drivers.grblhal.grblhal_reported import ReportedState
-from drivers.grblhal.grblhal_wire import Wire, WireLostError
+from drivers.grblhal.grblhal_wire import Ask, Runner, Script, Stream, Wire, WireLostError
 from drivers.waiting import Opening
 
 _LINE = 1024  # bytes; the controller sends no longer line

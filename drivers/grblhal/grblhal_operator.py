@@ -14,8 +14,8 @@ from core.ports import DriverError, FaultCode
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_codes import jog_line
 from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_dialogue import Ask
 from drivers.grblhal.grblhal_report import Report
+from drivers.grblhal.grblhal_wire import Ask
 
 _APART = 0.1  # s between two corrections
 _AGAIN = 2.5  # s without a word of the overrides, which every twentieth plain report carries at least

@@ -13,8 +13,8 @@ from core.ports import DriverError
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
 from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_dialogue import Ask, Script, ScriptError, Step
 from drivers.grblhal.grblhal_report import Identity, read_identity
+from drivers.grblhal.grblhal_wire import Ask, Script, ScriptError, Step
 
 # --- The pieces that scripts are made of: one line and its answer, a full report, the modes.
 

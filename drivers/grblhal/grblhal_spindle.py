@@ -10,8 +10,8 @@ from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_codes import number
 from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_dialogue import Ask
 from drivers.grblhal.grblhal_operator import LEAST, MOST
+from drivers.grblhal.grblhal_wire import Ask
 from drivers.port_parts import demand_spindle
 
 _OBEYS = 1.0  # s for a spindle that is stopped in a hold to be told as off

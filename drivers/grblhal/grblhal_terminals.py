@@ -10,8 +10,8 @@ from drivers.grblhal.grblhal_axes import GrblAxes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
 from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_dialogue import Ask
 from drivers.grblhal.grblhal_report import Report
+from drivers.grblhal.grblhal_wire import Ask
 from drivers.port_parts import FirstTouch, output_of
 
 # --- Inputs: pins come with every report, auxiliary ones are asked for while nothing moves.

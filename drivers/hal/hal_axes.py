@@ -10,9 +10,8 @@ from core.ports import AxisSample, Cam, DriverError, Fault, Geared, Segments, St
 from drivers.hal.bridge.packets import number
 from drivers.hal.bridge.packets import pieces_of as pieces_told
 from drivers.hal.hal_config import HalConfig
-from drivers.hal.hal_homing import Homing
+from drivers.hal.hal_homing import HalTouch, Homing
 from drivers.hal.hal_link import HalLink, told_fault
-from drivers.hal.hal_terminals import HalTouch
 from drivers.port_parts import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
 from drivers.setpoint_pieces import Piece
 from drivers.setpoint_queue import Tolerance, check_limits, pieces_of

@@ -18,8 +18,7 @@ from core.ports import (
     StationState,
     Stop,
 )
-from drivers.port_parts import demand_axis, demand_estop_released, demand_spindle
-from drivers.sample_log import KEPT, SampleLog
+from drivers.port_parts import KEPT, SampleLog, demand_axis, demand_estop_released, demand_spindle
 from drivers.simulators.plant import Plant
 from drivers.simulators.plant_config import SimConfig
 from drivers.simulators.plant_hands import PlantHands, Schedule

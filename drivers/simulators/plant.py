@@ -22,8 +22,7 @@ from core.ports import (
     Stop,
 )
 from drivers.operator_station import Panel
-from drivers.port_parts import demand_no_fault, demand_no_homing, demand_power
-from drivers.sample_log import SampleLog
+from drivers.port_parts import SampleLog, demand_no_fault, demand_no_homing, demand_power
 from drivers.setpoint_queue import Tolerance, straight
 from drivers.simulators.foreseen_motion import ForeseenMotion, foresee
 from drivers.simulators.plant_config import SimConfig

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from drivers.hal.boards import board_parts
+from drivers.hal.boards.board_parts import c_speed_pins, c_turn_pins, load_c
 from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
 
 XML = "ethercat-conf.xml"
@@ -83,7 +83,7 @@ def _load(file: HalFile, drives: list[str]) -> None:
     file.first += ["lcec.read-all", *(f"cia402.{name}.read-all" for name in drives)]
     file.first += ["spindle-per-s"] * ("spindle" in drives)
     if lathe.c is not None:
-        board_parts.load(file, chosen=True)
+        load_c(file, chosen=True)
     file.last += [*(f"cia402.{name}.write-all" for name in drives), "lcec.write-all"]
 
 
@@ -138,13 +138,13 @@ def _spindle(file: HalFile) -> None:
             sign * 4 * file.lathe.encoder_lines,
             "increments of object 6064 per revolution: 4 x encoder lines",
         )
-        further = board_parts.turns(file)
+        further = c_turn_pins(file)
         file.role("hal.spindle.position", "spindle-turns", f"{pin}.pos-fb", *further, place=place)
     _drive(file, "spindle")
     file.setp("spindle-per-s.gain", 1.0 / 60.0)
     file.net("spindle-rpm-fb", f"{pin}.velocity-fb", "spindle-per-s.in")
     file.role("hal.spindle.velocity", "spindle-rps", "spindle-per-s.out", place=place)
-    speed, on = board_parts.chosen_speed(file, f"{pin}.velocity-cmd", f"{pin}.enable")
+    speed, on = c_speed_pins(file, f"{pin}.velocity-cmd", f"{pin}.enable")
     file.role("hal.spindle.speed", "spindle-rpm-cmd", speed, place=place, needed=True)
     file.role("hal.spindle.on", "spindle-on", on, place=place, needed=True)
     file.role("hal.spindle.fault", "spindle-fault", f"{pin}.drv-fault", place=place)

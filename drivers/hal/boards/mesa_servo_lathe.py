@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import re
 
-from drivers.hal.boards import board_parts
+from drivers.hal.boards.board_parts import (
+    NOTES,
+    c_speed_pins,
+    encoder,
+    load_c,
+    load_card,
+    load_pid,
+    spindle_encoder,
+)
 from drivers.hal.boards.hal_lines import C, HalFile, Lathe, LatheAxis, Terminal
-from drivers.hal.boards.mesa_card import NOTES, encoder, load_card, load_pid, spindle_encoder
 
 _CARD = "hm2_7i97.0"
 _IN = re.compile(re.escape(_CARD) + r"\.inmux\.00\.input-(\d\d)(-not)?")
@@ -46,7 +53,7 @@ def mesa_servo_lathe(lathe: Lathe) -> HalFile:
     load_card(file, _CARD, f"num_encoders={encoders} num_pwmgens={1 + max(channels)} num_stepgens=0")
     load_pid(file, lathe.driven)
     if lathe.c is not None:
-        board_parts.load(file, chosen=True)
+        load_c(file, chosen=True)
     file.section("Analog outputs")
     file.setp(f"{_CARD}.pwmgen.pwm_frequency", _PWM_HZ)
     for axis in lathe.driven:
@@ -121,6 +128,6 @@ def _speed(file: HalFile) -> None:
     file.section(f"Spindle: analog output {board.channel}")
     _analog(file, pin, board.full_speed, "spindle speed at 10 V, in rpm")
     speed = "speed" if file.lathe.names.get("hal.spindle.speed") else "speed_abs"
-    value, enable = board_parts.chosen_speed(file, f"{pin}.value", f"{pin}.enable")
+    value, enable = c_speed_pins(file, f"{pin}.value", f"{pin}.enable")
     file.role(f"hal.spindle.{speed}", "spindle-rpm-cmd", value, place=place, needed=True)
     file.role("hal.spindle.on", "spindle-on", enable, place=f"enable of {place}", needed=True)

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import re
 
-from drivers.hal.boards import board_parts
+from drivers.hal.boards.board_parts import (
+    NOTES,
+    change_over_to_c,
+    close_c_loop,
+    load_c,
+    load_card,
+    load_pid,
+    spindle_encoder,
+)
 from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
-from drivers.hal.boards.mesa_card import NOTES, load_card, load_pid, spindle_encoder
 
 _CARD = "hm2_7i76e.0"
 _FIELD = f"{_CARD}.7i76.0.0"  # the card's own field I/O, first port of its smart serial
@@ -138,15 +145,15 @@ def _steps(file: HalFile, axis: LatheAxis) -> str:
 
 def _spindle_c(file: HalFile, axis: LatheAxis) -> None:
     """The same drive takes steps once it is changed over; its place is the spindle's encoder."""
-    board_parts.load(file, chosen=False)
+    load_c(file, chosen=False)
     file.section(
         f"C: step generator {file.lathe.board.axes[axis.name].channel} for the spindle drive, "
         "with feedback from the spindle encoder"
     )
     pin = _steps(file, axis)
     file.setp(f"{pin}.control-type", 1)
-    board_parts.loop(file, axis, f"{pin}.velocity-cmd")
-    board_parts.changed_over(file)
+    close_c_loop(file, axis, f"{pin}.velocity-cmd")
+    change_over_to_c(file)
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
