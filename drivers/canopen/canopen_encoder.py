@@ -69,10 +69,7 @@ class CanEncoder:
         silent = self._bus.clock.now() - self._heard
         if self._drive is None and silent > 3.0 * self._bus.config.heartbeat:
             self._wrong(
-                Message(
-                    "no heartbeat from the encoder for {silent} s; check cable and power",
-                    silent=f"{silent:.2f}",
-                )
+                "no heartbeat from the encoder for {silent} s; check cable and power", silent=f"{silent:.2f}"
             )
         elif self.missing > SYNCS:
             self._wrong("the encoder does not respond to SYNC; check cable and power")
@@ -158,11 +155,8 @@ class CanEncoder:
         )
         if turns > most:
             self._wrong(
-                Message(
-                    "the encoder count jumped by {revolutions} revolutions in one step; check "
-                    "cable and shield",
-                    revolutions=f"{turns:.2f}",
-                )
+                "the encoder count jumped by {revolutions} revolutions in one step; check cable and shield",
+                revolutions=f"{turns:.2f}",
             )
 
     def _heartbeat(self, state: int) -> None:
@@ -180,7 +174,8 @@ class CanEncoder:
                 )
             )
 
-    def _wrong(self, what: str) -> None:
+    def _wrong(self, what: str, **values: object) -> None:
+        what = Message(what, **values) if values else what
         self.trouble = self.trouble or Fault(
             "spindle encoder {name}: {what}", "spindle-encoder", name=self._config.name, what=what
         )

@@ -61,7 +61,7 @@ class Homing:
         elif self._step is _Step.BACK and drive.shown_mode == self._back:
             self._enter(_Step.DONE, now)
         elif self._step in {_Step.MODE, _Step.BACK} and waited > _MODE:
-            self._fail(Message("the drive stays in mode {shown_mode}", shown_mode=drive.shown_mode))
+            self._fail("the drive stays in mode {shown_mode}", shown_mode=drive.shown_mode)
 
     def give_up(self) -> None:
         """Halt: the drive brakes. Its mode changes back once it stands; some refuse that in motion."""
@@ -95,7 +95,8 @@ class Homing:
     def _enter(self, step: _Step, now: float) -> None:
         self._step, self._since = step, now
 
-    def _fail(self, why: str) -> None:
+    def _fail(self, why: str, **values: object) -> None:
+        why = Message(why, **values) if values else why
         self._drive.extra &= ~NEW
         self.trouble = Fault("{name}: homing failed: {why}", "homing", name=self.config.name, why=why)
 

@@ -81,11 +81,9 @@ class Setup:
         kept = self._upload(index, sub)
         if kept != data:
             shown = int.from_bytes(kept, "little")
-            raise DriverError(
+            raise self._unfit(
                 "{name}: object {index}:{sub} remains at {shown} instead of {value}; check which "
                 "values the drive allows, and check [canopen.sdo]",
-                "drive-setup",
-                name=self._name,
                 index=f"{index:04X}",
                 sub=sub,
                 shown=shown,
@@ -110,20 +108,14 @@ class Setup:
                 absent.append(f"{index:04X}:{sub}")
         missing = [f"{index:04X}h {self.lacks[index]}" for index in needed if index in self.lacks]
         if missing:
-            raise DriverError(
+            raise self._unfit(
                 "{name}: node {node} cannot be used because it lacks these objects: {missing}",
-                "drive-setup",
-                name=self._name,
-                node=self.node.id,
                 missing="; ".join(missing),
             )
         if absent:
             where = "; remove these objects from [canopen.sdo], or check the EDS file"
-            raise DriverError(
+            raise self._unfit(
                 "{name}: node {node} has no object {absent}{place}",
-                "drive-setup",
-                name=self._name,
-                node=self.node.id,
                 absent=", ".join(absent),
                 place=where,
             )
@@ -151,12 +143,9 @@ class Setup:
         """Is it the kind of device that the machine file says? Raises DriverError."""
         found = self.read(od.DEVICE_TYPE) & _PROFILE
         if found != profile:
-            raise DriverError(
+            raise self._unfit(
                 "{name}: node {node} has device profile {value} instead of {profile}; check the node "
                 "numbers in [canopen.nodes]",
-                "drive-setup",
-                name=self._name,
-                node=self.node.id,
                 value=found,
                 profile=profile,
             )
@@ -166,10 +155,8 @@ class Setup:
         offered = known | (self.read(od.SUPPORTED) if self.has(od.SUPPORTED, 0) else modes)
         lacking = [_NAMES[mode] for mode, bit in MODE_BITS.items() if modes & bit and not offered & bit]
         if lacking:
-            raise DriverError(
+            raise self._unfit(
                 "{name}: the drive does not support mode {lacking}; check [canopen] mode",
-                "drive-setup",
-                name=self._name,
                 lacking=", ".join(lacking),
             )
 
@@ -179,12 +166,9 @@ class Setup:
             f"{entry.object:04X}:{entry.sub}" for entry in entries if not self.has(entry.object, entry.sub)
         ]
         if missing:
-            raise DriverError(
+            raise self._unfit(
                 "{name}: node {node} cannot be used in this mode because it lacks these objects: "
                 "{missing}; check [canopen] mode and the node's EDS file",
-                "drive-setup",
-                name=self._name,
-                node=self.node.id,
                 missing=", ".join(missing),
             )
 
@@ -194,11 +178,9 @@ class Setup:
         offered = sorted({each for each in listed if each})
         if offered and method not in offered:
             known = ", ".join(map(str, offered))
-            raise DriverError(
+            raise self._unfit(
                 "{name}: the drive does not support homing method {method} (60E3h: {known}); check "
                 "axis.{name2}.home",
-                "drive-setup",
-                name=self._name,
                 method=method,
                 known=known,
                 name2=self._name,
@@ -214,11 +196,9 @@ class Setup:
             return
         found = feed * shaft / (turns * motor)
         if abs(found - counts) > 0.5:
-            raise DriverError(
+            raise self._unfit(
                 "{name}: the drive uses {value} counts per motor revolution (6091h, 6092h), but "
                 "canopen.nodes.{name2}.counts_per_rev is {counts}",
-                "drive-setup",
-                name=self._name,
                 value=f"{found:g}",
                 name2=self._name,
                 counts=counts,
@@ -259,13 +239,10 @@ class Setup:
             if there is None or _abort(error) not in _READ_ONLY:
                 raise
             now, wanted = (self._number(index, sub, each) for each in (there, data))
-            raise DriverError(
+            raise self._unfit(
                 "{name}: node {node}, object {index}:{sub} is read-only; its value is {now}, but "
                 "{expected} is needed. Set it with the drive's own software, or correct [canopen.sdo]",
-                "drive-setup",
                 reason="read-only",
-                name=self._name,
-                node=self.node.id,
                 index=f"{index:04X}",
                 sub=sub,
                 now=now,
@@ -300,14 +277,16 @@ class Setup:
         self._map(pdo, entries, every)
         pdo.callbacks[:] = [heard]
 
+    def _unfit(self, text: str, *, reason: str = "", **values: object) -> DriverError:
+        """Return the error of a node that is not as it has to be; the text may name node and number."""
+        return DriverError(text, "drive-setup", reason=reason, name=self._name, node=self.node.id, **values)
+
     def _pdo(self, pdos: PdoBase, number: int) -> PdoMap:
         try:
             found: PdoMap = pdos[number]
         except KeyError as error:
-            raise DriverError(
+            raise self._unfit(
                 "{name}: PDO {number} is not in the node's EDS file",
-                "drive-setup",
-                name=self._name,
                 number=number,
             ) from error
         return found

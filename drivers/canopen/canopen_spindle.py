@@ -11,7 +11,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
 
-from core.message import Message
 from core.ports import DriverError, Fault, Stop, at_rest
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_axes import CanopenAxes
@@ -316,9 +315,7 @@ class SpindleC:
             self._begin_turn()
             self._enter(Step.TURN, now)
         elif now - self._since > _CHANGE:
-            self._fail(
-                Message("the spindle drive remains in mode {shown_mode}", shown_mode=self._drive.shown_mode)
-            )
+            self._fail("the spindle drive remains in mode {shown_mode}", shown_mode=self._drive.shown_mode)
 
     def _turn(self, now: float) -> None:
         if not self._wanted:
@@ -347,7 +344,7 @@ class SpindleC:
             self.step = Step.FREE
             self._spindle.resume()
         elif now - self._since > _CHANGE and not self.trouble:
-            self._fail(Message("the spindle drive remains in mode {shown_mode}", shown_mode=drive.shown_mode))
+            self._fail("the spindle drive remains in mode {shown_mode}", shown_mode=drive.shown_mode)
 
     # --- inside ------------------------------------------------------------------------------------------
 
@@ -397,8 +394,8 @@ class SpindleC:
     def _enter(self, step: Step, now: float) -> None:
         self.step, self._since = step, now
 
-    def _fail(self, why: str) -> None:
-        self.trouble = self.trouble or Fault(why, "c-coupling")
+    def _fail(self, why: str, **values: object) -> None:
+        self.trouble = self.trouble or Fault(why, "c-coupling", **values)
         self._want(False)
         self._part()
         self._drive.extra = 0

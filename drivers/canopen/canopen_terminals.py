@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import canopen
 
-from core.message import Message
 from core.ports import PROBE, DriverError, Fault, Latch, StationState
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_axes import CanopenAxes
@@ -117,16 +116,12 @@ class Module401:
         name, silent = self.config.name, self._without_beat
         if silent > _BEATS * self._bus.config.heartbeat:
             self._wrong(
-                Message(
-                    "{name}: no heartbeat from the I/O module for {silent} s; check cable and power",
-                    name=name,
-                    silent=f"{silent:.2f}",
-                )
+                "{name}: no heartbeat from the I/O module for {silent} s; check cable and power",
+                name=name,
+                silent=f"{silent:.2f}",
             )
         elif self.missing > _SYNCS:
-            self._wrong(
-                Message("{name}: the I/O module does not respond to SYNC; check cable and power", name=name)
-            )
+            self._wrong("{name}: the I/O module does not respond to SYNC; check cable and power", name=name)
 
     def _digital(self, map_: canopen.pdo.PdoMap) -> None:
         self.inputs[: len(map_.data)] = map_.data
@@ -144,14 +139,11 @@ class Module401:
             self.answered = self.heard
         if state == 0:
             self._wrong(
-                Message(
-                    "{name}: the I/O module has restarted; its outputs have dropped out",
-                    name=self.config.name,
-                )
+                "{name}: the I/O module has restarted; its outputs have dropped out", name=self.config.name
             )
 
-    def _wrong(self, what: str) -> None:
-        self.trouble = self.trouble or Fault(what, "io-silent")
+    def _wrong(self, what: str, **values: object) -> None:
+        self.trouble = self.trouble or Fault(what, "io-silent", **values)
 
 
 def _signed(word: int) -> int:
