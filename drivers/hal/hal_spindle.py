@@ -37,7 +37,7 @@ class HalOrientation:
     def orient(self, angle: float, sense: int = 0) -> None:
         """Bring it to an angle. Raises DriverError while it turns, with a fault or an open chain."""
         self._spindle.demand_ready()
-        if self._order is None and self._spindle.turns:
+        if self._order is None and _is_turning(self._spindle):
             raise DriverError(
                 "the spindle cannot be oriented while it is turning; stop it first", "spindle-off"
             )
@@ -106,11 +106,6 @@ class HalSpindle:
                 "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
             )
 
-    @property
-    def turns(self) -> bool:
-        """Whether it is told to turn, or measured to."""
-        return bool(self.ordered) or abs(self.measured()) >= _STANDS
-
     def coast(self) -> None:
         """Speed 0, and off: what its drive makes of that is the drive's."""
         self.run(0.0)
@@ -148,6 +143,11 @@ class HalSpindle:
             return self.index.trouble
         wrong = self._link.bit("spindle.fault")
         return Fault("the spindle drive reports a fault", "spindle") if wrong else ""
+
+
+def _is_turning(spindle: HalSpindle) -> bool:
+    """Return whether the spindle is told to turn, or measured to."""
+    return bool(spindle.ordered) or abs(spindle.measured()) >= _STANDS
 
 
 # --- Its index: asked for with the first turn of a session, so that a thread is found again.
@@ -249,7 +249,7 @@ class HalSpindleC:
             return
         if self.step is not Step.FREE:
             return
-        demand_free_drive(self._axes.sample().enabled, self._spindle.turns)
+        demand_free_drive(self._axes.sample().enabled, _is_turning(self._spindle))
         self._orient = orient
         if orient and not self._spindle.index.known:
             self._spindle.run(_SEARCH)
