@@ -57,9 +57,7 @@ def close_c_loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
         "speed limit in degrees/s; also applies if a fault occurs",
     )
     file.setp(f"{_PID}.error-previous-target", 1)
-    path = f"hal.axes.{axis.name}"
-    file.role(f"{path}.command", "c-pos-cmd", f"{_PID}.command", needed=True)
-    file.role(f"{path}.feedback", "c-pos-fb", "c-degrees.out", f"{_PID}.feedback", needed=True)
+    file.positions(axis.name, [f"{_PID}.command"], ["c-degrees.out", f"{_PID}.feedback"])
     file.net("c-speed", f"{_PID}.output", *drives)
 
 

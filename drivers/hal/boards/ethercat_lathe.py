@@ -109,7 +109,7 @@ def _drive(file: HalFile, name: str) -> None:
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
-    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    board, name = file.lathe.board.axes[axis.name], axis.name.lower()
     place, pin = f"slave {board.channel}", f"cia402.{axis.name.lower()}"
     file.section(f"Axis {axis.name}: slave {board.channel}, cyclic synchronous position")
     file.setp(f"{pin}.csp-mode", 1)
@@ -121,9 +121,8 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
         "a drive fault is reset when power is requested again with Reset and DRIVES ON",
     )
     _drive(file, name)
-    file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.pos-cmd", place=place, needed=True)
-    file.role(f"{path}.feedback", f"{name}-pos-fb", f"{pin}.pos-fb", place=place, needed=True)
-    file.role(f"{path}.fault", f"{name}-fault", f"{pin}.drv-fault", place=place)
+    file.positions(axis.name, [f"{pin}.pos-cmd"], [f"{pin}.pos-fb"], place)
+    file.role(f"hal.axes.{axis.name}.fault", f"{name}-fault", f"{pin}.drv-fault", place=place)
 
 
 def _spindle(file: HalFile) -> None:

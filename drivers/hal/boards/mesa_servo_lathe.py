@@ -90,7 +90,7 @@ def _analog(file: HalFile, pin: str, full: float, what: str) -> None:
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
-    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    board, name = file.lathe.board.axes[axis.name], axis.name.lower()
     out, counter, pid = (
         f"{_CARD}.pwmgen.{board.channel:02d}",
         f"{_CARD}.encoder.{board.channel:02d}",
@@ -108,16 +108,8 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     file.setp(f"{pid}.FF2", board.ff2)
     file.setp(f"{pid}.maxoutput", full, f"{axis.unit}/s: 10 V")
     file.setp(f"{pid}.error-previous-target", 1)
-    file.role(f"{path}.command", f"{name}-pos-cmd", f"{pid}.command", place=place, needed=True)
-    file.role(
-        f"{path}.feedback",
-        f"{name}-pos-fb",
-        f"{counter}.position",
-        f"{pid}.feedback",
-        place=place,
-        needed=True,
-    )
-    index = f"{path}.index_enable"
+    file.positions(axis.name, [f"{pid}.command"], [f"{counter}.position", f"{pid}.feedback"], place)
+    index = f"hal.axes.{axis.name}.index_enable"
     file.role(index, f"{name}-index", f"{counter}.index-enable", f"{pid}.index-enable", place=place)
     file.net(f"{name}-output", f"{pid}.output", f"{out}.value")
 

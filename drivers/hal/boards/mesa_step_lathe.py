@@ -157,14 +157,13 @@ def _spindle_c(file: HalFile, axis: LatheAxis) -> None:
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
-    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    board, name = file.lathe.board.axes[axis.name], axis.name.lower()
     place = f"TB{2 if board.channel < 4 else 3} STEP{board.channel} DIR{board.channel}"
     file.section(f"Axis {axis.name}: step generator {board.channel}, {board.mode} mode")
     pin = _steps(file, axis)
     if board.mode == "position":
         file.setp(f"{pin}.control-type", 0)
-        file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.position-cmd", place=place, needed=True)
-        file.role(f"{path}.feedback", f"{name}-pos-fb", f"{pin}.position-fb", place=place, needed=True)
+        file.positions(axis.name, [f"{pin}.position-cmd"], [f"{pin}.position-fb"], place)
         return
     file.setp(f"{pin}.control-type", 1)
     file.setp(
@@ -183,15 +182,8 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     file.setp(f"pid.{name}.maxerror", max(_MOST_ERROR, 2.0 * axis.count), axis.unit)
     file.setp(f"pid.{name}.maxoutput", 1.5 * axis.vmax, f"{axis.unit}/s")
     file.setp(f"pid.{name}.error-previous-target", 1)
-    file.role(f"{path}.command", f"{name}-pos-cmd", f"pid.{name}.command", place=place, needed=True)
-    file.role(
-        f"{path}.feedback",
-        f"{name}-pos-fb",
-        f"{pin}.position-fb",
-        f"pid.{name}.feedback",
-        place=place,
-        needed=True,
-    )
+    measured = f"{pin}.position-fb", f"pid.{name}.feedback"
+    file.positions(axis.name, [f"pid.{name}.command"], measured, place)
     file.net(f"{name}-vel-cmd", f"pid.{name}.output", f"{pin}.velocity-cmd")
 
 

@@ -82,7 +82,7 @@ def _terminal(name: str) -> Terminal | None:
 
 
 def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
-    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    board, name = file.lathe.board.axes[axis.name], axis.name.lower()
     pin = f"stepgen.{channel}"
     file.section(f"Axis {axis.name}: step generator {channel}")
     sign = -1.0 if board.reversed else 1.0
@@ -108,8 +108,7 @@ def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
         )
         close_c_loop(file, axis, f"{pin}.velocity-cmd")
     else:
-        file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.position-cmd", needed=True)
-        file.role(f"{path}.feedback", f"{name}-pos-fb", f"{pin}.position-fb", needed=True)
+        file.positions(axis.name, [f"{pin}.position-cmd"], [f"{pin}.position-fb"])
     for what, port in (("step", board.step), ("dir", board.direction)):
         file.at_terminal(
             f"board.axis.{axis.name}.{'step' if what == 'step' else 'direction'}",
