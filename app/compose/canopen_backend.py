@@ -76,7 +76,7 @@ def canopen_config(machine: Machine) -> CanopenConfig:
     """The bus's figures from the machine file's. Raises DriverError for a machine without a bus."""
     can = machine.hardware.table(CanopenTable)
     if can is None:
-        raise DriverError(Message("{source}: the [canopen] table is missing", source=machine.source))
+        raise DriverError("{source}: the [canopen] table is missing", source=machine.source)
     folder = Path(machine.source).parent  # of EDS files, unless their path says otherwise
     found = [replace(node, eds=str(folder / node.eds) if node.eds else "") for node in can.nodes]
     nodes = {node.name: node for node in found}

@@ -26,22 +26,17 @@ def grblhal_config(machine: Machine) -> GrblConfig:
     """The controller's figures from the machine file's. Raises DriverError for what it cannot be."""
     model = machine.hardware.table(GrblhalTable)
     if model is None:
-        raise DriverError(Message("{source}: the [grblhal] table is missing", source=machine.source))
+        raise DriverError("{source}: the [grblhal] table is missing", source=machine.source)
     if model.x_mode != "G8":
         raise DriverError(
-            Message(
-                "{source}: grblhal.x_mode must be G8, because otherwise a reset would change "
-                "the meaning of X",
-                source=machine.source,
-            )
+            "{source}: grblhal.x_mode must be G8, because otherwise a reset would change the meaning of X",
+            source=machine.source,
         )
     if machine.hardware.spindle_driver not in {"grblhal", "vfd"}:
         raise DriverError(
-            Message(
-                "{source}: with backend grblhal, set spindle.driver to grblhal (the controller "
-                "drives the spindle) or vfd (an inverter drives the spindle)",
-                source=machine.source,
-            )
+            "{source}: with backend grblhal, set spindle.driver to grblhal (the controller "
+            "drives the spindle) or vfd (an inverter drives the spindle)",
+            source=machine.source,
         )
     return GrblConfig(
         table=model,

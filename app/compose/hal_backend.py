@@ -10,7 +10,6 @@ import resources
 from app.compose.backend_entry import Backend, axis_figures, has_station, wired_inputs
 from core.machine.hardware_model import HomeModel
 from core.machine.machine_model import Axis, Machine
-from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.feeder.feeder_server import Driven
 from drivers.hal.boards.board_table import ETHERCAT, MESA_SERVO, SIM, BoardTable
@@ -26,7 +25,7 @@ def hal_config(machine: Machine) -> HalConfig:
     """HAL's figures from the machine file's. Raises DriverError for a machine without it."""
     hal = machine.hardware.table(HalTable)
     if hal is None:
-        raise DriverError(Message("{source}: the [hal] table is missing", source=machine.source))
+        raise DriverError("{source}: the [hal] table is missing", source=machine.source)
     spindle = machine.spindle
     return HalConfig(
         table=hal,

@@ -88,11 +88,9 @@ def _hand(act: Callable[[PlantHands, str], None]) -> Callable[[CanopenDevices, s
 def _jam(peers: CanopenDevices, axis: str, word: str) -> None:
     if axis not in peers.plant.drives:
         raise DriverError(
-            Message(
-                "drive {axis} does not exist; use one of {drives}",
-                axis=axis,
-                drives=", ".join(peers.plant.drives),
-            )
+            "drive {axis} does not exist; use one of {drives}",
+            axis=axis,
+            drives=", ".join(peers.plant.drives),
         )
     peers.machine.jam(axis, _on(word))
 

@@ -144,4 +144,4 @@ def _read(text: bytes, name: str) -> Source:
         try:
             return load_source(path)
         except SourceError as error:
-            raise DriverError(Message("the received data is not a program: {error}", error=error)) from error
+            raise DriverError("the received data is not a program: {error}", error=error) from error

@@ -61,11 +61,9 @@ def device_model(machine: Machine, at: datetime) -> str:
     model = machine.hardware.table(MtconnectTable)
     if model is None:
         raise DriverError(
-            Message(
-                "{source}: the [mtconnect] table is missing; add it to specify the name and port "
-                "under which this machine reports to the shop floor",
-                source=machine.source,
-            )
+            "{source}: the [mtconnect] table is missing; add it to specify the name and port "
+            "under which this machine reports to the shop floor",
+            source=machine.source,
         )
     return devices_xml(
         device_of(machine, model.device),
