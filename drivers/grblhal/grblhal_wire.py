@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
-from core.ports import DriverError, Fault, FaultCode
+from core.ports import DriverError, FaultCode
 from drivers.serial_line import why
 
 if TYPE_CHECKING:
@@ -234,12 +234,11 @@ Step = tuple[Callable[[], bool], float, str]  # until, within s, what is told wh
 Script = Generator[Step, None, None]
 
 
-class ScriptError(Exception):
+class ScriptError(DriverError):
     """What a script was begun for cannot be done; the sentence becomes the fault, with its code."""
 
-    def __init__(self, text: str, code: FaultCode = "controller-refuses") -> None:
-        super().__init__(text)
-        self.code: FaultCode = code
+    def __init__(self, text: str, code: FaultCode = "controller-refuses", **values: object) -> None:
+        super().__init__(text, code, reason="", **values)
 
 
 class Runner:
@@ -283,9 +282,9 @@ class Runner:
                 self._step = next(self._script)
             except StopIteration:
                 self._script = None
-            except ScriptError as error:
+            except DriverError as error:
                 self._script = None
-                return Fault(str(error), error.code)
+                return error.fault
             else:
                 self._until = now + self._step[1]
             finally:
