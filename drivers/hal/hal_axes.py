@@ -14,7 +14,7 @@ from drivers.hal.hal_homing import HalTouch, Homing
 from drivers.hal.hal_link import HalLink, told_fault
 from drivers.port_parts import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
 from drivers.setpoint_pieces import Piece
-from drivers.setpoint_queue import Tolerance, check_limits, pieces_of
+from drivers.setpoint_queue import check_limits, pieces_of
 from drivers.spindle_gear import GearedQueue, Motion, Phase, Slides
 
 _PAST = 0.5  # s of setpoints that may still be asked for
@@ -53,14 +53,7 @@ class HalAxes:
         self.axes = tuple(axis.name for axis in config.axes)
         self.commit = config.commit
         self._driven = [n for n, axis in enumerate(config.axes) if axis.pins is not None]
-        slides = Slides(
-            self.axes,
-            tuple(axis.vmax for axis in config.axes),
-            tuple(axis.amax for axis in config.axes),
-            config.commit,
-            Tolerance.of(config.axes),
-        )
-        self.queue = HalQueue(slides, (0.0,) * len(self.axes))
+        self.queue = HalQueue(Slides.of(config.axes, config.commit), (0.0,) * len(self.axes))
         self.zero = [0.0] * len(self.axes)  # where home is, as HAL counts
         self._homed = [axis.absolute or axis.pins is None for axis in config.axes]
         self.homing: Homing | None = None

@@ -23,7 +23,7 @@ from core.ports import (
 )
 from drivers.operator_station import Panel
 from drivers.port_parts import SampleLog, demand_no_fault, demand_no_homing, demand_power
-from drivers.setpoint_queue import Tolerance, straight
+from drivers.setpoint_queue import straight
 from drivers.simulators.foreseen_motion import ForeseenMotion, foresee
 from drivers.simulators.plant_config import SimConfig
 from drivers.simulators.plant_terminals import Terminals, ToolSetter
@@ -56,14 +56,7 @@ class Plant:
         self.terminals = Terminals(config.outputs, config.inputs, config.collet, config.seed)
         self.terminals.setter = ToolSetter(config.setter) if config.setter is not None else None
         self.panel = Panel(config.palms, config.start_pulse, config.seed)
-        slides = Slides(
-            self.names,
-            tuple(axis.vmax for axis in config.axes),
-            tuple(axis.amax for axis in config.axes),
-            config.commit,
-            Tolerance.of(config.axes),
-        )
-        self.queue = GearedQueue(slides, self._readings())
+        self.queue = GearedQueue(Slides.of(config.axes, config.commit), self._readings())
         self.enabled = False
         self.fault: str = ""
         self._off_at = _NEVER
