@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Literal
 
 from core.coded_error import CodedError
+from core.message import Message
 
 FaultCode = Literal[
     # axes
@@ -69,9 +70,9 @@ class Fault(str):
     __slots__ = ("code",)
     code: FaultCode
 
-    def __new__(cls, text: str, code: FaultCode) -> Fault:
-        """``text`` says which drive, wire or terminal, and what was seen."""
-        made = super().__new__(cls, text)
+    def __new__(cls, text: str, code: FaultCode, **values: object) -> Fault:
+        """``text`` says which drive, wire or terminal, and what was seen; ``values`` fill its holes."""
+        made = super().__new__(cls, Message(text, **values) if values else text)
         made.code = code
         return made
 
@@ -88,13 +89,16 @@ def code_of(fault: str, otherwise: FaultCode) -> FaultCode:
 class DriverError(CodedError):
     """A driver cannot do what it was asked; the sentence says what, where and what to do.
 
-    ``code`` is the alarm that it becomes when nobody deals with it. The code of a ``Fault`` that is handed
-    on goes with it. ``reason`` tells causes with the same code apart, in lower case and with hyphens; it is
-    empty where the code is enough.
+    ``values`` fill the holes of the sentence, like those of a ``Message``. ``code`` is the alarm that it
+    becomes when nobody deals with it. The code of a ``Fault`` that is handed on goes with it. ``reason``
+    tells causes with the same code apart, in lower case and with hyphens; it is empty where the code is
+    enough.
     """
 
-    def __init__(self, text: str = "", code: FaultCode | None = None, *, reason: str = "") -> None:
-        super().__init__(text)
+    def __init__(
+        self, text: str = "", code: FaultCode | None = None, *, reason: str = "", **values: object
+    ) -> None:
+        super().__init__(Message(text, **values) if values else text)
         self.code: FaultCode = code or code_of(text, "driver")
         self.reason = reason
 

@@ -1,4 +1,7 @@
-"""An operator station without wires: palms behind a two-hand relay, feed hold, E-stop, switch and pots."""
+"""Operator stations: one without wires, and one whose buttons are inputs by the names of the machine file.
+
+The one without wires has palms behind a two-hand relay, feed hold, E-stop, switch and pots.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ import random
 import threading
 from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
+from typing import Protocol
 
 from core.ports import Clock, Station, StationState
 
@@ -223,3 +227,54 @@ class PanelStation(StationHands):
         """Free again."""
         with self._lock:
             self._panel.estop = False
+
+
+# --- A station whose buttons are inputs.
+
+
+class Pot(Protocol):
+    """A pot in the machine file: its values at both ends, and the input that says whether it counts."""
+
+    @property
+    def low(self) -> float: ...
+    @property
+    def high(self) -> float: ...
+    @property
+    def switch(self) -> str: ...
+
+
+def station_of(
+    inputs: Mapping[str, bool],
+    pots: Mapping[str, Pot],
+    read: Callable[[str], float],
+    *,
+    handwheel: int,
+    age: float,
+) -> StationState:
+    """Return the state of the station. A button that the machine file does not have is never pressed.
+
+    ``read`` returns the fraction of a pot's range by the name of the pot. Without an input ``spindle_auto``
+    the switch of the spindle's pot says whether the spindle is on AUTO.
+    """
+    pot, load = pots.get("spindle_pot"), pots.get("spindle_load")
+    auto = inputs.get(pot.switch, True) if pot is not None and pot.switch else True
+
+    def override(name: str) -> float:
+        return _scaled(pots[name], min(max(read(name), 0.0), 1.0)) if name in pots else 1.0
+
+    return StationState(
+        estop=inputs.get("estop", False),
+        start=inputs.get("start", False),
+        hold=inputs.get("hold", False),
+        spindle_auto=inputs.get("spindle_auto", auto),
+        spindle_pot=override("spindle_pot"),
+        feed_pot=override("feed_pot"),
+        handwheel=handwheel,
+        age=age,
+        # Per cent; what is below 0 is the noise of an idle motor.
+        spindle_load=_scaled(load, max(read("spindle_load"), 0.0)) if load is not None else None,
+    )
+
+
+def _scaled(pot: Pot, fraction: float) -> float:
+    return pot.low + (pot.high - pot.low) * fraction

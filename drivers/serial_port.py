@@ -12,7 +12,6 @@ from typing import NamedTuple
 import serial
 from serial.tools.list_ports import comports
 
-from core.message import Message
 from drivers.serial_line import PARITIES, LineSettings, WireError, table_of, why
 
 # --- What a POSIX terminal makes of damaged characters when told to mark them (PARMRK).
@@ -88,20 +87,17 @@ class SerialWire:
             self._port = _opened(settings)
         except _NOT_OPENED as error:
             raise WireError(
-                Message("{port} cannot be opened: {error}", port=settings.port, error=why(error)),
-                reason="not-opened",
+                "{port} cannot be opened: {error}", reason="not-opened", port=settings.port, error=why(error)
             ) from error
         try:
             self._set_up(settings)
         except _NOT_OPENED as error:
             self._port.close()
             raise WireError(
-                Message(
-                    "{port} cannot be set to {settings}: {error}",
-                    port=settings.port,
-                    settings=settings.words,
-                    error=why(error),
-                )
+                "{port} cannot be set to {settings}: {error}",
+                port=settings.port,
+                settings=settings.words,
+                error=why(error),
             ) from error
 
     def _set_up(self, settings: LineSettings) -> None:
@@ -215,7 +211,7 @@ class SerialWire:
 
     def _cut(self, error: Exception) -> WireError:
         return WireError(
-            Message("{port} has failed: {error}", port=self.settings.port, error=why(error)), reason="failed"
+            "{port} has failed: {error}", reason="failed", port=self.settings.port, error=why(error)
         )
 
 

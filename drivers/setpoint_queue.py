@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.message import Message
 from core.ports import DriverError, Segments
 from drivers.setpoint_pieces import Piece, PieceQueue
 
@@ -32,9 +31,10 @@ def pieces_of(segments: Segments, axes: int, give_way: Callable[[], None] = _not
     shapes = {segments.p.shape, segments.v.shape, segments.a.shape}
     if count == 0 or shapes != {(count, axes)} or segments.dt.shape != (count,):
         raise DriverError(
-            Message("each setpoint must contain t, dt, p, v and a for {axes} axes", axes=axes),
+            "each setpoint must contain t, dt, p, v and a for {axes} axes",
             "broken-path",
             reason="shape",
+            axes=axes,
         )
     for part in segments:
         if not np.isfinite(part).all():
@@ -80,13 +80,11 @@ def check_limits(
     for n, axis in enumerate(axes):
         if abs(segments.v[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
             raise DriverError(
-                Message(
-                    "{axis}: the setpoint speed exceeds {vmax}/s; nothing was queued",
-                    axis=axis.name,
-                    vmax=f"{axis.vmax:.1f}",
-                ),
+                "{axis}: the setpoint speed exceeds {vmax}/s; nothing was queued",
                 "drive-limits",
                 reason="too-fast",
+                axis=axis.name,
+                vmax=f"{axis.vmax:.1f}",
             )
         if axis.travel is None or not homed[n]:
             continue
@@ -96,14 +94,12 @@ def check_limits(
         place = segments.p[:, n]
         if place.min(initial=low) < low - 0.01 or place.max(initial=high) > high + 0.01:
             raise DriverError(
-                Message(
-                    "{axis}: setpoints are outside the travel range {low}…{high}; nothing was queued",
-                    axis=axis.name,
-                    low=f"{low:.2f}",
-                    high=f"{high:.2f}",
-                ),
+                "{axis}: setpoints are outside the travel range {low}…{high}; nothing was queued",
                 "drive-limits",
                 reason="leaves-travel",
+                axis=axis.name,
+                low=f"{low:.2f}",
+                high=f"{high:.2f}",
             )
 
 
@@ -152,13 +148,10 @@ class SetpointQueue(PieceQueue):
         if start < fixed - 1e-9:
             late = 1000 * (fixed - start)
             raise DriverError(
-                Message(
-                    "setpoints start {late} ms too early to replace the queued setpoints; splice at a "
-                    "later time",
-                    late=f"{late:.1f}",
-                ),
+                "setpoints start {late} ms too early to replace the queued setpoints; splice at a later time",
                 "late",
                 reason="too-early",
+                late=f"{late:.1f}",
             )
         self._check_joint(self.demand_at(start), (pieces[0].p, pieces[0].v))
         self._check_run(segments)
@@ -173,11 +166,10 @@ class SetpointQueue(PieceQueue):
         gaps = np.flatnonzero(np.abs(segments.t[1:] - t_end[:-1]) > _SLOT)
         if gaps.size:
             raise DriverError(
-                Message(
-                    "setpoints have a gap at t = {t_end} s; nothing was queued", t_end=f"{t_end[gaps[0]]:.4f}"
-                ),
+                "setpoints have a gap at t = {t_end} s; nothing was queued",
                 "broken-path",
                 reason="gap",
+                t_end=f"{t_end[gaps[0]]:.4f}",
             )
         jumps = (np.abs(segments.p[1:] - p_end[:-1]) > self._tolerance.position) | (
             np.abs(segments.v[1:] - v_end[:-1]) > self._tolerance.velocity
@@ -185,28 +177,24 @@ class SetpointQueue(PieceQueue):
         if jumps.any():
             row, axis = np.argwhere(jumps)[0]
             raise DriverError(
-                Message(
-                    "{axis}: setpoints jump at t = {t_end} s from position {position} at speed {speed}/s to "
-                    "position {position2} at speed {speed2}/s; nothing was queued",
-                    axis=self.axes[axis],
-                    t_end=f"{t_end[row]:.4f}",
-                    position=f"{p_end[row, axis]:.4f}",
-                    speed=f"{v_end[row, axis]:.3f}",
-                    position2=f"{segments.p[row + 1, axis]:.4f}",
-                    speed2=f"{segments.v[row + 1, axis]:.3f}",
-                ),
+                "{axis}: setpoints jump at t = {t_end} s from position {position} at speed {speed}/s to "
+                "position {position2} at speed {speed2}/s; nothing was queued",
                 "broken-path",
                 reason="jump",
+                axis=self.axes[axis],
+                t_end=f"{t_end[row]:.4f}",
+                position=f"{p_end[row, axis]:.4f}",
+                speed=f"{v_end[row, axis]:.3f}",
+                position2=f"{segments.p[row + 1, axis]:.4f}",
+                speed2=f"{segments.v[row + 1, axis]:.3f}",
             )
         moving = [name for name, speed in zip(self.axes, v_end[-1], strict=True) if abs(speed) > _REST]
         if moving:
             raise DriverError(
-                Message(
-                    "at the end of the setpoints, these axes are still moving: {moving}",
-                    moving=", ".join(moving),
-                ),
+                "at the end of the setpoints, these axes are still moving: {moving}",
                 "broken-path",
                 reason="moves-at-end",
+                moving=", ".join(moving),
             )
 
     def _check_joint(
@@ -226,8 +214,7 @@ class SetpointQueue(PieceQueue):
             for name, tolerance, before, after in zip(self.axes, limit, one, two, strict=True):
                 if abs(after - before) > tolerance:
                     raise DriverError(
-                        Message(template, axis=name, before=f"{before:.4f}", after=f"{after:.4f}"),
-                        reason="jump",
+                        template, reason="jump", axis=name, before=f"{before:.4f}", after=f"{after:.4f}"
                     )
 
 

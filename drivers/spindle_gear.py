@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from core.ports import Cam, DriverError, Geared, Segments, at_rest
 from drivers.setpoint_pieces import Piece
-from drivers.setpoint_queue import SetpointQueue, Tolerance
+from drivers.setpoint_queue import AxisFigures, SetpointQueue, Tolerance
 
 # --- Angle and speed of a spindle from an encoder that counts in steps, read at the driver's own rate.
 
@@ -66,6 +66,12 @@ class Slides(NamedTuple):
     amax: tuple[float, ...]
     commit: float  # s
     tolerance: Tolerance  # of setpoints in time
+
+    @classmethod
+    def of(cls, axes: Sequence[AxisFigures], commit: float) -> Slides:
+        """The slides of these axes, with ``commit`` in seconds."""
+        vmax, amax = tuple(axis.vmax for axis in axes), tuple(axis.amax for axis in axes)
+        return cls(tuple(axis.name for axis in axes), vmax, amax, commit, Tolerance.of(axes))
 
 
 class Wall(NamedTuple):

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypedDict
 
 from core.machine.machine_model import Axis, Machine
-from core.message import Message
 from core.ports import Clock, DriverError, MachinePorts
 
 if TYPE_CHECKING:
@@ -65,11 +64,9 @@ def backend_of(machine: Machine) -> Backend:
     """The backend of a machine; its libraries are loaded when it connects. Raises DriverError for no such."""
     if machine.backend not in BACKENDS:
         raise DriverError(
-            Message(
-                "{source}: backend {backend} does not have a driver yet",
-                source=machine.source,
-                backend=machine.backend,
-            )
+            "{source}: backend {backend} does not have a driver yet",
+            source=machine.source,
+            backend=machine.backend,
         )
     return _backend(machine.backend)
 

@@ -21,9 +21,8 @@ from drivers.canopen.canopen_config import (
     SpindleConfig,
 )
 from drivers.canopen.canopen_nodes import PLAIN_MODULE, CanNode, CanTerminal, Objects, can_terminal
-from drivers.canopen.canopen_table import CanopenTable
+from drivers.canopen.canopen_table import CanopenTable, EncoderTable
 from drivers.canopen.drive_profiles import CIA402, PROFILES
-from drivers.canopen.encoder_table import EncoderTable
 from drivers.feeder.feeder_server import Driven
 from drivers.operator_station import PanelStation
 
@@ -77,7 +76,7 @@ def canopen_config(machine: Machine) -> CanopenConfig:
     """The bus's figures from the machine file's. Raises DriverError for a machine without a bus."""
     can = machine.hardware.table(CanopenTable)
     if can is None:
-        raise DriverError(Message("{source}: the [canopen] table is missing", source=machine.source))
+        raise DriverError("{source}: the [canopen] table is missing", source=machine.source)
     folder = Path(machine.source).parent  # of EDS files, unless their path says otherwise
     found = [replace(node, eds=str(folder / node.eds) if node.eds else "") for node in can.nodes]
     nodes = {node.name: node for node in found}

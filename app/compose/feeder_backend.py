@@ -8,12 +8,10 @@ from app.compose.backend_entry import Connected, backend_of, has_station, played
 from app.compose.feeder_process import FeederProcess, driven
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
-from drivers.clocks import RealClock
-from drivers.feeder.feeder_hands import FeederHands
-from drivers.feeder.feeder_line import Line
-from drivers.feeder.feeder_links import LoopLink
-from drivers.feeder.feeder_ports import feeder_ports
+from drivers.feeder.feeder_line import Line, LoopLink
+from drivers.feeder.feeder_ports import FeederHands, feeder_ports
 from drivers.feeder.feeder_server import Feeder
+from drivers.waiting import RealClock
 
 
 def connect_feeder(machine: Machine, clock: Clock) -> Connected:

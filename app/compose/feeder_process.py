@@ -16,14 +16,11 @@ from core.message import Message as Text
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_nodes import CYCLIC, EVENED_OUT
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.clocks import RealClock
-from drivers.feeder.feeder_line import Line, Link, cleared
-from drivers.feeder.feeder_links import SocketLink
+from drivers.feeder.feeder_line import Line, Link, SocketLink, cleared
 from drivers.feeder.feeder_loop import TRIAL, keep_memory, late_at_trial, real_time, serve
 from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, fault_of, packed, with_code
 from drivers.feeder.feeder_server import Driven
-from drivers.reopening import Opening
-from drivers.wakeup import Bell
+from drivers.waiting import Bell, Opening, RealClock
 
 
 def driven(machine: Machine, clock: Clock) -> Driven:

@@ -9,7 +9,6 @@ from app.compose.inverter_backend import with_inverter
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
 from core.ports import Clock, DriverError
-from drivers.clocks import RealClock
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig, GrblInput, GrblOutput
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_table import GrblhalTable
@@ -17,6 +16,7 @@ from drivers.grblhal.grblhal_wire import tcp_address
 from drivers.inverter.inverter_spindle import InverterSpindle
 from drivers.simulators.grblhal_far_end import PtyEnd, TcpEnd, serve
 from drivers.simulators.grblhal_firmware import Firmware
+from drivers.waiting import RealClock
 
 _WIRED = frozenset(("X", "Z"))
 _HERE = frozenset((35, 37))  # homing methods of CiA 402 that take the present place
@@ -26,22 +26,17 @@ def grblhal_config(machine: Machine) -> GrblConfig:
     """The controller's figures from the machine file's. Raises DriverError for what it cannot be."""
     model = machine.hardware.table(GrblhalTable)
     if model is None:
-        raise DriverError(Message("{source}: the [grblhal] table is missing", source=machine.source))
+        raise DriverError("{source}: the [grblhal] table is missing", source=machine.source)
     if model.x_mode != "G8":
         raise DriverError(
-            Message(
-                "{source}: grblhal.x_mode must be G8, because otherwise a reset would change "
-                "the meaning of X",
-                source=machine.source,
-            )
+            "{source}: grblhal.x_mode must be G8, because otherwise a reset would change the meaning of X",
+            source=machine.source,
         )
     if machine.hardware.spindle_driver not in {"grblhal", "vfd"}:
         raise DriverError(
-            Message(
-                "{source}: with backend grblhal, set spindle.driver to grblhal (the controller "
-                "drives the spindle) or vfd (an inverter drives the spindle)",
-                source=machine.source,
-            )
+            "{source}: with backend grblhal, set spindle.driver to grblhal (the controller "
+            "drives the spindle) or vfd (an inverter drives the spindle)",
+            source=machine.source,
         )
     return GrblConfig(
         table=model,

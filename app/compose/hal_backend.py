@@ -10,9 +10,7 @@ import resources
 from app.compose.backend_entry import Backend, axis_figures, has_station, wired_inputs
 from core.machine.hardware_model import HomeModel
 from core.machine.machine_model import Axis, Machine
-from core.message import Message
 from core.ports import Clock, DriverError
-from drivers.clocks import RealClock
 from drivers.feeder.feeder_server import Driven
 from drivers.hal.boards.board_table import ETHERCAT, MESA_SERVO, SIM, BoardTable
 from drivers.hal.hal_config import HalAxis, HalConfig, HalInput, HalOutput, HalPot, HalSpindle
@@ -20,13 +18,14 @@ from drivers.hal.hal_machine import HalMachine
 from drivers.hal.hal_session import HalSession
 from drivers.hal.hal_table import HalTable
 from drivers.operator_station import PanelStation
+from drivers.waiting import RealClock
 
 
 def hal_config(machine: Machine) -> HalConfig:
     """HAL's figures from the machine file's. Raises DriverError for a machine without it."""
     hal = machine.hardware.table(HalTable)
     if hal is None:
-        raise DriverError(Message("{source}: the [hal] table is missing", source=machine.source))
+        raise DriverError("{source}: the [hal] table is missing", source=machine.source)
     spindle = machine.spindle
     return HalConfig(
         table=hal,

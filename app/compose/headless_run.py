@@ -27,8 +27,8 @@ from core.ports import DriverError
 from core.records.record_ring import LASTS
 from core.records.ring_file import RUN
 from core.tool_edges import edge_name
-from drivers.clocks import RealClock, StepClock
 from drivers.simulated.simulated_table import SimulatedTable
+from drivers.waiting import RealClock, StepClock
 
 
 @contextmanager

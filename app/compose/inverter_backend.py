@@ -8,12 +8,11 @@ from functools import partial
 
 from app.compose.serial_ports import open_wire
 from core.machine.machine_model import Machine
-from core.message import Message
 from core.ports import AxisSink, Clock, DriverError, FloatArray, MachinePorts, SampleSource, Unknown
-from drivers.clocks import StepClock
 from drivers.inverter.inverter_attendant import AttendantThread
 from drivers.inverter.inverter_spindle import Encoder, InverterSpindle, attendant
 from drivers.inverter.inverter_table import InverterTable
+from drivers.waiting import StepClock
 
 BY_FREQUENCY = (
     "no spindle encoder is connected, so the spindle speed is the inverter's output "
@@ -63,7 +62,7 @@ def _attended(
     except DriverError as error:
         attended.close()
         raise DriverError(
-            Message("inverter {family} on {port}: {error}", family=config.family, port=line.port, error=error)
+            "inverter {family} on {port}: {error}", family=config.family, port=line.port, error=error
         ) from error
     thread.start()
     own = ports.spindle if machine.backend != "sim" and ports.spindle.angle() is not None else None

@@ -18,13 +18,13 @@ from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, bro
 from core.message import Message
 from core.ports import Clock, DriverError, MachinePorts, StationState
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.clocks import RealClock, StepClock
 from drivers.grblhal.grblhal_config import HARDWARE
 from drivers.inverter.inverter_spindle import InverterSpindle
 from drivers.inverter.inverter_table import InverterTable
 from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.pendant.pendant_station import PendantStation
 from drivers.pendant.pendant_table import PendantModel
+from drivers.waiting import RealClock, StepClock
 
 _SETTLED = 0.3  # s in which pots and inputs have been heard that are told only now and then
 _LONGEST = 3.0  # s for inputs that are read in turns

@@ -12,11 +12,9 @@ from app.compose.backend_entry import Connected
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from core.table_schema import AT_PENDANT
-from drivers.pendant.input_codes import Control, button_of, wheel_of
 from drivers.pendant.input_devices import EventSource, KernelDevice, chosen, entries
-from drivers.pendant.pendant_reader import Pendant
-from drivers.pendant.pendant_station import PendantIO, PendantStation
-from drivers.pendant.pendant_table import STOPS, PendantModel
+from drivers.pendant.pendant_station import Pendant, PendantIO, PendantStation
+from drivers.pendant.pendant_table import STOPS, Control, PendantModel, button_of, wheel_of
 
 WHEEL = "handwheel"
 Find = Callable[[PendantModel, Mapping[str, Control]], Sequence[EventSource]]

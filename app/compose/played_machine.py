@@ -14,8 +14,8 @@ from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.clocks import StepClock
 from drivers.feeder.feeder_loop import PRIORITY, keep_memory, real_time
+from drivers.waiting import StepClock
 
 if TYPE_CHECKING:
     from drivers.simulators.canopen_devices import CanopenDevices
@@ -88,11 +88,9 @@ def _hand(act: Callable[[PlantHands, str], None]) -> Callable[[CanopenDevices, s
 def _jam(peers: CanopenDevices, axis: str, word: str) -> None:
     if axis not in peers.plant.drives:
         raise DriverError(
-            Message(
-                "drive {axis} does not exist; use one of {drives}",
-                axis=axis,
-                drives=", ".join(peers.plant.drives),
-            )
+            "drive {axis} does not exist; use one of {drives}",
+            axis=axis,
+            drives=", ".join(peers.plant.drives),
         )
     peers.machine.jam(axis, _on(word))
 

@@ -15,11 +15,10 @@ from core.language.source import LARGEST_FILE, Source, SourceError, load_source
 from core.machine.serial_table import DncModel
 from core.message import Message
 from core.ports import Clock, DriverError
-from drivers.clocks import RealClock
 from drivers.serial_line import LineSettings
-from drivers.transfer.program_framing import Program, outgoing
+from drivers.transfer.program_framing import Program, TransferSettings, outgoing
 from drivers.transfer.transfer_session import Reach, Receiving, Sending
-from drivers.transfer.transfer_settings import TransferSettings
+from drivers.waiting import RealClock
 
 # A line as most controls have it; the port is for the operator to choose.
 PLAIN = DncModel("", 9600, 8, "N", 1, "xonxoff", "%", "\r\n")
@@ -145,4 +144,4 @@ def _read(text: bytes, name: str) -> Source:
         try:
             return load_source(path)
         except SourceError as error:
-            raise DriverError(Message("the received data is not a program: {error}", error=error)) from error
+            raise DriverError("the received data is not a program: {error}", error=error) from error

@@ -66,7 +66,7 @@ from core.ports import Clock, DriverError
 from core.store.backup import problems as backup_problems
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow
-from drivers.clocks import RealClock
+from drivers.waiting import RealClock
 
 if TYPE_CHECKING:
     from app.editor.editor import Editor

@@ -12,12 +12,10 @@ from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
-from drivers.clocks import RealClock
-from drivers.mtconnect.agent_links import listening
-from drivers.mtconnect.devices_xml import devices_xml
-from drivers.mtconnect.mtconnect_adapter import Adapter, AdapterThread, utc_now
+from drivers.mtconnect.agent_links import Active, Report, listening
+from drivers.mtconnect.mtconnect_adapter import Adapter, AdapterThread, devices_xml, utc_now
 from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Active, Report
+from drivers.waiting import RealClock
 
 
 def open_shop_floor(
@@ -63,11 +61,9 @@ def device_model(machine: Machine, at: datetime) -> str:
     model = machine.hardware.table(MtconnectTable)
     if model is None:
         raise DriverError(
-            Message(
-                "{source}: the [mtconnect] table is missing; add it to specify the name and port "
-                "under which this machine reports to the shop floor",
-                source=machine.source,
-            )
+            "{source}: the [mtconnect] table is missing; add it to specify the name and port "
+            "under which this machine reports to the shop floor",
+            source=machine.source,
         )
     return devices_xml(
         device_of(machine, model.device),

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.message import Message
-from core.ports import AxisSample, DriverError, Segments, Stop, at_rest, code_of
+from core.ports import AxisSample, DriverError, Segments, Stop, at_rest
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_homing import Homing
 from drivers.canopen.canopen_objects import DriveState
 from drivers.canopen.canopen_setup import limits
-from drivers.canopen.cia402_drives import MOTIONS, DriveSet
-from drivers.canopen.cyclic_mode import CyclicFollower, SyncSchedule
-from drivers.canopen.position_modes import Follower, ProfiledFollower
+from drivers.canopen.driven_axes import MOTIONS, DriveSet
+from drivers.canopen.position_modes import CyclicFollower, Follower, ProfiledFollower, SyncSchedule
 from drivers.canopen.pvt_mode import PvtFollower
+from drivers.port_parts import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
 from drivers.setpoint_queue import SetpointQueue, Tolerance, check_limits
 
 
@@ -102,11 +101,7 @@ class CanopenAxes:
         """Queue setpoints. Raises DriverError as the port says, and for what the drives cannot follow."""
         self._need_power()
         homing = self.homing or self._given_up
-        if homing is not None:
-            raise DriverError(
-                Message("{name} is homing; wait until homing is complete", name=homing.config.name),
-                reason="homing",
-            )
+        demand_no_homing(homing.config.name if homing is not None else "")
         check_limits(segments, self.config.axes, self._homed())
         self.follower.check(segments)
         self.queue.splice(segments, self.now())
@@ -139,14 +134,7 @@ class CanopenAxes:
             self._off(DriveState.OFF)
             self.drives.power_off()
             return
-        if self.fault:
-            raise DriverError(
-                Message(
-                    "the drives stay off because of a fault ({fault}); clear the fault first",
-                    fault=self.fault,
-                ),
-                "no-power",
-            )
+        demand_no_fault(self.fault)
         if self._powered():
             return
         self.follower.prepare()
@@ -165,20 +153,12 @@ class CanopenAxes:
 
     def home(self, axis: str) -> None:
         """Start the drive's homing. Raises DriverError."""
-        if axis not in self.axes:
-            raise DriverError(Message("axis {axis} does not exist", axis=f"{axis!r}"), reason="no-axis")
+        demand_axis(axis, self.axes)
         driven = next((a for a in self.drives.axes if a.config.name == axis), None)
         if driven is None or driven.config.absolute:
             return
         self._need_power()
-        if self.sample().moving:
-            raise DriverError(
-                Message(
-                    "{axis} cannot home while an axis is moving; wait until all axes are at rest", axis=axis
-                ),
-                "homing",
-                reason="axis-moves",
-            )
+        demand_standstill(axis, self.sample().moving)
         self.follower.abort()
         self.homing = Homing(driven, self.follower.mode, self.now())
 
@@ -265,12 +245,7 @@ class CanopenAxes:
             self.queue.rest_at(self._actual())  # the path goes on from where the drive has stopped
 
     def _need_power(self) -> None:
-        if self.fault:
-            raise DriverError(
-                Message("{fault}; clear the fault first", fault=self.fault), code_of(self.fault, "axis")
-            )
-        if not self._powered():
-            raise DriverError("the drives are off; switch them on first", "power-lost")
+        demand_power(self.fault, self._powered())
 
     def _powered(self) -> bool:
         return self._on and self.drives.powered

@@ -94,10 +94,10 @@ class Bus(canopen.Network):
         """Send one frame. Raises DriverError when the interface does not take it."""
         if self.bus is None or self.trouble:
             raise DriverError(
-                Message(
-                    "CAN {channel}: {problem}", channel=self.config.channel, problem=self.trouble or "closed"
-                ),
+                "CAN {channel}: {problem}",
                 "bus",
+                channel=self.config.channel,
+                problem=self.trouble or "closed",
             )
         frame = can.Message(
             arbitration_id=can_id, data=bytes(data), is_extended_id=False, is_remote_frame=remote
@@ -107,7 +107,7 @@ class Bus(canopen.Network):
         except (can.CanError, OSError) as error:
             self.lost(Message("the CAN interface cannot send: {error}", error=error))
             raise DriverError(
-                Message("CAN {channel}: {problem}", channel=self.config.channel, problem=self.trouble), "bus"
+                "CAN {channel}: {problem}", "bus", channel=self.config.channel, problem=self.trouble
             ) from error
 
     def synchronise(self) -> None:
@@ -244,11 +244,9 @@ def _refuse(config: CanopenTable, error: Exception) -> NoReturn:
     if "not installed" in str(error):  # msgpack, of udp_multicast
         how = "run: pip install 'turndesk[canopen]'"
     raise DriverError(
-        Message(
-            "CAN interface {interface}, channel {channel}, cannot be opened: {error}; {method}",
-            interface=config.interface,
-            channel=config.channel,
-            error=error,
-            method=how,
-        )
+        "CAN interface {interface}, channel {channel}, cannot be opened: {error}; {method}",
+        interface=config.interface,
+        channel=config.channel,
+        error=error,
+        method=how,
     ) from error

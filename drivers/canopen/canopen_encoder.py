@@ -69,10 +69,7 @@ class CanEncoder:
         silent = self._bus.clock.now() - self._heard
         if self._drive is None and silent > 3.0 * self._bus.config.heartbeat:
             self._wrong(
-                Message(
-                    "no heartbeat from the encoder for {silent} s; check cable and power",
-                    silent=f"{silent:.2f}",
-                )
+                "no heartbeat from the encoder for {silent} s; check cable and power", silent=f"{silent:.2f}"
             )
         elif self.missing > SYNCS:
             self._wrong("the encoder does not respond to SYNC; check cable and power")
@@ -85,7 +82,7 @@ class CanEncoder:
             self.connect()
             self.operational()
         except DriverError as error:
-            self.trouble = Fault(Message("spindle encoder {error}", error=error), "spindle-encoder")
+            self.trouble = Fault("spindle encoder {error}", "spindle-encoder", error=error)
 
     def speed(self) -> float:
         """rpm, signed, over the last tenth of a second."""
@@ -110,14 +107,12 @@ class CanEncoder:
         if counts != abs(config.counts_per_rev):
             where = "6001:0" if scaled else "6501:0"
             raise DriverError(
-                Message(
-                    "{name}: the encoder reports {counts} counts per revolution (object {place}), but "
-                    "spindle.encoder.counts_per_rev is {counts_per_rev}",
-                    name=config.name,
-                    counts=counts,
-                    place=where,
-                    counts_per_rev=abs(config.counts_per_rev),
-                )
+                "{name}: the encoder reports {counts} counts per revolution (object {place}), but "
+                "spindle.encoder.counts_per_rev is {counts_per_rev}",
+                name=config.name,
+                counts=counts,
+                place=where,
+                counts_per_rev=abs(config.counts_per_rev),
             )
         turns = setup.read(od.ENCODER_TURNS)
         self._range = (setup.read(od.ENCODER_RANGE) if scaled else counts * max(turns, 1)) or _WORD
@@ -125,15 +120,13 @@ class CanEncoder:
         between = (SYNCS + 1) * wait * config.rpm_max / 60.0  # turns, at most
         if self._range < 2.0 * between * counts:
             raise DriverError(
-                Message(
-                    "{name}: the encoder count wraps around after {range} rev, but the spindle may turn "
-                    "{between} rev between two responses; use an encoder whose count covers at least "
-                    "{between2} rev",
-                    name=config.name,
-                    range=f"{self._range / counts:.3g}",
-                    between=f"{between:.2g}",
-                    between2=f"{2.0 * between:.3g}",
-                )
+                "{name}: the encoder count wraps around after {range} rev, but the spindle may turn "
+                "{between} rev between two responses; use an encoder whose count covers at least "
+                "{between2} rev",
+                name=config.name,
+                range=f"{self._range / counts:.3g}",
+                between=f"{between:.2g}",
+                between2=f"{2.0 * between:.3g}",
             )
 
     def _told(self, map_: canopen.pdo.PdoMap) -> None:
@@ -162,11 +155,8 @@ class CanEncoder:
         )
         if turns > most:
             self._wrong(
-                Message(
-                    "the encoder count jumped by {revolutions} revolutions in one step; check "
-                    "cable and shield",
-                    revolutions=f"{turns:.2f}",
-                )
+                "the encoder count jumped by {revolutions} revolutions in one step; check cable and shield",
+                revolutions=f"{turns:.2f}",
             )
 
     def _heartbeat(self, state: int) -> None:
@@ -184,10 +174,10 @@ class CanEncoder:
                 )
             )
 
-    def _wrong(self, what: str) -> None:
+    def _wrong(self, what: str, **values: object) -> None:
+        what = Message(what, **values) if values else what
         self.trouble = self.trouble or Fault(
-            Message("spindle encoder {name}: {what}", name=self._config.name, what=what),
-            "spindle-encoder",
+            "spindle encoder {name}: {what}", "spindle-encoder", name=self._config.name, what=what
         )
 
 

@@ -8,7 +8,8 @@ from core.message import Message
 from core.ports import DriverError, Fault
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_objects import BIT_12, BIT_13, HALT, HM, NEW, REACHED, DriveState
-from drivers.canopen.cia402_drives import Drive402, DrivenAxis
+from drivers.canopen.cia402_drives import Drive402
+from drivers.canopen.driven_axes import DrivenAxis
 
 _FIRST = 0.1  # s in which "target reached" may still be that of the last move
 _MODE = 0.5  # s for a change of mode
@@ -60,7 +61,7 @@ class Homing:
         elif self._step is _Step.BACK and drive.shown_mode == self._back:
             self._enter(_Step.DONE, now)
         elif self._step in {_Step.MODE, _Step.BACK} and waited > _MODE:
-            self._fail(Message("the drive stays in mode {shown_mode}", shown_mode=drive.shown_mode))
+            self._fail("the drive stays in mode {shown_mode}", shown_mode=drive.shown_mode)
 
     def give_up(self) -> None:
         """Halt: the drive brakes. Its mode changes back once it stands; some refuse that in motion."""
@@ -94,11 +95,10 @@ class Homing:
     def _enter(self, step: _Step, now: float) -> None:
         self._step, self._since = step, now
 
-    def _fail(self, why: str) -> None:
+    def _fail(self, why: str, **values: object) -> None:
+        why = Message(why, **values) if values else why
         self._drive.extra &= ~NEW
-        self.trouble = Fault(
-            Message("{name}: homing failed: {why}", name=self.config.name, why=why), "homing"
-        )
+        self.trouble = Fault("{name}: homing failed: {why}", "homing", name=self.config.name, why=why)
 
     def _write(self) -> None:
         """Method, speeds, acceleration and place, as far as the drive has them. Raises DriverError."""
@@ -114,14 +114,12 @@ class Homing:
         place = round(config.home_offset / config.count)
         if not setup.try_write(config.profile.home_place, 0, place) and place:
             raise DriverError(
-                Message(
-                    "{name}: the drive has no object {home_place}h (home offset), so "
-                    "axis.{name2}.home.offset must be 0",
-                    name=config.name,
-                    home_place=f"{config.profile.home_place:04X}",
-                    name2=config.name,
-                ),
+                "{name}: the drive has no object {home_place}h (home offset), so "
+                "axis.{name2}.home.offset must be 0",
                 "homing",
+                name=config.name,
+                home_place=f"{config.profile.home_place:04X}",
+                name2=config.name,
             )
 
     _braking = False
@@ -171,12 +169,10 @@ class Referencing:
                 drive.extra, self._told, self._since = NEW, True, now
             elif waited > _CHANGE:
                 raise DriverError(
-                    Message(
-                        "C: the spindle drive remains in state {state}, mode {shown_mode}",
-                        state=drive.state,
-                        shown_mode=drive.shown_mode,
-                    ),
+                    "C: the spindle drive remains in state {state}, mode {shown_mode}",
                     "c-coupling",
+                    state=drive.state,
+                    shown_mode=drive.shown_mode,
                 )
             return False
         if drive.status & BIT_13 or waited > self._limit:

@@ -21,13 +21,11 @@ from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_encoder import CanEncoder, MeasuredSpindle
 from drivers.canopen.canopen_objects import DriveState
-from drivers.canopen.canopen_probe import CanopenProbe
-from drivers.canopen.canopen_spindle import CanopenSpindle
-from drivers.canopen.canopen_terminals import CanopenIO
+from drivers.canopen.canopen_spindle import CanopenSpindle, SpindleC
+from drivers.canopen.canopen_terminals import CanopenIO, CanopenProbe
 from drivers.canopen.cia402_drives import Drive402
-from drivers.canopen.cyclic_mode import CyclicFollower
-from drivers.canopen.spindle_as_c import SpindleC
-from drivers.sample_log import KEPT, SampleLog
+from drivers.canopen.position_modes import CyclicFollower
+from drivers.port_parts import KEPT, SampleLog
 
 _NAN = float("nan")
 _UNTRACED = (

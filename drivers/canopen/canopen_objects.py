@@ -132,11 +132,9 @@ def dictionary(name: str, eds: str, standard: Callable[[], ObjectDictionary]) ->
         ) from error
     if DEVICE_TYPE not in found:
         raise DriverError(
-            Message(
-                "{name}: the EDS file {eds} does not contain object 1000h, which every device has",
-                name=name,
-                eds=eds,
-            )
+            "{name}: the EDS file {eds} does not contain object 1000h, which every device has",
+            name=name,
+            eds=eds,
         )
     return found
 

@@ -1,13 +1,17 @@
-"""What a bus that moves a machine must keep to: times, numbers, drives, their families, terminals."""
+"""Rules of [canopen]: load of the bus, times, node numbers, drives and their families, terminals.
+
+A frame of 11-bit identifier and n bytes is at most 47 + 8 n + (34 + 8 n - 1) / 4 bits long: with all that
+stuffing can add, and the three bits to the next frame.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from core.message import Message
 from core.table_schema import FileReading, Finding, Values, written
-from drivers.canopen.bus_load import cyclic_load
 from drivers.canopen.canopen_nodes import (
     BITS,
     CYCLIC,
@@ -28,6 +32,41 @@ from drivers.canopen.canopen_nodes import (
     seldom,
 )
 from drivers.canopen.drive_profiles import IN_RPM, PROFILES, QUEUED
+
+_COMMAND, _ANSWER, _MORE = 7, 7, 8  # bytes: of RPDO1, TPDO1, and of PDOs that are seldom sent
+_MOST_USED = 0.75  # of the time; the rest is for SDO, heartbeats, emergencies, and a frame that is under way
+
+
+class Load(NamedTuple):
+    """Bits from SYNC to SYNC that are sent each time, and those that are sent seldom, in the mean."""
+
+    each: float
+    seldom: float
+    room: float  # bits that fit between two SYNCs
+
+    @property
+    def share(self) -> float:
+        """Of the bus."""
+        return (self.each + self.seldom) / self.room
+
+    @property
+    def fits(self) -> bool:
+        """With what has to stay free."""
+        return self.share <= _MOST_USED
+
+
+def frame_bits(size: int) -> int:
+    """The longest that a frame with ``size`` bytes can be."""
+    return 47 + 8 * size + (34 + 8 * size - 1) // 4
+
+
+def cyclic_load(slides: int, others: int, bitrate: int, sync: float, seldom: int) -> Load:
+    """``slides`` are told and answer at each SYNC; ``others`` and second answers come every ``seldom``."""
+    told = frame_bits(_COMMAND) + frame_bits(_ANSWER)
+    each = frame_bits(0) + slides * told
+    rare = slides * frame_bits(_MORE) + others * 2 * frame_bits(_MORE)
+    return Load(each, rare / seldom, bitrate * sync)
+
 
 _ANALOG, _OUTPUT, _DRIVE_INPUT = 0x6401, 0x6200, 0x60FD
 _LIMITS, _WATCH = 0x607D, 0x1016

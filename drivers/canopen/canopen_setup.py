@@ -81,17 +81,13 @@ class Setup:
         kept = self._upload(index, sub)
         if kept != data:
             shown = int.from_bytes(kept, "little")
-            raise DriverError(
-                Message(
-                    "{name}: object {index}:{sub} remains at {shown} instead of {value}; check which "
-                    "values the drive allows, and check [canopen.sdo]",
-                    name=self._name,
-                    index=f"{index:04X}",
-                    sub=sub,
-                    shown=shown,
-                    value=value,
-                ),
-                "drive-setup",
+            raise self._unfit(
+                "{name}: object {index}:{sub} remains at {shown} instead of {value}; check which "
+                "values the drive allows, and check [canopen.sdo]",
+                index=f"{index:04X}",
+                sub=sub,
+                shown=shown,
+                value=value,
             )
 
     def write_bytes(self, index: int, sub: int, data: bytes) -> None:
@@ -112,26 +108,16 @@ class Setup:
                 absent.append(f"{index:04X}:{sub}")
         missing = [f"{index:04X}h {self.lacks[index]}" for index in needed if index in self.lacks]
         if missing:
-            raise DriverError(
-                Message(
-                    "{name}: node {node} cannot be used because it lacks these objects: {missing}",
-                    name=self._name,
-                    node=self.node.id,
-                    missing="; ".join(missing),
-                ),
-                "drive-setup",
+            raise self._unfit(
+                "{name}: node {node} cannot be used because it lacks these objects: {missing}",
+                missing="; ".join(missing),
             )
         if absent:
             where = "; remove these objects from [canopen.sdo], or check the EDS file"
-            raise DriverError(
-                Message(
-                    "{name}: node {node} has no object {absent}{place}",
-                    name=self._name,
-                    node=self.node.id,
-                    absent=", ".join(absent),
-                    place=where,
-                ),
-                "drive-setup",
+            raise self._unfit(
+                "{name}: node {node} has no object {absent}{place}",
+                absent=", ".join(absent),
+                place=where,
             )
 
     def try_write(self, index: int, sub: int, value: int) -> bool:
@@ -157,16 +143,11 @@ class Setup:
         """Is it the kind of device that the machine file says? Raises DriverError."""
         found = self.read(od.DEVICE_TYPE) & _PROFILE
         if found != profile:
-            raise DriverError(
-                Message(
-                    "{name}: node {node} has device profile {value} instead of {profile}; check the node "
-                    "numbers in [canopen.nodes]",
-                    name=self._name,
-                    node=self.node.id,
-                    value=found,
-                    profile=profile,
-                ),
-                "drive-setup",
+            raise self._unfit(
+                "{name}: node {node} has device profile {value} instead of {profile}; check the node "
+                "numbers in [canopen.nodes]",
+                value=found,
+                profile=profile,
             )
 
     def demand_modes(self, modes: int, known: int = 0) -> None:
@@ -174,13 +155,9 @@ class Setup:
         offered = known | (self.read(od.SUPPORTED) if self.has(od.SUPPORTED, 0) else modes)
         lacking = [_NAMES[mode] for mode, bit in MODE_BITS.items() if modes & bit and not offered & bit]
         if lacking:
-            raise DriverError(
-                Message(
-                    "{name}: the drive does not support mode {lacking}; check [canopen] mode",
-                    name=self._name,
-                    lacking=", ".join(lacking),
-                ),
-                "drive-setup",
+            raise self._unfit(
+                "{name}: the drive does not support mode {lacking}; check [canopen] mode",
+                lacking=", ".join(lacking),
             )
 
     def demand(self, *entries: Entry) -> None:
@@ -189,15 +166,10 @@ class Setup:
             f"{entry.object:04X}:{entry.sub}" for entry in entries if not self.has(entry.object, entry.sub)
         ]
         if missing:
-            raise DriverError(
-                Message(
-                    "{name}: node {node} cannot be used in this mode because it lacks these objects: "
-                    "{missing}; check [canopen] mode and the node's EDS file",
-                    name=self._name,
-                    node=self.node.id,
-                    missing=", ".join(missing),
-                ),
-                "drive-setup",
+            raise self._unfit(
+                "{name}: node {node} cannot be used in this mode because it lacks these objects: "
+                "{missing}; check [canopen] mode and the node's EDS file",
+                missing=", ".join(missing),
             )
 
     def demand_homing(self, method: int) -> None:
@@ -206,16 +178,12 @@ class Setup:
         offered = sorted({each for each in listed if each})
         if offered and method not in offered:
             known = ", ".join(map(str, offered))
-            raise DriverError(
-                Message(
-                    "{name}: the drive does not support homing method {method} (60E3h: {known}); check "
-                    "axis.{name2}.home",
-                    name=self._name,
-                    method=method,
-                    known=known,
-                    name2=self._name,
-                ),
-                "drive-setup",
+            raise self._unfit(
+                "{name}: the drive does not support homing method {method} (60E3h: {known}); check "
+                "axis.{name2}.home",
+                method=method,
+                known=known,
+                name2=self._name,
             )
 
     def demand_turn(self, counts: int) -> None:
@@ -228,16 +196,12 @@ class Setup:
             return
         found = feed * shaft / (turns * motor)
         if abs(found - counts) > 0.5:
-            raise DriverError(
-                Message(
-                    "{name}: the drive uses {value} counts per motor revolution (6091h, 6092h), but "
-                    "canopen.nodes.{name2}.counts_per_rev is {counts}",
-                    name=self._name,
-                    value=f"{found:g}",
-                    name2=self._name,
-                    counts=counts,
-                ),
-                "drive-setup",
+            raise self._unfit(
+                "{name}: the drive uses {value} counts per motor revolution (6091h, 6092h), but "
+                "canopen.nodes.{name2}.counts_per_rev is {counts}",
+                value=f"{found:g}",
+                name2=self._name,
+                counts=counts,
             )
 
     def entries(self, index: int) -> int:
@@ -275,19 +239,14 @@ class Setup:
             if there is None or _abort(error) not in _READ_ONLY:
                 raise
             now, wanted = (self._number(index, sub, each) for each in (there, data))
-            raise DriverError(
-                Message(
-                    "{name}: node {node}, object {index}:{sub} is read-only; its value is {now}, but "
-                    "{expected} is needed. Set it with the drive's own software, or correct [canopen.sdo]",
-                    name=self._name,
-                    node=self.node.id,
-                    index=f"{index:04X}",
-                    sub=sub,
-                    now=now,
-                    expected=wanted,
-                ),
-                "drive-setup",
+            raise self._unfit(
+                "{name}: node {node}, object {index}:{sub} is read-only; its value is {now}, but "
+                "{expected} is needed. Set it with the drive's own software, or correct [canopen.sdo]",
                 reason="read-only",
+                index=f"{index:04X}",
+                sub=sub,
+                now=now,
+                expected=wanted,
             ) from error
         return True
 
@@ -318,13 +277,17 @@ class Setup:
         self._map(pdo, entries, every)
         pdo.callbacks[:] = [heard]
 
+    def _unfit(self, text: str, *, reason: str = "", **values: object) -> DriverError:
+        """Return the error of a node that is not as it has to be; the text may name node and number."""
+        return DriverError(text, "drive-setup", reason=reason, name=self._name, node=self.node.id, **values)
+
     def _pdo(self, pdos: PdoBase, number: int) -> PdoMap:
         try:
             found: PdoMap = pdos[number]
         except KeyError as error:
-            raise DriverError(
-                Message("{name}: PDO {number} is not in the node's EDS file", name=self._name, number=number),
-                "drive-setup",
+            raise self._unfit(
+                "{name}: PDO {number} is not in the node's EDS file",
+                number=number,
             ) from error
         return found
 
@@ -382,16 +345,16 @@ class Setup:
             return do()
         except SdoAbortedError as error:
             raise DriverError(
-                Message("{place}: the node rejected the request: {error}", place=where, error=error),
-                "drive-setup",
+                "{place}: the node rejected the request: {error}", "drive-setup", place=where, error=error
             ) from error
         except SdoCommunicationError as error:
             why = self._bus.trouble or Message("{error}; check cable, power and node number", error=error)
-            raise DriverError(Message("{place}: {why}", place=where, why=why), "drive-silent") from error
+            raise DriverError("{place}: {why}", "drive-silent", place=where, why=why) from error
         except KeyError as error:
             raise DriverError(
-                Message("{place} is not in the node's object dictionary; check its EDS file", place=where),
+                "{place} is not in the node's object dictionary; check its EDS file",
                 "drive-setup",
+                place=where,
             ) from error
 
 

@@ -1,15 +1,28 @@
-"""The spindle on the bus: a drive in profile velocity mode, which makes its own ramps."""
+"""The spindle on the bus: a drive in profile velocity mode, which makes its own ramps, and that may be C too.
+
+It is changed over at standstill from turning to positioning, and back. Free, the drive turns as the spindle.
+Held, it is one more axis of the set: powered, fed and stopped with the others. Where C then stands is what
+the control last counted; oriented, the spindle first turns so far that this is also its place from the index.
+"""
 
 from __future__ import annotations
 
-from core.message import Message
-from core.ports import DriverError, Fault
+from collections.abc import Callable
+from dataclasses import replace
+from enum import Enum
+
+from core.ports import DriverError, Fault, Stop, at_rest
 from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_axes import CanopenAxes
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import SpindleConfig
+from drivers.canopen.canopen_homing import SEARCH_RPM, Phase, Referencing
 from drivers.canopen.canopen_objects import HM, IP, MODE_BITS, PV, DriveState
 from drivers.canopen.canopen_setup import stopping
 from drivers.canopen.cia402_drives import SPEED, SPEED_TARGET, Drive402, DriveWork
+from drivers.canopen.driven_axes import DrivenAxis
+from drivers.port_parts import demand_free_drive, demand_spindle
+from drivers.setpoint_queue import straight
 
 _STANDS = 2.0  # rpm
 _KEPT_TURNING = (od.ABORT_OPTION, od.WATCHED)  # without these it turns on when this computer falls silent
@@ -84,11 +97,8 @@ class CanopenSpindle:
 
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed. Raises DriverError with a fault, unless asked to stop."""
-        if rpm and (self._bus.trouble or self.drive.trouble):
-            raise DriverError(
-                Message("the spindle stays off: {problem}", problem=self._bus.trouble or self.drive.trouble),
-                "spindle-off",
-            )
+        if rpm:
+            demand_spindle(self._bus.trouble or self.drive.trouble)
         if rpm and self.kept:
             raise DriverError(
                 "the spindle stays off because its drive is engaged as the C axis; release the "
@@ -155,3 +165,238 @@ class CanopenSpindle:
     def fault(self) -> str:
         """What is wrong with it; empty when well."""
         return self._bus.trouble or (self.drive.trouble and Fault(self.drive.trouble, "spindle"))
+
+
+# --- C on the spindle's own drive.
+
+
+_CHANGE = 2.0  # s for a change of mode with power
+_TURN = 360.0
+
+
+class Step(Enum):
+    """How far the change-over is."""
+
+    FREE = "the drive is running as the spindle drive"
+    REST = "waiting until the axis drives have executed their queued motion"
+    INDEX = "searching for the encoder index"
+    HERE = "setting the current position in the spindle drive"
+    POWER = "changing the spindle drive to position mode"
+    TURN = "turning the spindle to its C-axis position"
+    HELD = "is C"
+    LEAVE = "ending C axis mode"
+    BACK = "changing the spindle drive to speed mode"
+
+
+class SpindleC:
+    """``core.ports.SpindleHold``. ``tick`` with the bus's rounds; ``trouble`` stops all axes."""
+
+    def __init__(self, axes: CanopenAxes, spindle: CanopenSpindle, name: str) -> None:
+        self._axes, self._spindle, self._drive = axes, spindle, spindle.drive
+        self._number = axes.axes.index(name)
+        config = axes.config.axes[self._number]
+        per_turn = spindle.counts_per_rev
+        config = replace(
+            config, count=_TURN / per_turn, counts_per_rev=per_turn, profile=spindle.drive.profile
+        )
+        self._axis = DrivenAxis(config, spindle.drive, homed=True)
+        self.step = Step.FREE
+        self.trouble: Fault | str = ""
+        self._wanted = self._orient = False
+        self._since = 0.0
+        self._homing = Referencing(spindle.drive)
+        self._phase = Phase(spindle.counts_per_rev)
+        self._off = 0.0  # degrees that it has to turn to its place
+        self._goal: float | None = None  # what C shall count when it is held, through broken off tries
+
+    # --- the port ----------------------------------------------------------------------------------------
+
+    def hold(self, on: bool, orient: bool = False) -> None:
+        """Hold it as C, or let it turn again. Raises DriverError where it cannot be held now."""
+        if on and self.trouble:
+            raise DriverError(self.trouble)
+        if on and not self._wanted:
+            turning = self._spindle.commanded or abs(self._drive.speed) >= _STANDS
+            demand_free_drive(self._axes.sample().enabled, self.step is Step.FREE and turning)
+            self._orient = orient
+        self._want(on)
+
+    def held(self) -> bool:
+        """Whether C may move."""
+        return self.step is Step.HELD and self._wanted
+
+    # --- every round -------------------------------------------------------------------------------------
+
+    def tick(self, now: float) -> None:
+        """Go on with whatever is under way."""
+        self._phase.follow(self._drive.position, leaps=self.step in {Step.INDEX, Step.HERE})
+        if self._drive.rebooted:
+            self._phase.counts = None
+        if self.step is not Step.FREE and (self._drive.trouble or not self._axes.sample().enabled):
+            self._want(False)  # power is gone, or will be: C ends with it
+        steps: dict[Step, Callable[[float], None]] = {
+            Step.FREE: self._free,
+            Step.REST: self._rest,
+            Step.INDEX: self._search,
+            Step.HERE: self._here,
+            Step.POWER: self._power,
+            Step.TURN: self._turn,
+            Step.HELD: self._held,
+            Step.LEAVE: self._leave,
+            Step.BACK: self._back,
+        }
+        try:
+            steps[self.step](now)
+        except DriverError as error:
+            self._fail(error.fault)
+
+    def clear_fault(self) -> None:
+        """The operator has seen it."""
+        self.trouble = ""
+        self._want(False)
+
+    def _free(self, now: float) -> None:
+        if self._wanted:
+            self._spindle.lent = True
+            self._goal = self._demand() if self._goal is None else self._goal
+            self._enter(Step.REST, now)
+
+    def _rest(self, now: float) -> None:
+        if not self._wanted:
+            self._enter(Step.BACK, now)
+        elif not self._axes.follower_rests(now):
+            self._since = now
+        elif self._orient and self._phase.counts is None:
+            self._spindle.blind = True
+            self._homing.index(now)
+            self._enter(Step.INDEX, now)
+        else:
+            self._tell_place(now)
+
+    def _search(self, now: float) -> None:
+        if self._referenced(now):
+            self._phase.index_found(self._drive.position)
+            self._tell_place(now)
+
+    def _tell_place(self, now: float) -> None:
+        """Its counter begins anew, so that it counts as C does: the drive stays where it is."""
+        self._off = self._beside()
+        place = self._place() - self._off
+        self._spindle.blind = True
+        self._homing.set_position(round(place / self._axis.config.count), now)
+        self._enter(Step.HERE, now)
+
+    def _here(self, now: float) -> None:
+        if self._referenced(now):
+            self._spindle.leapt()
+            self._drive.mode = IP
+            if self._axis.records is None:
+                raise DriverError(
+                    "C axis not available: {title} does not have a position queue",
+                    "c-coupling",
+                    title=self._drive.profile.title,
+                )
+            self._axis.records.clear()
+            self._enter(Step.POWER, now)
+
+    def _referenced(self, now: float) -> bool:
+        """Whether its homing is done; a wish that has gone breaks it off. Raises DriverError."""
+        if self._wanted:
+            return self._homing.done(now)
+        self._drive.extra = 0
+        self._enter(Step.BACK, now)
+        return False
+
+    def _power(self, now: float) -> None:
+        if not self._wanted:
+            self._enter(Step.BACK, now)
+        elif self._drive.enabled and self._drive.shown_mode == IP:
+            self._join()
+            self._begin_turn()
+            self._enter(Step.TURN, now)
+        elif now - self._since > _CHANGE:
+            self._fail("the spindle drive remains in mode {shown_mode}", shown_mode=self._drive.shown_mode)
+
+    def _turn(self, now: float) -> None:
+        if not self._wanted:
+            self._axes.stop(Stop.RAMP_HOLD)
+            self._enter(Step.LEAVE, now)
+        elif at_rest(self._axes.queue.horizon(now), now) and not self._axes.drives.moving:
+            self._goal = None
+            self._enter(Step.HELD, now)
+
+    def _held(self, now: float) -> None:
+        if not self._wanted:
+            self._enter(Step.LEAVE, now)
+
+    def _leave(self, now: float) -> None:
+        """At rest, and the drives' queues ended: nothing is left in this one."""
+        if self._axes.follower_rests(now):
+            self._part()
+            self._enter(Step.BACK, now)
+
+    def _back(self, now: float) -> None:
+        drive = self._drive
+        drive.goal, drive.extra, drive.mode = DriveState.OFF, 0, PV
+        if drive.shown_mode == PV and not drive.enabled:
+            self._spindle.lent = False
+            self._spindle.leapt()
+            self.step = Step.FREE
+            self._spindle.resume()
+        elif now - self._since > _CHANGE and not self.trouble:
+            self._fail("the spindle drive remains in mode {shown_mode}", shown_mode=drive.shown_mode)
+
+    # --- inside ------------------------------------------------------------------------------------------
+
+    def _demand(self) -> float:
+        return self._axes.queue.demand_at(self._axes.now())[0][self._number]
+
+    def _place(self) -> float:
+        return self._demand() if self._goal is None else self._goal
+
+    def _beside(self) -> float:
+        """How far the spindle must still turn to its place, degrees, by the short way."""
+        if not self._orient or self._phase.counts is None:
+            return 0.0
+        off = self._place() - self._phase.counts * self._axis.config.count
+        return (off + _TURN / 2.0) % _TURN - _TURN / 2.0
+
+    def _join(self) -> None:
+        """From here on it is one of the axes."""
+        drives = self._axes.drives
+        drives.axes.append(self._axis)
+        drives.indices.append(self._number)
+        self._axis.last, self._axis.homed = self._drive.position, True
+        self._axes.rest_here()
+
+    def _part(self) -> None:
+        drives = self._axes.drives
+        if self._axis in drives.axes:
+            drives.axes.remove(self._axis)
+            drives.indices.remove(self._number)
+
+    def _begin_turn(self) -> None:
+        axes, config = self._axes, self._axis.config
+        off = self._off
+        if abs(off) > config.count:
+            rest, _ = axes.queue.demand_at(axes.now())
+            speed = min(config.vmax, SEARCH_RPM * 6.0)
+            start = axes.now() + axes.commit
+            axes.splice(
+                straight(
+                    start, rest, self._number, to=rest[self._number] + off, speed=speed, accel=config.amax
+                )
+            )
+
+    def _want(self, on: bool) -> None:
+        self._wanted = self._spindle.kept = on
+
+    def _enter(self, step: Step, now: float) -> None:
+        self.step, self._since = step, now
+
+    def _fail(self, why: str, **values: object) -> None:
+        self.trouble = self.trouble or Fault(why, "c-coupling", **values)
+        self._want(False)
+        self._part()
+        self._drive.extra = 0
+        self._enter(Step.BACK, self._axes.now())

@@ -14,8 +14,8 @@ from drivers.canopen.canopen_config import AxisConfig, CanopenConfig
 from drivers.canopen.canopen_nodes import CanNode
 from drivers.canopen.canopen_objects import MODE_BITS
 from drivers.canopen.canopen_setup import Setup
-from drivers.canopen.cia402_drives import MOTIONS, axis_work
 from drivers.canopen.drive_profiles import DriveProfile
+from drivers.canopen.driven_axes import MOTIONS, axis_work
 
 _PATIENCE = 0.4  # s for an answer; nodes of a bus that works need milliseconds
 _IDENTITY = (("vendor", 1), ("product", 2), ("revision", 3), ("serial", 4))

@@ -1,20 +1,26 @@
-"""[canopen] of the machine file: the keys of the bus, and the driver's entry."""
+"""[canopen] and [spindle.encoder] of the machine file: keys of the bus and of an encoder on it."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import KW_ONLY
 
 from core.key_declaration import Range, Unit, file_key, key_table
-from core.table_schema import Driver, DriverTable
-from drivers.canopen import encoder_table
+from core.message import Message
+from core.table_schema import Driver, DriverTable, FileReading, Finding, Values, written
 from drivers.canopen.canopen_nodes import (
+    DRIVE,
+    ENCODER_PROFILE,
+    MODULE,
     NODE_REFERENCE,
     NODES,
     SDO_REFERENCE,
     CanNode,
     input_addresses,
     node_of,
+    profile_of,
     read_nodes,
+    sdo_address,
     seldom,
     terminal,
 )
@@ -22,6 +28,8 @@ from drivers.canopen.canopen_rules import bus_rules
 from drivers.canopen.drive_profiles import PROFILES
 
 _ANSWERS, _ANSWER_TIME = 3, 0.02  # SYNCs, s
+ENCODER, POSITION = "spindle.encoder", "6004:0"  # the table, and where a node of CiA 406 has its counts
+_LEAST = 16  # counts a turn of an encoder
 MODES = ("pvt", "csp", "ip", "pp")
 
 
@@ -87,6 +95,117 @@ class CanopenTable:
         return self.interface != "virtual"
 
 
+@key_table
+class EncoderTable:
+    """An encoder on the spindle, on the bus: a node of its own, or a drive's second input."""
+
+    _: KW_ONLY
+    node: str = file_key(
+        meaning="Name of the node in [canopen.nodes] that supplies the counts: an encoder, or a drive with "
+        "a second encoder input."
+    )
+    object: str = file_key(
+        default="",
+        meaning='Object of the position as index:sub-index, such as "60E4:1". Default: "6004:0" of an '
+        "encoder; required for a drive.",
+    )
+    counts_per_rev: int = file_key(
+        Range(-100_000_000, 100_000_000),
+        meaning="Counts per spindle revolution, at least 16; negative if the encoder counts down with M03.",
+    )
+
+    @property
+    def address(self) -> tuple[int, int]:
+        """Index and sub-index of the object."""
+        return sdo_address(self.object or POSITION) or (0, 0)
+
+
+def _encoder_rules(file: FileReading) -> Iterator[Finding]:
+    values = file.values
+    if ENCODER in file.tables:
+        yield from _beside(values)
+        yield from _counts(file)
+    used = values.text(f"{ENCODER}.node") if values.has(f"{ENCODER}.node") else ""
+    for name in file.names(NODES):
+        path = f"{NODES}.{name}.profile"
+        number = values.whole(path) if values.has(path) else MODULE
+        if number not in {MODULE, DRIVE, ENCODER_PROFILE}:
+            yield Finding(
+                path, str(number), "the profile must be 401 (terminals), 402 (drive) or 406 (encoder)"
+            )
+        elif number == ENCODER_PROFILE and name != used:
+            why = Message(
+                "this encoder is not used; {encoder} names the encoder that is used", encoder=ENCODER
+            )
+            yield Finding(path, str(number), why)
+
+
+def _beside(values: Values) -> Iterator[Finding]:
+    if values.has("machine.backend") and values.text("machine.backend") != "canopen":
+        backend = written(values.text("machine.backend"))
+        yield Finding(
+            ENCODER,
+            "",
+            Message(
+                "backend {backend} does not support an encoder on a bus; remove this entry", backend=backend
+            ),
+        )
+    if values.has("spindle.driver") and values.text("spindle.driver") != "vfd":
+        expected = (
+            'spindle.driver must be "vfd"; a drive on the bus has its own encoder, set by '
+            "counts_per_rev of its node"
+        )
+        yield Finding(ENCODER, "", expected)
+    path = f"{ENCODER}.counts_per_rev"
+    if values.has(path) and abs(values.number(path)) < _LEAST:
+        expected = Message(
+            "enter at least {minimum} counts; if the encoder counts down with M03, put a "
+            "minus sign before the number",
+            minimum=_LEAST,
+        )
+        yield Finding(path, f"{values.number(path):g}", expected)
+
+
+def _counts(file: FileReading) -> Iterator[Finding]:
+    values = file.values
+    if not values.has(f"{ENCODER}.node", f"{ENCODER}.object"):
+        return
+    node, counted = values.text(f"{ENCODER}.node"), values.text(f"{ENCODER}.object")
+    if node not in file.names(NODES):
+        yield Finding(
+            f"{ENCODER}.node",
+            written(node),
+            "the encoder node must be a node of [canopen.nodes] with profile = 406",
+        )
+    elif profile_of(file, node) == MODULE:
+        yield Finding(
+            f"{ENCODER}.node",
+            written(node),
+            "an I/O module does not count revolutions; use a node with profile 406 or a drive",
+        )
+    elif profile_of(file, node) == DRIVE and not counted:
+        expected = (
+            "this entry is missing; enter the object of the second encoder from the "
+            'drive\'s manual, such as "60E4:1"'
+        )
+        yield Finding(f"{ENCODER}.object", "", expected)
+    if counted and sdo_address(counted) is None:
+        yield Finding(
+            f"{ENCODER}.object",
+            written(counted),
+            Message(
+                'the encoder object must be an index and sub-index, such as "{position}"', position=POSITION
+            ),
+        )
+
+
+_ENCODER_TABLE = DriverTable(
+    ENCODER,
+    EncoderTable,
+    rules=_encoder_rules,
+    purpose="An encoder on the CANopen bus for a spindle that an inverter drives.",
+)
+
 DRIVER = Driver(
     tables=(
         DriverTable(
@@ -99,7 +218,7 @@ DRIVER = Driver(
             purpose='The CANopen bus and its drives (`backend = "canopen"`).',
             parts=(NODE_REFERENCE, SDO_REFERENCE),
         ),
-        encoder_table.TABLE,
+        _ENCODER_TABLE,
     ),
     backend="canopen",
     spindle="cia402",

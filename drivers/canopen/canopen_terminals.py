@@ -6,15 +6,16 @@ from collections.abc import Iterable, Iterator, Mapping
 
 import canopen
 
-from core.message import Message
-from core.ports import DriverError, Fault, StationState
+from core.ports import PROBE, DriverError, Fault, Latch, StationState
 from drivers.canopen import canopen_objects as od
+from drivers.canopen.canopen_axes import CanopenAxes
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_nodes import CanNode, CanTerminal
 from drivers.canopen.canopen_setup import Setup, watching
 from drivers.canopen.cia402_drives import Drive402
-from drivers.station_inputs import station_of
+from drivers.operator_station import station_of
+from drivers.port_parts import FirstTouch, demand_output, output_of
 
 # --- A CiA 401 module: inputs, outputs with a safe state of their own, analog words.
 
@@ -56,14 +57,12 @@ class Module401:
             if where.sub > self.sizes[where.index]:
                 has = ", ".join(f"{self.sizes[index]} {what}" for index, what in _KINDS)
                 raise DriverError(
-                    Message(
-                        "{name}: the module has {has}, so object {index}.{sub} does not exist; check the "
-                        "module's terminals in the machine file",
-                        name=self.config.name,
-                        has=has,
-                        index=f"{where.index:04X}",
-                        sub=where.sub,
-                    )
+                    "{name}: the module has {has}, so object {index}.{sub} does not exist; check the "
+                    "module's terminals in the machine file",
+                    name=self.config.name,
+                    has=has,
+                    index=f"{where.index:04X}",
+                    sub=where.sub,
                 )
 
     def connect(self, safe: bytes, keep: bytes) -> None:
@@ -117,16 +116,12 @@ class Module401:
         name, silent = self.config.name, self._without_beat
         if silent > _BEATS * self._bus.config.heartbeat:
             self._wrong(
-                Message(
-                    "{name}: no heartbeat from the I/O module for {silent} s; check cable and power",
-                    name=name,
-                    silent=f"{silent:.2f}",
-                )
+                "{name}: no heartbeat from the I/O module for {silent} s; check cable and power",
+                name=name,
+                silent=f"{silent:.2f}",
             )
         elif self.missing > _SYNCS:
-            self._wrong(
-                Message("{name}: the I/O module does not respond to SYNC; check cable and power", name=name)
-            )
+            self._wrong("{name}: the I/O module does not respond to SYNC; check cable and power", name=name)
 
     def _digital(self, map_: canopen.pdo.PdoMap) -> None:
         self.inputs[: len(map_.data)] = map_.data
@@ -144,14 +139,11 @@ class Module401:
             self.answered = self.heard
         if state == 0:
             self._wrong(
-                Message(
-                    "{name}: the I/O module has restarted; its outputs have dropped out",
-                    name=self.config.name,
-                )
+                "{name}: the I/O module has restarted; its outputs have dropped out", name=self.config.name
             )
 
-    def _wrong(self, what: str) -> None:
-        self.trouble = self.trouble or Fault(what, "io-silent")
+    def _wrong(self, what: str, **values: object) -> None:
+        self.trouble = self.trouble or Fault(what, "io-silent", **values)
 
 
 def _signed(word: int) -> int:
@@ -188,11 +180,9 @@ class CanopenIO:
             drive = self._drives.get(where.node)
             if drive is not None and not drive.tells_inputs:
                 raise DriverError(
-                    Message(
-                        "{node}: the drive does not report digital inputs; in the machine file, assign the "
-                        "inputs to an I/O module",
-                        node=where.node,
-                    )
+                    "{node}: the drive does not report digital inputs; in the machine file, assign the "
+                    "inputs to an I/O module",
+                    node=where.node,
                 )
         for name, module in self.modules.items():
             module.measure(where for where in self._needed() if where.node == name)
@@ -250,22 +240,9 @@ class CanopenIO:
 
     def write(self, name: str, on: bool) -> None:
         """Switch one output; it goes out with the next tick. Raises DriverError."""
-        output = self._config.outputs.get(name)
-        if output is None:
-            raise DriverError(
-                Message("output {name} is not in the machine file; add it under [io.out]", name=f"{name!r}"),
-                "output",
-            )
+        output = output_of(name, self._config.outputs)
         module = self._module(output.terminal)
-        if on and (self._bus.trouble or module.trouble):
-            raise DriverError(
-                Message(
-                    "output {name} stays off: {problem}",
-                    name=name,
-                    problem=self._bus.trouble or module.trouble,
-                ),
-                "output",
-            )
+        demand_output(name, on, self._bus.trouble or module.trouble)
         self._switch(name, output.terminal, on)
 
     def _switch(self, name: str, where: CanTerminal, on: bool) -> None:
@@ -288,23 +265,19 @@ class CanopenIO:
         """The operator station as its inputs have it; its age is that of the oldest module."""
         now = self._bus.clock.now()
         age = max((now - module.answered for module in self.modules.values()), default=0.0)
-        pot = self._config.pots.get("spindle_pot")
         return station_of(
             self.inputs(),
-            pot_switch=pot.switch if pot is not None else "",
-            spindle_pot=self._pot("spindle_pot"),
-            feed_pot=self._pot("feed_pot"),
+            self._config.pots,
+            lambda name: self._word(name) / _FULL,
             handwheel=self._turned(),
             age=age,
-            spindle_load=self._load(),
         )
 
     def _turned(self) -> int:
         """The wheel's counter goes round after 16 bits; nobody turns half of that between two looks."""
-        wheel = self._config.pots.get("handwheel")
-        if wheel is None:
+        if "handwheel" not in self._config.pots:
             return 0
-        raw = self._module(wheel.terminal).analog[wheel.terminal.sub - 1]
+        raw = self._word("handwheel")
         if self._wheel is None:
             self._wheel = (raw, 0)
         last, count = self._wheel
@@ -312,20 +285,10 @@ class CanopenIO:
         self._wheel = (raw, count)
         return count
 
-    def _load(self) -> float | None:
-        """Per cent: ``low`` at 0, ``high`` at the full word; what is below is the noise of an idle motor."""
-        load = self._config.pots.get("spindle_load")
-        if load is None:
-            return None
-        raw = self._module(load.terminal).analog[load.terminal.sub - 1]
-        return load.low + (load.high - load.low) * max(raw / _FULL, 0.0)
-
-    def _pot(self, name: str) -> float:
-        pot = self._config.pots.get(name)
-        if pot is None:
-            return 1.0
-        raw = self._module(pot.terminal).analog[pot.terminal.sub - 1]
-        return pot.low + (pot.high - pot.low) * min(max(raw / _FULL, 0.0), 1.0)
+    def _word(self, name: str) -> int:
+        """The analog word of a pot or wheel."""
+        where = self._config.pots[name].terminal
+        return self._module(where).analog[where.sub - 1]
 
     def _read(self, where: CanTerminal) -> bool:
         if where.node in self.modules:
@@ -340,3 +303,26 @@ class CanopenIO:
     @staticmethod
     def _bit(data: bytearray, where: CanTerminal) -> bool:
         return bool(data[where.sub - 1] >> where.bit & 1)
+
+
+# --- The probe.
+
+
+_LATE = 2  # SYNCs: a module answers one with what it had at the one before
+
+
+class CanopenProbe(FirstTouch):
+    """Touches by the answers to each SYNC.
+
+    The drives' own latch (60B8) is not used: few have its input free.
+    """
+
+    def __init__(self, axes: CanopenAxes, io: CanopenIO, sync: float) -> None:
+        super().__init__()
+        self._axes, self._io, self._sync = axes, io, sync
+
+    def note(self) -> None:
+        """Once a round of the loop that owns the bus."""
+        if self._touches(self._io.inputs()[PROBE]):
+            sample = self._axes.sample()
+            self._kept = Latch(sample.t, sample.actual, _LATE * self._sync)

@@ -1,10 +1,10 @@
-"""CiA 402 drives: each configured and read back by SDO and driven by PDO; the axis drives together as one."""
+"""A CiA 402 drive: configured and read back by SDO, driven by PDO."""
 
 from __future__ import annotations
 
 import struct
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import canopen
 from canopen.emcy import EmcyError
@@ -13,24 +13,16 @@ from core.message import Message
 from core.ports import DriverError, Fault, FaultCode
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_bus import Bus
-from drivers.canopen.canopen_config import AxisConfig
 from drivers.canopen.canopen_nodes import CanNode, Objects
 from drivers.canopen.canopen_objects import (
-    CSP,
-    HM,
-    IP,
-    MODE_BITS,
-    PP,
     QUICK,
     DriveState,
     reset_step,
     state_of,
     towards_enabled,
 )
-from drivers.canopen.canopen_setup import Setup, axis_objects
-from drivers.canopen.canopen_table import CanopenTable
+from drivers.canopen.canopen_setup import Setup
 from drivers.canopen.drive_profiles import Entry
-from drivers.canopen.pvt_records import RecordQueue
 
 _FOLLOWING = 0x8611  # EMCY
 SYNCS = 3  # answers that may be missing of what answers every 10 ms
@@ -39,7 +31,6 @@ _SHOWN = struct.Struct("<Hbi")  # status word, mode, position
 _TORQUE = struct.Struct("<h")  # per mille of the rated one
 _NAN = float("nan")
 _RARER, _MOST_RARE = 5, 240  # times what need not be known at each SYNC; SYNCs, as CiA 301 counts them
-POSITION_TARGET, POINT_TARGET = Entry(od.TARGET, 0, 32), Entry(od.IP_RECORD, 1, 32)
 SPEED_TARGET, SPEED = Entry(od.TARGET_SPEED, 0, 32), Entry(od.VELOCITY, 0, 32, signed=True)
 _NEEDED = (
     Entry(od.CONTROL, 0, 16),
@@ -185,20 +176,19 @@ class Drive402:
         now = self.bus.clock.now()
         if self._beats and now - self.heard > patience:
             self._wrong(
-                Message(
-                    "{name}: no heartbeat from the drive for {now} s; check cable and power",
-                    name=self.name,
-                    now=f"{now - self.heard:.2f}",
-                ),
+                "{name}: no heartbeat from the drive for {now} s; check cable and power",
                 "drive-silent",
+                name=self.name,
+                now=f"{now - self.heard:.2f}",
             )
         elif self.silent:
             self._wrong(
-                Message("{name}: the drive does not respond to SYNC; check cable and power", name=self.name),
+                "{name}: the drive does not respond to SYNC; check cable and power",
                 "drive-silent",
+                name=self.name,
             )
         elif self.state in {DriveState.FAULT, DriveState.REACTING} and not self._resetting:
-            self._wrong(Message("{name}: drive fault", name=self.name), "axis")
+            self._wrong("{name}: drive fault", "axis", name=self.name)
 
     def forget(self) -> None:
         """The operator has seen it."""
@@ -216,8 +206,8 @@ class Drive402:
             return QUICK
         return 0
 
-    def _wrong(self, what: str, code: FaultCode) -> None:
-        self.trouble = self.trouble or Fault(what, code)
+    def _wrong(self, what: str, code: FaultCode, **values: object) -> None:
+        self.trouble = self.trouble or Fault(what, code, **values)
 
     def _shown(self, map_: canopen.pdo.PdoMap) -> None:
         self.status, self.shown_mode, self.position = _SHOWN.unpack(map_.data)
@@ -240,11 +230,10 @@ class Drive402:
         if state == 0:
             self.rebooted = True
             self._wrong(
-                Message("{name}: the drive has restarted; its position is lost", name=self.name),
-                "drive-restarted",
+                "{name}: the drive has restarted; its position is lost", "drive-restarted", name=self.name
             )
         elif state == 4:
-            self._wrong(Message("{name}: the drive was stopped by an NMT command", name=self.name), "axis")
+            self._wrong("{name}: the drive was stopped by an NMT command", "axis", name=self.name)
 
     def _emergency(self, error: EmcyError) -> None:
         if error.code & 0xFF00:
@@ -262,9 +251,6 @@ def _mapped(entry: Entry) -> tuple[int, int]:
     return entry.object | entry.sub << 16, entry.bits
 
 
-# --- The axis drives together: configured, powered and stopped as one, at one SYNC.
-
-
 @dataclass(frozen=True, slots=True)
 class DriveWork:
     """What a drive is configured for: bits of 0x6502, what is written, and the object of its queue.
@@ -279,247 +265,3 @@ class DriveWork:
     records: int = 0
     period: float = 0.0
     axis: bool = True  # it answers each SYNC; a spindle every 10 ms
-
-
-_POWER = 1.5  # s in which the drives must come on, or leave their faults
-_REST, _LOOKS = 2, 0.0095  # counts in so many s at least; less is standing
-_REACTION = 1.0  # s in which a drive that has lost its host is at rest: three heartbeats and its ramp
-_FAULTS = frozenset((DriveState.FAULT, DriveState.REACTING))
-
-
-@dataclass(frozen=True, slots=True)
-class Motion:
-    """How the drives follow: mode of CiA 402, object of the setpoints, and whether one comes each SYNC."""
-
-    mode: int
-    target: Entry = POSITION_TARGET
-    cyclic: bool = False
-
-
-MOTIONS = {  # by the words of the machine file
-    "pvt": Motion(IP),
-    "csp": Motion(CSP, cyclic=True),
-    "ip": Motion(IP, POINT_TARGET, cyclic=True),
-    "pp": Motion(PP),
-}
-
-
-@dataclass(slots=True)
-class DrivenAxis:
-    """One axis and its drive; homed: its counts mean machine positions."""
-
-    config: AxisConfig
-    drive: Drive402
-    homed: bool = False
-    last: int = 0  # counts at the answer before
-    moving: bool = False
-    records: RecordQueue | None = None  # its queue, where its family has one
-
-    def __post_init__(self) -> None:
-        """The queue of its drive."""
-        queue = self.config.profile.queue
-        self.records = None
-        if queue is not None:
-            self.records = RecordQueue(self.config, queue, self.drive.setup, self.drive.push)
-
-    @property
-    def ready(self) -> bool:
-        """Powered, and the mode read back."""
-        return self.drive.enabled and self.drive.shown_mode == self.drive.mode
-
-
-class DriveSet:
-    """``mode`` is the one in which they follow setpoints."""
-
-    def __init__(self, axes: tuple[AxisConfig, ...], bus: Bus, how: Motion) -> None:
-        self._bus = bus
-        self._how = how
-        self.indices = [i for i, axis in enumerate(axes) if axis.node is not None]
-        self.axes = [
-            _driven(axis, Drive402(bus, axis.node, how.target, ())) for axis in axes if axis.node is not None
-        ]
-        for axis in self.axes:
-            axis.drive.tracks = how.mode if how.cyclic else None
-        self.seen = self._sent = bus.clock.now()  # the SYNC of the last answers, of the last exchange
-        self._compared = self.seen  # when positions were last compared
-
-    @property
-    def drives(self) -> list[Drive402]:
-        """Without what they move."""
-        return [axis.drive for axis in self.axes]
-
-    @property
-    def powered(self) -> bool:
-        """Every one of them."""
-        return all(axis.drive.enabled for axis in self.axes)
-
-    @property
-    def moving(self) -> bool:
-        """Any of them, by its counts."""
-        return any(axis.moving for axis in self.axes)
-
-    def connect(self) -> None:
-        """Configure every drive; NMT start comes later. Raises DriverError."""
-        for axis in self.axes:
-            self._connect(axis)
-
-    def operational(self) -> None:
-        """NMT start."""
-        for axis in self.axes:
-            axis.drive.operational()
-
-    def command(self) -> None:
-        """Send every drive its command; the bus's SYNC makes them act together."""
-        for axis in self.axes:
-            axis.drive.command()
-
-    def sync_sent(self, now: float) -> None:
-        """A SYNC goes out, and every drive is to answer it."""
-        for axis in self.axes:
-            axis.drive.sync_sent(now)
-
-    def exchange(self) -> None:
-        """Command and SYNC, whatever was answered."""
-        self._sent = self._bus.clock.now()
-        self.command()
-        self.sync_sent(self._sent)
-        self._bus.synchronise()
-
-    def answered(self) -> list[DrivenAxis]:
-        """For waiting: one exchange, not before the last was answered or its time is over."""
-        if self._how.cyclic and not self._bus.stepped:
-            return self.axes  # the SYNC goes on meanwhile, by the bus's own wait
-        waiting = any(axis.drive.missing for axis in self.axes)
-        if not waiting or self._bus.clock.now() - self._sent >= 2 * self._bus.config.sync:
-            self.exchange()
-        self._bus.pump()
-        return self.axes
-
-    def aim(self, goal: DriveState) -> None:
-        """What all of them shall come to, and no bits of motion left."""
-        for axis in self.axes:
-            axis.drive.goal, axis.drive.extra = goal, 0
-
-    def power_on(self) -> None:
-        """Walk up, and wait. Raises DriverError naming the drive that does not come; then all are off."""
-        for axis in self.axes:
-            axis.drive.mode, axis.drive.goal = self._how.mode, DriveState.ENABLED
-        if not self._bus.wait(lambda: all(axis.ready for axis in self.answered()), _POWER):
-            slow = [
-                Message("{name} is {state}", name=axis.config.name, state=axis.drive.state)
-                for axis in self.axes
-                if not axis.ready
-            ]
-            self.aim(DriveState.OFF)
-            why = Message(
-                "the drives do not switch on: {slow}; check that the E-stop is released and the "
-                "drives have power",
-                slow=", ".join(slow),
-            )
-            raise DriverError(why, "no-power")
-
-    def power_off(self) -> None:
-        """Wait a little for it."""
-        self.aim(DriveState.OFF)
-        self._bus.wait(lambda: not any(axis.drive.enabled for axis in self.answered()), 0.3)
-
-    def clear(self) -> None:
-        """Reset faults, configure anew what was away. Raises DriverError; no drive has power afterwards."""
-        for axis in self.axes:
-            if axis.drive.rebooted or axis.drive.missing:
-                self._connect(axis)
-                axis.drive.operational()
-            axis.drive.forget()
-            axis.drive.clear()
-        if not self._bus.wait(lambda: not any(a.drive.state in _FAULTS for a in self.answered()), _POWER):
-            names = [axis.config.name for axis in self.axes if axis.drive.state in _FAULTS]
-            why = Message(
-                "{names}: the drive fault cannot be cleared; check the drive's display",
-                names=", ".join(names),
-            )
-            raise DriverError(why, "drive-keeps-fault")
-
-    def lose_home(self) -> None:
-        """Behind an E-stop only encoders that are absolute are believed."""
-        for axis in self.axes:
-            axis.homed = axis.config.absolute
-
-    def look(self) -> str:
-        """Supervise; the first thing that is wrong, or nothing."""
-        trouble: str = ""
-        for axis in self.axes:
-            axis.drive.look(3.0 * self._bus.config.heartbeat)
-            trouble = trouble or axis.drive.trouble
-            if axis.drive.rebooted:
-                axis.homed = axis.config.absolute
-        return trouble
-
-    def note_motion(self, now: float) -> None:
-        """Whether they move, by two answers; without drives there is nothing to wait for.
-
-        One that no longer answers keeps nobody waiting once its own reaction must be over.
-        """
-        speaking = [axis for axis in self.axes if not axis.drive.silent]
-        for axis in self.axes:
-            if axis not in speaking and now - axis.drive.answered > _REACTION:
-                axis.moving = False
-        seen = min((axis.drive.answered for axis in speaking), default=now)
-        if seen <= self.seen:
-            return
-        self.seen = seen
-        if seen - self._compared < _LOOKS:
-            return
-        self._compared = seen
-        for axis in speaking:
-            axis.moving = abs(axis.drive.position - axis.last) > _REST
-            axis.last = axis.drive.position
-
-    def _connect(self, axis: DrivenAxis) -> None:
-        config = axis.config
-        axis.drive.connect(axis_work(config, self._bus.config, self._how))
-        if config.counts_per_rev:
-            axis.drive.setup.demand_turn(config.counts_per_rev)
-        if not config.absolute:
-            axis.drive.setup.demand_homing(config.home_method)
-        axis.homed, axis.last = config.absolute, axis.drive.position
-        axis.drive.mode = self._how.mode
-
-
-def axis_work(config: AxisConfig, bus: CanopenTable, how: Motion) -> DriveWork:
-    """What the drive of an axis is configured for."""
-    queue = config.profile.queue if how.mode == IP and not how.cyclic else None
-    submode: Objects = ((od.IP_SUBMODE, 0, queue.submode if queue is not None else 0),)
-    return DriveWork(
-        modes=MODE_BITS[how.mode] | (0 if config.absolute else MODE_BITS[HM]),
-        standing=(
-            *axis_objects(config, bus),
-            *(submode if how.mode == IP else ()),
-            *(every(bus.sync) if how.cyclic else ()),
-        ),
-        own=config.node.sdo if config.node is not None else (),
-        records=queue.object if queue is not None else 0,
-        period=bus.sync if how.cyclic else 0.0,
-    )
-
-
-def _driven(config: AxisConfig, drive: Drive402) -> DrivenAxis:
-    """The axis with the figures of its drive's family. Raises DriverError where one of them is missing."""
-    profile = drive.profile
-    if profile.rpm and not config.counts_per_rev:
-        where = f"canopen.nodes.{config.name}.counts_per_rev"
-        raise DriverError(
-            Message(
-                "{name}: {title} reports speeds in rpm, but {place} is missing; enter 4 × the "
-                "encoder pulses per revolution",
-                name=config.name,
-                title=profile.title,
-                place=where,
-            ),
-            "drive-setup",
-        )
-    return DrivenAxis(replace(config, profile=profile), drive)
-
-
-def every(period: float) -> Objects:
-    """0x60C2: the time from setpoint to setpoint."""
-    return ((od.IP_TIME, 1, round(1000 * period)), (od.IP_TIME, 2, -3))

@@ -11,10 +11,9 @@ from typing import NamedTuple
 from core.message import Message
 from core.ports import DriverError, Fault, at_rest
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
-from drivers.canopen.cia402_drives import DrivenAxis
 from drivers.canopen.drive_profiles import QUEUED
+from drivers.canopen.driven_axes import DrivenAxis, RecordQueue
 from drivers.canopen.position_modes import Follower
-from drivers.canopen.pvt_records import RecordQueue
 from drivers.setpoint_queue import SetpointQueue
 
 # --- From setpoints to PVT records: points of the path in counts, times in whole milliseconds.
@@ -207,13 +206,11 @@ def _records(axis: DrivenAxis) -> RecordQueue:
     """The queue in its drive. Raises DriverError where its family has none."""
     if axis.records is None:
         raise DriverError(
-            Message(
-                '{name}: {title} has no queue for [canopen] mode = "pvt"; choose "csp" or "ip", or '
-                "set drive = {by_name}",
-                name=axis.config.name,
-                title=axis.config.profile.title,
-                by_name=_BY_NAME,
-            ),
+            '{name}: {title} has no queue for [canopen] mode = "pvt"; choose "csp" or "ip", or '
+            "set drive = {by_name}",
             "drive-setup",
+            name=axis.config.name,
+            title=axis.config.profile.title,
+            by_name=_BY_NAME,
         )
     return axis.records

@@ -1,18 +1,25 @@
-"""The line to the feeder: requests of the control and their answers, its last look; a feeder that is gone."""
+"""The line to the feeder, by a socket to its process or within one thread: requests, answers, its last look.
+
+A feeder that is gone is a fault.
+"""
 
 from __future__ import annotations
 
 import logging
 import queue
+import select
+import socket
+import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from typing import Protocol
 
 from core.message import Message as Text
 from core.ports import ALL_UNKNOWN, Clock, DriverError, Fault, FloatArray, TrippedError, Unknown, code_of
-from drivers.feeder.feeder_messages import NOTHING, VERSION, Message, fault_of, text, texts
-from drivers.reopening import Opening
-from drivers.wakeup import Bell
+from drivers.feeder.feeder_messages import NOTHING, VERSION, Inbox, Message, fault_of, packed, text, texts
+from drivers.feeder.feeder_server import Feeder
+from drivers.waiting import Bell, Opening
 
 _log = logging.getLogger(__name__)
 _FRESH = 0.002  # s for which one look serves all ports
@@ -157,12 +164,10 @@ class Line:
         hello = self.ask(Message({"do": "hello"}, NOTHING)).head
         if hello.get("version") != VERSION:
             raise DriverError(
-                Text(
-                    "the driver host uses version {version}, but TurnDesk uses version {expected}: exit "
-                    "TurnDesk, complete the installation, then start TurnDesk again",
-                    version=hello.get("version"),
-                    expected=VERSION,
-                )
+                "the driver host uses version {version}, but TurnDesk uses version {expected}: exit "
+                "TurnDesk, complete the installation, then start TurnDesk again",
+                version=hello.get("version"),
+                expected=VERSION,
             )
         return hello
 
@@ -190,3 +195,93 @@ class Line:
     def close(self) -> None:
         """End it."""
         self._link.close()
+
+
+# --- Two links to the feeder: within one thread, and by a socket.
+
+
+_QUICK = 0.5  # s for an answer; the feeder's loop takes milliseconds
+_AT_ONCE = 0.05  # s that one look counts of it at most: who stood still himself blames nobody
+# s for orders that wait for a drive; a fault that is cleared may mean to configure all of a bus
+_SLOW = {"enable": 5.0, "home": 5.0, "clear_fault": 15.0}
+_CHUNK = 1 << 16
+
+
+class LoopLink:
+    """The feeder in the same thread, by the same bytes as over the socket: for tests and headless runs."""
+
+    files = ()  # it cannot end unseen
+
+    def __init__(self, feeder: Feeder) -> None:
+        self._feeder = feeder
+
+    def ask(self, message: Message) -> Message:
+        """There and back as bytes; the feeder's loop goes round before."""
+        self._feeder.tick()
+        (request,) = Inbox().feed(packed(message))
+        (answer,) = Inbox().feed(packed(self._feeder.handle(request)))
+        return answer
+
+    def hang_up(self) -> None:
+        """The control has gone."""
+        self._feeder.orphaned = True
+
+    def close(self) -> None:
+        """The same."""
+        self.hang_up()
+
+
+class SocketLink:
+    """A feeder in its own process. One request at a time, each answered within its time or never."""
+
+    def __init__(self, sock: socket.socket) -> None:
+        self._socket = sock
+        self._socket.setblocking(True)
+        self._inbox = Inbox()
+
+    @property
+    def files(self) -> tuple[int, ...]:
+        """Readable when the feeder has ended."""
+        return (self._socket.fileno(),)
+
+    def ask(self, message: Message) -> Message:
+        """Raises DriverError when the feeder has gone or does not answer in time."""
+        limit = _SLOW.get(text(message.head, "what"), _QUICK)
+        try:
+            self._socket.settimeout(limit)
+            self._socket.sendall(packed(message))
+            return self._answer(limit)
+        except TimeoutError as error:
+            raise DriverError(
+                "no response from the driver host for {seconds} s; the axes stop on their path",
+                "feeder-silent",
+                seconds=f"{limit:g}",
+            ) from error
+        except OSError as error:
+            raise DriverError(
+                "the driver host has ended ({cause})", "feeder-gone", cause=error.strerror
+            ) from error
+
+    def hang_up(self) -> None:
+        """Both directions end, whoever waits on it."""
+        with suppress(OSError):
+            self._socket.shutdown(socket.SHUT_RDWR)
+
+    def close(self) -> None:
+        """The feeder sees the end and stops what is left; who waits for its answer waits no longer."""
+        self.hang_up()
+        self._socket.close()
+
+    def _answer(self, left: float) -> Message:
+        while left > 0.0:
+            began = time.monotonic()
+            ready, _, _ = select.select([self._socket], [], [], min(left, _AT_ONCE))
+            left -= min(time.monotonic() - began, _AT_ONCE)
+            if not ready:
+                continue
+            data = self._socket.recv(_CHUNK)
+            if not data:
+                raise DriverError("the driver host has ended", "feeder-gone")
+            for message in self._inbox.feed(data):
+                return message
+        raise TimeoutError

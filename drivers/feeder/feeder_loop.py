@@ -13,9 +13,9 @@ from functools import partial
 
 from core.message import Message
 from core.ports import Clock, DriverError
-from drivers.clocks import RealClock
 from drivers.feeder.feeder_messages import Inbox, packed
 from drivers.feeder.feeder_server import Driven, Feeder
+from drivers.waiting import RealClock
 
 PRIORITY = 50
 _CURRENT, _FUTURE = 1, 2  # MCL_CURRENT and MCL_FUTURE of mlockall(2)

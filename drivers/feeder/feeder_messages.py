@@ -9,12 +9,12 @@ from typing import NamedTuple, get_args
 
 import numpy as np
 
-from core.message import Message as Text
 from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, Segments, code_of
 
 _LENGTHS = struct.Struct("<II")  # of the head, of the numbers, in bytes
 LARGEST = 64_000_000  # bytes; more is no message
 _HUGE = 1e300  # a number beyond is none, and NaN neither
+_NO_MESSAGE: tuple[str, FaultCode] = "the driver host's socket received an invalid message", "feeder-silent"
 VERSION = 5  # of what is asked and answered; both sides say it in their first words
 
 
@@ -48,11 +48,7 @@ class Inbox:
             head, numbers = _LENGTHS.unpack_from(self._bytes)
             end = _LENGTHS.size + head + numbers
             if end > LARGEST or numbers % 8:
-                raise DriverError(
-                    "the driver host's socket received an invalid message",
-                    "feeder-silent",
-                    reason="no-message",
-                )
+                raise DriverError(*_NO_MESSAGE, reason="no-message")
             if len(self._bytes) < end:
                 return
             text = bytes(self._bytes[_LENGTHS.size : _LENGTHS.size + head])
@@ -65,13 +61,9 @@ def _head(text: bytes) -> Mapping[str, object]:
     try:
         head = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise DriverError(
-            "the driver host's socket received an invalid message", "feeder-silent", reason="no-message"
-        ) from error
+        raise DriverError(*_NO_MESSAGE, reason="no-message") from error
     if not isinstance(head, dict):
-        raise DriverError(
-            "the driver host's socket received an invalid message", "feeder-silent", reason="no-message"
-        )
+        raise DriverError(*_NO_MESSAGE, reason="no-message")
     return head
 
 
@@ -107,9 +99,10 @@ def number(head: Mapping[str, object], key: str) -> float:
     value = head.get(key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _HUGE:
         raise DriverError(
-            Text("the driver host received an invalid number for {key}", key=key),
+            "the driver host received an invalid number for {key}",
             "feeder-silent",
             reason="no-number",
+            key=key,
         )
     return float(value)
 

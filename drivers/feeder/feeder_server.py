@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cache, partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -21,6 +22,13 @@ from drivers.feeder.feeder_messages import (
     with_code,
 )
 
+_Part = TypeVar("_Part")
+# Why an optional part of the machine is missing, and the reason.
+_NO_C = "the spindle drive of this machine is not used as the C axis", "no-c"
+_UNORIENTED = "this machine's spindle driver cannot orient the spindle to an angle", "no-orientation"
+_NO_TOUCH = "this driver cannot capture the axis position at a touch signal", "no-touch"
+_NO_GEAR = "this driver cannot synchronize the axes with the spindle", "no-gear"
+
 # --- Orders that change the machine, by the words of a request; and the hands at a simulated station.
 
 
@@ -34,12 +42,14 @@ def act(ports: MachinePorts, head: Mapping[str, object]) -> None:
         "clear_fault": ports.axes.clear_fault,
         "run": lambda: ports.spindle.run(number(head, "rpm")),
         "coast": ports.spindle.coast,
-        "hold": lambda: _hold(ports, on=on, orient=head.get("orient") is True),
-        "orient": lambda: _orient(ports, number(head, "angle"), int(number(head, "sense"))),
-        "release": lambda: _release(ports),
+        "hold": lambda: _demanded(ports.lock, *_NO_C).hold(on, head.get("orient") is True),
+        "orient": lambda: _demanded(ports.orientation, *_UNORIENTED).orient(
+            number(head, "angle"), int(number(head, "sense"))
+        ),
+        "release": lambda: _demanded(ports.orientation, *_UNORIENTED).release(),
         "write": lambda: ports.io.write(text(head, "name"), on),
         "safe": ports.io.safe,
-        "arm": lambda: _arm(ports),
+        "arm": lambda: _demanded(ports.touch, *_NO_TOUCH).arm(),
     }
     order = acts.get(text(head, "what"))
     if order is None:
@@ -61,40 +71,18 @@ def use_hand(hands: object | None, head: Mapping[str, object]) -> object:
         return use(*values)
     except TypeError as error:
         raise DriverError(
-            Text(
-                "the simulated operator station does not support {name} with {values}",
-                name=name,
-                values=values,
-            ),
+            "the simulated operator station does not support {name} with {values}",
             reason="wrong-values",
+            name=name,
+            values=values,
         ) from error
 
 
-def _hold(ports: MachinePorts, *, on: bool, orient: bool) -> None:
-    if ports.lock is None:
-        raise DriverError("the spindle drive of this machine is not used as the C axis", reason="no-c")
-    ports.lock.hold(on, orient)
-
-
-_UNORIENTED = "this machine's spindle driver cannot orient the spindle to an angle"
-
-
-def _orient(ports: MachinePorts, angle: float, sense: int) -> None:
-    if ports.orientation is None:
-        raise DriverError(_UNORIENTED, reason="no-orientation")
-    ports.orientation.orient(angle, sense)
-
-
-def _release(ports: MachinePorts) -> None:
-    if ports.orientation is None:
-        raise DriverError(_UNORIENTED, reason="no-orientation")
-    ports.orientation.release()
-
-
-def _arm(ports: MachinePorts) -> None:
-    if ports.touch is None:
-        raise DriverError("this driver cannot capture the axis position at a touch signal", reason="no-touch")
-    ports.touch.arm()
+def _demanded(part: _Part | None, missing: str, reason: str) -> _Part:
+    """Return an optional part of the machine. Raises DriverError with why it is ``missing``."""
+    if part is None:
+        raise DriverError(missing, reason=reason)
+    return part
 
 
 def _how(word: str) -> Stop:
@@ -102,8 +90,7 @@ def _how(word: str) -> Stop:
         return Stop(word)
     except ValueError as error:
         raise DriverError(
-            Text("the driver host does not recognize the stop command '{word}'", word=word),
-            reason="unknown-stop",
+            "the driver host does not recognize the stop command '{word}'", reason="unknown-stop", word=word
         ) from error
 
 
@@ -461,9 +448,8 @@ class Feeder:
         return Message({}, np.array([*p, *v]))
 
     def _mesh(self, message: Message) -> Message:
-        if self._ports.gear is None:
-            raise DriverError("this driver cannot synchronize the axes with the spindle", reason="no-gear")
-        self._ports.gear.mesh(cam_of(message, len(self._ports.axes.axes)))
+        gear = _demanded(self._ports.gear, *_NO_GEAR)
+        gear.mesh(cam_of(message, len(self._ports.axes.axes)))
         return _value(0.0)
 
     def _act(self, message: Message) -> Message:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.message import Message
 from core.ports import AxisSample, DriverError, Segments, Stop
 from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_controller import Controller
 from drivers.grblhal.grblhal_wire import Wire
-from drivers.reopening import Opening
+from drivers.waiting import Opening
 
 _REPORTED = 0.002  # mm between where a block has ended and a report, which has three decimals
 _STEPS = 100  # setting, steps in a millimetre
@@ -83,8 +82,7 @@ class GrblAxes:
         """The control's own leave to move; raises DriverError while a fault stands."""
         if on and self._c.fault:
             raise DriverError(
-                Message("the controller stays locked: {fault}; press Reset first", fault=self._c.fault),
-                "no-power",
+                "the controller stays locked: {fault}; press Reset first", "no-power", fault=self._c.fault
             )
         self._blocks.powered = on
 
@@ -99,14 +97,12 @@ class GrblAxes:
         axes = {each.name: each for each in self._c.config.axes}
         if axis not in axes or not axes[axis].wired:
             raise DriverError(
-                Message("the controller does not have an axis {axis} to home", axis=f"{axis!r}"),
-                reason="no-axis",
+                "the controller does not have an axis {axis} to home", reason="no-axis", axis=f"{axis!r}"
             )
         self._blocks.demand_power()
         if self._blocks.hindrance() and self._c.alarm == 0:
             raise DriverError(
-                Message("{axis} cannot home: {hindrance}", axis=axis, hindrance=self._blocks.hindrance()),
-                "homing",
+                "{axis} cannot home: {hindrance}", "homing", axis=axis, hindrance=self._blocks.hindrance()
             )
         self._known[axis], self._homing = False, axis
         self._c.trusted = True

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from core.message import Message
 from core.ports import BlockOp, BlockState, DriverError, ThreadOp, code_of
 from drivers.grblhal import grblhal_codes, grblhal_scripts
+from drivers.grblhal.grblhal_codes import line_number, line_of
 from drivers.grblhal.grblhal_config import GrblAxis
 from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_feed_hold import Holds
-from drivers.grblhal.grblhal_gcode import line_number, line_of
-from drivers.grblhal.grblhal_jog import Jogs
-from drivers.grblhal.grblhal_overrides import Overrides
+from drivers.grblhal.grblhal_operator import Holds, Jogs, Overrides
 from drivers.grblhal.grblhal_report import Report
+from drivers.port_parts import demand_power
 
 AHEAD = 0.4  # s of motion beyond the block under way: so long it runs on when the host is lost
 _ABORT = "abort"
@@ -168,8 +166,7 @@ class GrblBlocks:
 
     def demand_power(self) -> None:
         """Raises DriverError while there is no leave to move."""
-        if not self.powered:
-            raise DriverError("the drives are off; switch them on first", "power-lost")
+        demand_power("", self.powered)
 
     # --- inside -------------------------------------------------------------------------------------------
 
@@ -192,8 +189,7 @@ class GrblBlocks:
             raise DriverError(why, code_of(why, "controller-refuses"))  # the cause, and no more than that
         if why:
             raise DriverError(
-                Message("the controller does not accept blocks: {why}", why=why),
-                code_of(why, "controller-refuses"),
+                "the controller does not accept blocks: {why}", code_of(why, "controller-refuses"), why=why
             )
         self.demand_power()
 

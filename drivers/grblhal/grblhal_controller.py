@@ -9,15 +9,13 @@ import re
 from collections import deque
 from collections.abc import Callable
 
-from core.message import Message
 from core.ports import Clock, DriverError, Fault, FaultCode, code_of
 from drivers.grblhal import grblhal_codes
-from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig
-from drivers.grblhal.grblhal_dialogue import Ask, Runner, Script, Stream
-from drivers.grblhal.grblhal_report import Identity, Report, read_report
-from drivers.grblhal.grblhal_waits import longest_wait
-from drivers.grblhal.grblhal_wire import Wire, WireLostError
-from drivers.reopening import Opening
+from drivers.grblhal.grblhal_config import GrblConfig
+from drivers.grblhal.grblhal_report import Report, read_report
+from drivers.grblhal.grblhal_reported import ReportedState
+from drivers.grblhal.grblhal_wire import Ask, Runner, Script, Stream, Wire, WireLostError
+from drivers.waiting import Opening
 
 _LINE = 1024  # bytes; the controller sends no longer line
 _RUNNING, _RESTING, _ASKING = 0.1, 0.2, 0.05  # s between two questions for a report
@@ -33,37 +31,13 @@ _IDLERS = frozenset(("Check", "Sleep", "Tool"))  # states in which it runs no pr
 _HURRIED = 0.02  # s, while a tool is touched off
 _COALESCED = 0.5  # s; two questions so far apart are never answered by one report
 _LISTENING = 0.1  # s; of a longer pause of this computer no more counts as the controller's silence
-_CONFIRMED = 0.25  # s at full speed, between a report that leaps and the one that confirms it
-_LEAP = 1.0  # mm beyond what the slides can do between two reports
-_VARIABLE = "V"  # among the letters of its build
-_HOMING, _HOMED = 22, 1  # setting, and the bit of it that switches homing on
 
 
-class Controller:
-    """One wire, what is asked of its other end, and what that has told.
-
-    Reports carry only a part each: what they have told is kept from one to the next.
-    """
+class Controller(ReportedState):
+    """One wire, what is asked of its other end, and what that has told."""
 
     def __init__(self, config: GrblConfig, wire: Wire, clock: Clock) -> None:
-        self.config = config
-        self.clock = clock
-        self.identity: Identity | None = None
-        self.settings: dict[int, str] = {}  # as read at the connection
-        self.report: Report | None = None  # the last one
-        self._before_alarm: Report | None = None  # the last one of a controller without an alarm
-        self.reports = self.fulls = 0  # how many have come
-        self.heard_at = clock.now()  # when the last one was read
-        self._made_after = clock.now()  # and the earliest at which it can have been made
-        self.position: dict[str, float] = {}  # mm by axis letter, X a radius, from home
-        self.origin: dict[str, float] = {}  # where home lies in the controller's own frame
-        self.homed: tuple[int, ...] | None = None  # as it reports it: all axes, and a bit for each
-        self.offset: tuple[float, ...] = ()
-        self.overrides: tuple[int, ...] | None = None
-        self.overrides_told = 0  # how often they have been in a report
-        self.accessories: tuple[float, str] | None = None  # when they were told, and what is on
-        self.diameter: bool | None = None
-        self.most_free = 0  # blocks of its planner when that is empty
+        super().__init__(config, clock)
         self.stream = Stream(self._write)
         self.banners = 0  # how many resets have been told
         self.fault: Fault | str = ""
@@ -79,7 +53,6 @@ class Controller:
         self.runner = Runner()
         self.expected = False  # a reset of our own
         self.doubtful = False  # something damaged has been heard: look at all of it
-        self.asked: deque[float] = deque()  # questions for a report that are open
         self.owed_since: float | None = None  # since when a report is owed, on the clock of ``listened``
         self._looked_at = clock.now()
         self.listened = 0.0  # s in which somebody has listened: silence is told by these
@@ -182,11 +155,6 @@ class Controller:
         return self.runner.busy
 
     @property
-    def state(self) -> str:
-        """As the last report says it; nothing before the first."""
-        return self.report.state if self.report is not None else ""
-
-    @property
     def hindrance(self) -> str:
         """Why nothing may be begun now; empty when it may."""
         if self.fault:
@@ -203,13 +171,13 @@ class Controller:
         """Bytes that bypass every buffer."""
         self._write(bytes(codes_))
 
-    def fail(self, why: str, code: FaultCode) -> None:
+    def fail(self, why: str, code: FaultCode, **values: object) -> None:
         """Something is wrong: no more lines, what moves comes to rest, and the operator has to clear it.
 
         A jog knows no feed hold, and everything else no jog cancel.
         """
         if not self.fault:
-            self.fault = Fault(why, code)
+            self.fault = Fault(why, code, **values)
         self.ready = False
         self.stream.waiting.clear()
         if not self.lost and self.report is not None and self.report.moves and self.alarm == 0:
@@ -264,101 +232,11 @@ class Controller:
             return
         if moving or not self.stream.quiet or len(self._garbage) >= _GARBAGE:
             self.fail(
-                Message(
-                    "interference on the line to the controller: {line} is not a valid response",
-                    line=f"{line!r}",
-                ),
+                "interference on the line to the controller: {line} is not a valid response",
                 "controller-silent",
+                line=f"{line!r}",
             )
             self.doubtful = True
-
-    # --- what its reports have told ------------------------------------------------------------------
-
-    def keep(self, report: Report) -> None:
-        """Take over what a report carries."""
-        self.reports, self.fulls = self.reports + 1, self.fulls + report.full
-        if report.diameter is not None:
-            self.diameter = report.diameter
-        self.offset = report.offset if report.offset is not None else self.offset
-        if report.overrides is not None:
-            self.overrides, self.overrides_told = report.overrides, self.overrides_told + 1
-        if report.accessories is not None or report.overrides is not None:
-            self.accessories = self.clock.now(), report.accessories or ""  # left out where nothing is on
-        self.homed = report.homed if report.homed is not None else self.homed
-        if report.state == "Idle" and report.free is not None:
-            self.most_free = max(self.most_free, report.free)
-        if not self.diameter:
-            self.position = self._places(report) or self.position
-        self._made_after = self.asked.popleft() if self.asked else self.heard_at
-        self.report, self.heard_at = report, self.clock.now()
-        self._before_alarm = self._before_alarm if report.state == "Alarm" else report
-
-    def plausible(self, report: Report) -> bool:
-        """No slide leaps further than it can have gone since the last report was made.
-
-        That may be long before it was read: a computer that looks away finds an old report on the wire.
-        """
-        if self.report is None or self.diameter:
-            return True
-        passed = self.clock.now() - self._made_after
-        places = self._places(report)
-        for axis in self.config.axes:
-            before, now = self.position.get(axis.name), places.get(axis.name)
-            if before is None or now is None:
-                continue
-            if abs(now - before) > 1.5 * axis.vmax * passed + _LEAP:
-                return False
-        return True
-
-    @property
-    def letters(self) -> str:
-        """The controller's axes in the order of its reports and settings."""
-        return self.identity.axes if self.identity is not None else "XYZ"
-
-    def has_pin(self, letter: str) -> bool:
-        """Whether its board has an input of this letter, as far as it tells."""
-        return self.identity is None or self.identity.has_pin(letter)
-
-    @property
-    def varies(self) -> bool:
-        """Whether its firmware has a spindle of variable speed."""
-        return self.identity is not None and _VARIABLE in self.identity.letters
-
-    @property
-    def wired(self) -> tuple[GrblAxis, ...]:
-        """The machine file's axes that the controller moves."""
-        return tuple(axis for axis in self.config.axes if axis.wired)
-
-    def figure(self, first: int, letter: str) -> float:
-        """A setting that there is once for each axis, from ``first`` on; 0 where it is not told."""
-        index = self.letters.find(letter)
-        return float(self.settings.get(first + index, "0")) if index >= 0 else 0.0
-
-    def speed_of(self, letter: str) -> float:
-        """The controller's own greatest speed of an axis, mm/s; 0 where it does not tell."""
-        return self.figure(110, letter) / 60.0
-
-    def wait_of(self, line: str) -> float:
-        """Return the seconds that the controller may wait for spindle or coolant in a line."""
-        return longest_wait(line, self.settings)
-
-    @property
-    def homing(self) -> int:
-        """How the controller homes, its setting $22: bit 0 at all, bit 1 one axis alone."""
-        return int(float(self.settings.get(_HOMING, "0")))
-
-    def is_homed(self, letter: str) -> bool | None:
-        """Whether the controller itself has homed an axis; None where homing is off in it."""
-        index = self.letters.find(letter)
-        if not self.homing & _HOMED or self.homed is None or index < 0:
-            return None
-        if len(self.homed) > 1:
-            return bool(self.homed[1] >> index & 1)
-        return bool(self.homed[0])
-
-    def _places(self, report: Report) -> dict[str, float]:
-        raw = zip(self.letters, report.position or (), strict=False)
-        return {letter: place - self.origin.get(letter, 0.0) for letter, place in raw}
 
     # --- lines that have come ------------------------------------------------------------------------
 
@@ -418,17 +296,6 @@ class Controller:
         self._mind(report)
         self.on_report(report)
 
-    def _confirms(self, report: Report, leapt: Report) -> bool:
-        """Whether this one goes on from where that one leapt to: a controller that was late itself makes up
-        for it, and stands where it says.
-        """
-        before, now = self._places(leapt), self._places(report)
-        near = ((axis, now.get(axis.name), before.get(axis.name)) for axis in self.config.axes)
-        return all(
-            new is None or old is None or abs(new - old) <= _CONFIRMED * axis.vmax + _LEAP
-            for axis, new, old in near
-        )
-
     def _mind(self, report: Report) -> None:
         """States that say that something has happened, however that was missed."""
         if report.state != "Alarm":
@@ -442,19 +309,15 @@ class Controller:
             self.alarm, self.ready = number, False
         elif report.state == "Door":
             self.fail(
-                Message(
-                    "{door}; spindle and coolant are off. Close the door, then press Reset",
-                    door=grblhal_codes.DOOR,
-                ),
+                "{door}; spindle and coolant are off. Close the door, then press Reset",
                 "door",
+                door=grblhal_codes.DOOR,
             )
         elif report.state in _IDLERS:
             self.fail(
-                Message(
-                    "the controller is in state {state} and cannot run a program from TurnDesk",
-                    state=report.state,
-                ),
+                "the controller is in state {state} and cannot run a program from TurnDesk",
                 "controller-modes",
+                state=report.state,
             )
 
     # --- the wire, and what is watched ---------------------------------------------------------------
@@ -473,9 +336,7 @@ class Controller:
             wire = opening.take()
         except DriverError as error:
             self._opening = None
-            self.fail(
-                Message("the connection to the controller is lost: {error}", error=error), "controller-lost"
-            )
+            self.fail("the connection to the controller is lost: {error}", "controller-lost", error=error)
             return
         if wire is None:
             return
@@ -492,12 +353,10 @@ class Controller:
         self.lost = self.mute = True
         self.runner.drop()
         self.fail(
-            Message(
-                "the connection to the controller is lost: {error}; the controller finishes its "
-                "buffered moves, then stops",
-                error=error,
-            ),
+            "the connection to the controller is lost: {error}; the controller finishes its "
+            "buffered moves, then stops",
             "controller-lost",
+            error=error,
         )
         self.void()
 
@@ -563,8 +422,7 @@ class Controller:
         patience = _INDEX if self.index_wait else _UNANSWERED + self.wait_of(first.line)
         if self.listened - max(first.sent_at, self.answered_at) > patience:
             self.fail(
-                Message(
-                    "no response to {line}; there may be interference on the line", line=f"{first.line!r}"
-                ),
+                "no response to {line}; there may be interference on the line",
                 "controller-silent",
+                line=f"{first.line!r}",
             )

@@ -11,12 +11,11 @@ from drivers.grblhal.grblhal_axes import GrblAxes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE, GrblConfig
 from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_probe import GrblProbe
 from drivers.grblhal.grblhal_spindle import GrblEncoder, GrblSpindle
-from drivers.grblhal.grblhal_terminals import LETTERS, GrblInputs, GrblIO
+from drivers.grblhal.grblhal_terminals import LETTERS, GrblInputs, GrblIO, GrblProbe
 from drivers.grblhal.grblhal_wire import Wire, open_wire
 from drivers.operator_station import PanelStation
-from drivers.reopening import Opening
+from drivers.waiting import Opening
 
 _ROUND = 0.005  # s between two looks while it connects
 _CONNECTING = 15.0

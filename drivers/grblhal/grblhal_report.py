@@ -7,7 +7,6 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
-from core.message import Message
 from core.ports import DriverError
 
 _NUMBER = re.compile(r"-?\d+(\.\d+)?")
@@ -169,12 +168,10 @@ def read_identity(lines: Iterable[str]) -> Identity:
     blocks, buffer = int(sizes[0]), int(sizes[1])
     if buffer < _LEAST_BUFFER:
         raise DriverError(
-            Message(
-                "the controller's buffer of {buffer} bytes is too small; {least_buffer} are needed",
-                buffer=buffer,
-                least_buffer=_LEAST_BUFFER,
-            ),
+            "the controller's buffer of {buffer} bytes is too small; {least_buffer} are needed",
             reason="small-buffer",
+            buffer=buffer,
+            least_buffer=_LEAST_BUFFER,
         )
     axes = told.get("AXS", "3:XYZ").partition(":")[2]
     options = frozenset(told.get("NEWOPT", "").split(",")) - {""}

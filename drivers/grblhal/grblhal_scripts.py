@@ -9,12 +9,11 @@ import math
 from collections.abc import Callable, Generator, Mapping
 
 from core.message import Message
-from core.ports import DriverError
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
 from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_dialogue import Ask, Script, ScriptError, Step
 from drivers.grblhal.grblhal_report import Identity, read_identity
+from drivers.grblhal.grblhal_wire import Ask, Script, ScriptError, Step
 
 # --- The pieces that scripts are made of: one line and its answer, a full report, the modes.
 
@@ -90,7 +89,7 @@ def modes(c: Controller) -> Script:
             if missing
             else Message("the controller stays in mode {saved}", saved=" ".join(kept))
         )
-        raise ScriptError(Message(template, wrong=wrong, details=" ".join(told)))
+        raise ScriptError(template, wrong=wrong, details=" ".join(told))
 
 
 def _stem(word: str) -> str:
@@ -109,24 +108,20 @@ def demand(c: Controller, identity: Identity) -> None:
     missing = [axis.name for axis in c.wired if axis.name not in identity.axes]
     if missing:
         raise ScriptError(
-            Message(
-                "the controller has axes {axes}, but not {missing}",
-                axes=identity.axes,
-                missing=", ".join(missing),
-            )
+            "the controller has axes {axes}, but not {missing}",
+            axes=identity.axes,
+            missing=", ".join(missing),
         )
     estop = c.config.inputs.get(ESTOP)
     if estop is not None and not identity.has_pin(estop.terminal.removeprefix("pn.")):
         raise ScriptError(
-            Message(
-                "the controller's board does not have the input {terminal} for the E-stop: it reports "
-                "[SIGNALS:{signals}]. Use a board or firmware that has this input; if the E-stop only cuts "
-                'the power, write io.in.estop = {{ at = "{hardware}" }}',
-                terminal=estop.terminal,
-                signals=identity.signals,
-                hardware=HARDWARE,
-            ),
+            "the controller's board does not have the input {terminal} for the E-stop: it reports "
+            "[SIGNALS:{signals}]. Use a board or firmware that has this input; if the E-stop only cuts "
+            'the power, write io.in.estop = {{ at = "{hardware}" }}',
             "controller-estop",
+            terminal=estop.terminal,
+            signals=identity.signals,
+            hardware=HARDWARE,
         )
 
 
@@ -223,12 +218,10 @@ def settings(c: Controller) -> Script:
     for n, value in wrong.items():
         if not same(there.get(n), value):
             raise ScriptError(
-                Message(
-                    "${number}={written} was written, but the setting reads back as {number2}",
-                    number=n,
-                    written=written(value),
-                    number2=there.get(n, "nothing"),
-                )
+                "${number}={written} was written, but the setting reads back as {number2}",
+                number=n,
+                written=written(value),
+                number2=there.get(n, "nothing"),
             )
 
 
@@ -311,10 +304,7 @@ def _set_up(c: Controller) -> Script:
     if c.report is not None and c.report.state not in {"Idle", "Alarm"}:
         yield from stop(c)
     yield from fresh(c)
-    try:
-        identity = read_identity((yield from asked(c, "$I")))
-    except DriverError as error:
-        raise ScriptError(str(error), error.code) from error
+    identity = read_identity((yield from asked(c, "$I")))
     demand(c, identity)
     c.identity = identity
     c.stream.use(c.identity.buffer)
@@ -365,20 +355,15 @@ def verify(c: Controller) -> Script:
         yield from full_report(c)
     if any(abs(offset) > 1e-9 for offset in c.offset):
         raise ScriptError(
-            Message(
-                "the controller applies offsets {offset}, but TurnDesk sends blocks in machine coordinates",
-                offset=c.offset,
-            ),
+            "the controller applies offsets {offset}, but TurnDesk sends blocks in machine coordinates",
             "controller-modes",
+            offset=c.offset,
         )
     if c.diameter:
         raise ScriptError("X is in diameter mode (D:1) although G8 is active", "controller-modes")
     if c.report is None or c.report.state not in {"Idle", "Jog"}:
         raise ScriptError(
-            Message(
-                "the controller is in state {state}, not Idle",
-                state=c.report.state if c.report else "unknown",
-            )
+            "the controller is in state {state}, not Idle", state=c.report.state if c.report else "unknown"
         )
     c.ready = c.fault == ""
 
@@ -414,9 +399,7 @@ def recover(c: Controller) -> Script:
     yield from reset(c)
     yield from full_report(c)
     if _door(c):
-        raise ScriptError(
-            Message("{door}: close the door, then press Reset", door=grblhal_codes.DOOR), "door"
-        )
+        raise ScriptError("{door}: close the door, then press Reset", "door", door=grblhal_codes.DOOR)
     number = _alarm_of(c)
     if number == grblhal_codes.HOMING_REQUIRED:
         return

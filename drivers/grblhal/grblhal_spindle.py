@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from core.message import Message
 from core.ports import DriverError
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
+from drivers.grblhal.grblhal_codes import number
 from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_dialogue import Ask
-from drivers.grblhal.grblhal_gcode import number
-from drivers.grblhal.grblhal_overrides import LEAST, MOST
+from drivers.grblhal.grblhal_operator import LEAST, MOST
+from drivers.grblhal.grblhal_wire import Ask
+from drivers.port_parts import demand_spindle
 
 _OBEYS = 1.0  # s for a spindle that is stopped in a hold to be told as off
 _CLIPS = 2.0  # s in which report, override and S word may tell of different moments
@@ -84,20 +84,16 @@ class GrblSpindle:
         """Signed rpm, at most the machine's; 0 stops. Raises DriverError above the controller's own limit,
         beyond which it would turn slower than the program has it, and while it takes no lines.
         """
-        if rpm and self._blocks.hindrance():
-            raise DriverError(
-                Message("the spindle stays off: {problem}", problem=self._blocks.hindrance()), "spindle-off"
-            )
+        if rpm:
+            demand_spindle(self._blocks.hindrance())
         rpm = math.copysign(min(abs(rpm), self._c.config.rpm_max), rpm)
         highest = self.highest
         if highest and abs(rpm) > 1.001 * highest:
             raise DriverError(
-                Message(
-                    "spindle: the controller allows {highest} rpm ($30), not {rpm} rpm",
-                    highest=f"{highest:g}",
-                    rpm=f"{abs(rpm):.0f}",
-                ),
+                "spindle: the controller allows {highest} rpm ($30), not {rpm} rpm",
                 "spindle-off",
+                highest=f"{highest:g}",
+                rpm=f"{abs(rpm):.0f}",
             )
         self._wanted = rpm
         self.pump()
@@ -200,14 +196,12 @@ class GrblSpindle:
             self._unlike_since = now
         elif now - self._unlike_since > _CLIPS:
             c.fail(
-                Message(
-                    "the controller runs the spindle at {details} rpm instead of {expected} rpm "
-                    "because the controller limits the speed ($30, $31; a changed setting may take "
-                    "effect only after the controller restarts)",
-                    details=f"{told[1]:g}",
-                    expected=f"{expected:.0f}",
-                ),
+                "the controller runs the spindle at {details} rpm instead of {expected} rpm "
+                "because the controller limits the speed ($30, $31; a changed setting may take "
+                "effect only after the controller restarts)",
                 "controller-refuses",
+                details=f"{told[1]:g}",
+                expected=f"{expected:.0f}",
             )
 
     def _follow(self, base: float) -> None:

@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from core.message import Message
-from core.ports import DriverError
+from core.ports import PROBE, DriverError, Latch
+from drivers.grblhal.grblhal_axes import GrblAxes
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
 from drivers.grblhal.grblhal_controller import Controller
-from drivers.grblhal.grblhal_dialogue import Ask
+from drivers.grblhal.grblhal_report import Report
+from drivers.grblhal.grblhal_wire import Ask
+from drivers.port_parts import FirstTouch, output_of
 
 # --- Inputs: pins come with every report, auxiliary ones are asked for while nothing moves.
 
@@ -136,22 +139,16 @@ class GrblIO:
 
     def write(self, name: str, on: bool) -> None:
         """Raises DriverError for an output that the machine or the controller has not."""
-        if name not in self._wanted:
-            raise DriverError(
-                Message("output {name} is not in the machine file; add it under [io.out]", name=f"{name!r}"),
-                "output",
-            )
+        output_of(name, self._wanted)
         why = self.lacking(name)
         if on and why:
             terminal = self._c.config.outputs[name].terminal
             raise DriverError(
-                Message(
-                    "output {name} ({terminal}) cannot be switched: {why}",
-                    name=name,
-                    terminal=terminal,
-                    why=why,
-                ),
+                "output {name} ({terminal}) cannot be switched: {why}",
                 "output",
+                name=name,
+                terminal=terminal,
+                why=why,
             )
         if self.outputs().get(name, on) is not on:
             self._sent[name] = not on  # whatever it was told before: to be said, as soon as it listens
@@ -229,3 +226,39 @@ class GrblIO:
             if output.terminal in _COOLANT and self._wanted[name]
         ]
         return ["M9", *on]
+
+
+# --- The probe: a report tells its pin and the place at once.
+
+
+_ASKS = 60.0  # s from arming on in which it asks more often
+_BEHIND = 0.5  # s behind a touch in which it still does
+
+
+class GrblProbe(FirstTouch):
+    """Touches by reports that are asked for more often meanwhile.
+
+    G38.2 is not used: it runs to its end when nobody is there any more, where a jog ends with its lease.
+    """
+
+    def __init__(self, controller: Controller, axes: GrblAxes, inputs: GrblInputs) -> None:
+        super().__init__()
+        self._c, self._axes, self._inputs = controller, axes, inputs
+        self._report: Report | None = None
+        self._at = controller.clock.now()  # of the last report that was looked at
+
+    def arm(self) -> None:
+        """Forget what was kept, and look often."""
+        super().arm()
+        self._c.hurry_until = self._c.clock.now() + _ASKS
+
+    def pump(self) -> None:
+        """Once a round, behind the conversation's own."""
+        now, report = self._c.clock.now(), self._c.report
+        if report is self._report or report is None:
+            return
+        late, self._report, self._at = now - self._at, report, now
+        if self._touches(self._inputs.states().get(PROBE, False)):
+            sample = self._axes.sample()
+            self._kept = Latch(sample.t, sample.actual, late)
+            self._c.hurry_until = min(self._c.hurry_until, now + _BEHIND)

@@ -6,16 +6,15 @@ import math
 from collections import deque
 from collections.abc import Callable, Sequence
 
-from core.message import Message
-from core.ports import AxisSample, Cam, DriverError, Fault, Geared, Segments, Stop, at_rest, code_of
+from core.ports import AxisSample, Cam, DriverError, Fault, Geared, Segments, Stop, at_rest
 from drivers.hal.bridge.packets import number
 from drivers.hal.bridge.packets import pieces_of as pieces_told
 from drivers.hal.hal_config import HalConfig
-from drivers.hal.hal_homing import Homing
+from drivers.hal.hal_homing import HalTouch, Homing
 from drivers.hal.hal_link import HalLink, told_fault
-from drivers.hal.hal_touch import HalTouch
+from drivers.port_parts import demand_axis, demand_no_fault, demand_no_homing, demand_power, demand_standstill
 from drivers.setpoint_pieces import Piece
-from drivers.setpoint_queue import Tolerance, check_limits, pieces_of
+from drivers.setpoint_queue import check_limits, pieces_of
 from drivers.spindle_gear import GearedQueue, Motion, Phase, Slides
 
 _PAST = 0.5  # s of setpoints that may still be asked for
@@ -54,14 +53,7 @@ class HalAxes:
         self.axes = tuple(axis.name for axis in config.axes)
         self.commit = config.commit
         self._driven = [n for n, axis in enumerate(config.axes) if axis.pins is not None]
-        slides = Slides(
-            self.axes,
-            tuple(axis.vmax for axis in config.axes),
-            tuple(axis.amax for axis in config.axes),
-            config.commit,
-            Tolerance.of(config.axes),
-        )
-        self.queue = HalQueue(slides, (0.0,) * len(self.axes))
+        self.queue = HalQueue(Slides.of(config.axes, config.commit), (0.0,) * len(self.axes))
         self.zero = [0.0] * len(self.axes)  # where home is, as HAL counts
         self._homed = [axis.absolute or axis.pins is None for axis in config.axes]
         self.homing: Homing | None = None
@@ -216,11 +208,7 @@ class HalAxes:
     def splice(self, segments: Segments) -> None:
         """Queue setpoints. Raises DriverError as the port says, and for what the axes cannot do."""
         self._need_power()
-        if self.homing is not None:
-            raise DriverError(
-                Message("{name} is homing; wait until homing is complete", name=self.homing.name),
-                reason="homing",
-            )
+        demand_no_homing(self.homing.name if self.homing is not None else "")
         self._check(segments)
         self.queue.splice(segments, self._now())
         self._send("splice", pieces_of(segments, len(self.axes)))
@@ -269,14 +257,7 @@ class HalAxes:
             if not self._link.lost:
                 self._link.say("off")
             return
-        if self.fault:
-            raise DriverError(
-                Message(
-                    "the drives stay off because of a fault ({fault}); clear the fault first",
-                    fault=self.fault,
-                ),
-                "no-power",
-            )
+        demand_no_fault(self.fault)
         if self._powered:
             return
         self._order = self._link.say("enable")
@@ -306,21 +287,13 @@ class HalAxes:
 
     def home(self, axis: str) -> None:
         """Look for home; ``sample().homed`` says when it is found. Raises DriverError."""
-        if axis not in self.axes:
-            raise DriverError(Message("axis {axis} does not exist", axis=f"{axis!r}"), reason="no-axis")
+        demand_axis(axis, self.axes)
         index = self.axes.index(axis)
         figures = self.config.axes[index]
         if figures.absolute or figures.pins is None:
             return
         self._need_power()
-        if self.sample().moving:
-            raise DriverError(
-                Message(
-                    "{axis} cannot home while an axis is moving; wait until all axes are at rest", axis=axis
-                ),
-                "homing",
-                reason="axis-moves",
-            )
+        demand_standstill(axis, self.sample().moving)
         self._homed[index] = False
         self.homing = Homing(figures, index, self)
 
@@ -418,12 +391,7 @@ class HalAxes:
         return self._on and self._link.told.get("powered") is True and not self.fault
 
     def _need_power(self) -> None:
-        if self.fault:
-            raise DriverError(
-                Message("{fault}; clear the fault first", fault=self.fault), code_of(self.fault, "axis")
-            )
-        if not self._powered:
-            raise DriverError("the drives are off; switch them on first", "power-lost")
+        demand_power(self.fault, self._powered)
 
     def _check(self, segments: Segments) -> None:
         check_limits(segments, self.config.axes, self._homed, self._actual)

@@ -378,12 +378,10 @@ def session_text(machine: str, border: Border, thread: str, source: str) -> str:
     place = next((n for n, line in enumerate(lines) if line.strip().lower().startswith(MARK)), None)
     if place is None:
         raise DriverError(
-            Message(
-                "{source}: the line {mark} is missing; put it after the addf commands that read from the "
-                "machine and before the addf commands that drive the machine",
-                source=source,
-                mark=MARK,
-            )
+            "{source}: the line {mark} is missing; put it after the addf commands that read from the "
+            "machine and before the addf commands that drive the machine",
+            source=source,
+            mark=MARK,
         )
     modules = {component: list(names) for component, names in border.modules.items()}
     before = [_together(line, modules) for line in lines[:place]]

@@ -1,4 +1,7 @@
-"""Homing on HAL: onto a switch, slowly off it again, and where the encoder has one to its index."""
+"""Homing and probing on HAL.
+
+An axis goes onto its switch, slowly off it again, and where the encoder has one to its index.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +9,10 @@ import math
 from enum import Enum
 from typing import Protocol
 
-from core.message import Message
-from core.ports import DriverError, Segments, at_rest
+from core.ports import DriverError, Latch, Segments, at_rest
 from drivers.hal.hal_config import HalAxis
 from drivers.hal.hal_table import HERE, NEEDS
+from drivers.port_parts import FirstTouch
 from drivers.setpoint_queue import straight
 
 _DOWN = frozenset((1, 17, 5, 21, 33))  # methods that look for their mark towards lower positions
@@ -179,6 +182,20 @@ class Homing:
 
     def _failed(self, why: str, reason: str) -> DriverError:
         self._slides.let_limit(self.name, False)
-        return DriverError(
-            Message("{name}: homing failed: {why}", name=self.name, why=why), "homing", reason=reason
-        )
+        return DriverError("{name}: homing failed: {why}", "homing", reason=reason, name=self.name, why=why)
+
+
+# --- The probe: HAL samples its input and the places of the axes in one period.
+
+
+class HalTouch(FirstTouch):
+    """Touches by HAL's samples."""
+
+    def __init__(self, period: float, *, active_low: bool) -> None:
+        super().__init__()
+        self._period, self._low = period, active_low
+
+    def see(self, t: float, place: tuple[float, ...], raw: bool) -> None:
+        """One period of the servo thread: its input, and where the slides were."""
+        if self._touches(raw is not self._low):
+            self._kept = Latch(t, place, self._period)

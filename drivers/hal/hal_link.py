@@ -7,10 +7,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import get_args
 
-from core.message import Message
 from core.ports import Clock, DriverError, Fault, FaultCode
-from drivers.hal.bridge.hal_bridge import BridgeConfig
-from drivers.hal.bridge.packets import Head, number, pack, packets_of, text
+from drivers.hal.bridge.packets import BridgeConfig, Head, number, pack, packets_of, text
 from drivers.hal.hal_session import BridgeLink
 from drivers.setpoint_pieces import Piece
 
@@ -105,8 +103,7 @@ class HalLink:
         if self.lost or silent <= _SILENT:
             return self.lost
         return Fault(
-            Message("the HAL bridge has not sent a report for {silent} s", silent=f"{silent:.2f}"),
-            "hal-silent",
+            "the HAL bridge has not sent a report for {silent} s", "hal-silent", silent=f"{silent:.2f}"
         )
 
     @property

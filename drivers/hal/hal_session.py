@@ -1,15 +1,23 @@
-"""One session of HAL: halrun with the machine's file and our part in it, and a socket to the bridge."""
+"""One session of HAL: halrun with the machine's file and our part in it, and a socket to the bridge.
+
+A folder of a session is locked by whoever runs it, so one without a lock has nobody any more: its control was
+killed. Its bridge has seen the end of the control and takes the machine down in good order; before that no
+other session can begin.
+"""
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
 import select
 import shutil
 import socket
+import stat
 import subprocess
+import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -17,11 +25,69 @@ from typing import NamedTuple, Protocol
 
 from core.message import Message
 from core.ports import DriverError
-from drivers.hal.bridge.hal_bridge import BridgeAxis, BridgeConfig
-from drivers.hal.bridge.packets import Head, number, pack, text, unpack
+from drivers.hal.bridge.packets import BridgeAxis, BridgeConfig, Head, number, pack, text, unpack
 from drivers.hal.hal_border import BIT, BRIDGE, Border, border_of, bridge_nets, columns, session_text
 from drivers.hal.hal_config import HalConfig
-from drivers.hal.hal_leftovers import clear_away, new_folder
+
+# --- Folders of sessions, and what one has left behind whose control was killed.
+
+
+PREFIX = "turndesk-hal-"
+_LOCK = "session.lock"
+
+
+def new_folder() -> tuple[Path, int]:
+    """A folder for one session, and its lock: the folder counts as used until that is closed."""
+    folder = Path(tempfile.mkdtemp(prefix=PREFIX))
+    lock = os.open(folder / _LOCK, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o600)
+    fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    return folder, lock
+
+
+def clear_away(goes_on: Callable[[], bool]) -> None:
+    """Remove the folders of sessions whose control has gone, each once its processes have ended.
+
+    ``goes_on`` is asked between two looks, and waits: what still runs when it says no is left as it is.
+    """
+    for folder in _deserted():
+        while _runs(folder) and goes_on():
+            pass
+        if not _runs(folder):
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def _deserted() -> Iterator[Path]:
+    for folder in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
+        with suppress(OSError):  # somebody else's, or just removed
+            found = folder.lstat()
+            if stat.S_ISDIR(found.st_mode) and os.geteuid() in {0, found.st_uid} and not _locked(folder):
+                yield folder
+
+
+def _locked(folder: Path) -> bool:
+    """Raises OSError for a folder without a lock: it is being made, or none of ours."""
+    lock = os.open(folder / _LOCK, os.O_RDWR | os.O_NOFOLLOW | os.O_CLOEXEC)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(lock)
+    return False
+
+
+def _runs(folder: Path) -> bool:
+    """Whether halrun, the bridge or anything else that was started with this folder is still there."""
+    name = os.fsencode(str(folder))
+    for told in Path("/proc").glob("[0-9]*/cmdline"):
+        with suppress(OSError):
+            if name in told.read_bytes():
+                return True
+    return False
+
+
+# --- The session.
+
 
 PYTHON = "/usr/bin/python3"
 _SCRIPT = Path(__file__).parent / "bridge" / "bridge_process.py"
@@ -154,7 +220,7 @@ class HalSession:
             machine = config.file.read_text(encoding="utf-8")
         except (OSError, UnicodeError) as error:
             raise DriverError(
-                Message("{file}: the HAL file cannot be read: {error}", file=config.file, error=error)
+                "{file}: the HAL file cannot be read: {error}", file=config.file, error=error
             ) from error
         folder, session = self._folder, session_text(machine, border, config.table.thread, str(config.file))
         (folder / "bridge.json").write_text(
@@ -182,7 +248,7 @@ class HalSession:
         while True:
             head = self._first_words(deadline)
             if why := text(head, "error"):
-                raise DriverError(Message("HAL: {why}", why=why), "hal-setup")
+                raise DriverError("HAL: {why}", "hal-setup", why=why)
             if isinstance(said := head.get("verdicts"), list):
                 self.verdicts = tuple(Verdict(*each) for each in said)
                 wrong = [each for each in self.verdicts if each.trouble]
@@ -258,7 +324,7 @@ class HalSession:
             raise DriverError("the HAL bridge no longer accepts data", "hal-silent") from error
         except OSError as error:
             raise DriverError(
-                Message("the HAL bridge has ended ({cause})", cause=error.strerror), "hal-bridge"
+                "the HAL bridge has ended ({cause})", "hal-bridge", cause=error.strerror
             ) from error
 
     def receive(self) -> Iterator[tuple[Head, Sequence[float]]]:

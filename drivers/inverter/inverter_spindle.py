@@ -11,11 +11,11 @@ from core.ports import Clock, DriverError, Fault
 from drivers.inverter.delta_vfdb import DeltaVfdB
 from drivers.inverter.hitachi_wj200 import HitachiWj200
 from drivers.inverter.huanyang_hy import HuanyangHy
-from drivers.inverter.inverter_attendant import DEAD, Attendant
+from drivers.inverter.inverter_attendant import DEAD, PRESS, Agreement, Attendant
 from drivers.inverter.inverter_family import Family
-from drivers.inverter.inverter_obedience import PRESS, Agreement
 from drivers.inverter.inverter_table import InverterTable
 from drivers.inverter.modbus_rtu import Modbus
+from drivers.port_parts import demand_estop_released, demand_spindle
 from drivers.serial_line import Wire
 
 
@@ -60,13 +60,8 @@ class InverterSpindle:
     def run(self, rpm: float) -> None:
         """Turn at ``rpm``, signed. Raises DriverError with a fault or in E-stop, unless asked to stop."""
         if rpm:
-            if self._estop():
-                raise DriverError(
-                    "the spindle stays off while the E-stop is pressed; release the E-stop first",
-                    "spindle-off",
-                )
-            if why := self.fault() or self._lost():
-                raise DriverError(Message("the spindle stays off: {problem}", problem=why), "spindle-off")
+            demand_estop_released(self._estop())
+            demand_spindle(self.fault() or self._lost())
             # One that turns goes on: a surface speed that is refused for a lost answer costs the part.
             if not (self._attendant.want or self._attendant.warm):
                 raise DriverError(
@@ -138,17 +133,13 @@ class InverterSpindle:
             attendant.want = 0.0
             return self._unmeasured
         if not self._alive():
-            return Fault(
-                Message("TurnDesk no longer monitors the inverter; {press}", press=PRESS), "inverter-silent"
-            )
+            return Fault("TurnDesk no longer monitors the inverter; {press}", "inverter-silent", press=PRESS)
         if attendant.silent_for > DEAD:
             return Fault(
-                Message(
-                    "no response from the inverter for {dead} s; {press}",
-                    dead=f"{DEAD:g}",
-                    press=PRESS,
-                ),
+                "no response from the inverter for {dead} s; {press}",
                 "inverter-silent",
+                dead=f"{DEAD:g}",
+                press=PRESS,
             )
         return ""
 

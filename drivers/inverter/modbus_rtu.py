@@ -5,7 +5,6 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Sequence
 
-from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.serial_line import Wire
 
@@ -200,8 +199,10 @@ class Modbus:
         if frame[1] & FAILED:
             why = _EXCEPTIONS.get(frame[2], f"exception {frame[2]}")
             raise RefusedError(
-                Message("the inverter rejects Modbus function {pdu}: {why}", pdu=f"{pdu[0]:02X}", why=why),
+                "the inverter rejects Modbus function {pdu}: {why}",
                 reason=f"exception-{frame[2]}",
+                pdu=f"{pdu[0]:02X}",
+                why=why,
             )
         return frame
 
@@ -216,12 +217,10 @@ class Modbus:
         self._failed()
         if come:
             raise NoAnswerError(
-                Message(
-                    "the inverter sent {come_count} bytes but not a valid response; check the line "
-                    "settings and id",
-                    come_count=len(come),
-                ),
+                "the inverter sent {come_count} bytes but not a valid response; check the line "
+                "settings and id",
                 reason="garbled",
+                come_count=len(come),
             )
         raise NoAnswerError(
             "the inverter does not respond; check the cable, id and line settings", reason="silent"

@@ -1,20 +1,36 @@
-"""The adapter: agents come in, every agent gets the whole state and then what changes."""
+"""The adapter of MTConnect, and the device model (``Devices.xml``) with the items that it tells.
+
+Agents come in; every agent gets the whole state and then what changes. Millimetres are sent and
+``nativeUnits`` is left out, so the agent multiplies nothing.
+"""
 
 from __future__ import annotations
 
 import logging
+import re
 import selectors
 import socket
 import threading
+import uuid
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
 
 from core.ports import Clock, DriverError
-from drivers.mtconnect.agent_links import AgentLink, GoneError, LostError, accepted, listening
-from drivers.mtconnect.mtconnect_items import DataItem
+from drivers.mtconnect.agent_links import (
+    AgentLink,
+    AgentsState,
+    GoneError,
+    LostError,
+    Report,
+    accepted,
+    listening,
+    stamp,
+)
+from drivers.mtconnect.mtconnect_items import Component, DataItem
 from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import AgentsState, Report, stamp
 
 LOOK = 0.1  # s between two looks at the machine
 MOST = 8  # agents at a time
@@ -217,3 +233,82 @@ class AdapterThread:
             if not self._closing.is_set():
                 _log.error("there is no shop-floor data any more: a mistake of the control", exc_info=True)
             self._adapter.close()
+
+
+# --- The device model for the reference agent.
+
+
+VERSION = "2.2"
+NAMESPACE = f"urn:mtconnect.org:MTConnectDevices:{VERSION}"
+_SCHEMA = f"{NAMESPACE} http://schemas.mtconnect.org/schemas/MTConnectDevices_{VERSION}.xsd"
+_XSI = "http://www.w3.org/2001/XMLSchema-instance"
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
+
+
+def devices_xml(device: Component, described: str, at: datetime) -> str:
+    """The whole document. Raises DriverError for a device whose name no agent would take.
+
+    ``described`` is for people. The uuid comes from the device's name, so it is the same at every call.
+    """
+    if not _NAME.fullmatch(device.name):
+        raise DriverError(
+            "[mtconnect] device = {device}: use only letters, digits, ., - and _, and begin with a letter",
+            device=f"{device.name!r}",
+        )
+    root = Element("MTConnectDevices", {"xmlns": NAMESPACE, "xmlns:xsi": _XSI, "xsi:schemaLocation": _SCHEMA})
+    root.append(_header(at))
+    inner = _element(device, device.name, SubElement(root, "Devices"))
+    inner.set("uuid", str(uuid.uuid5(uuid.NAMESPACE_URL, f"urn:turndesk:{device.name}")))
+    description = Element("Description")
+    description.text = described
+    inner.insert(0, description)
+    ElementTree.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _header(at: datetime) -> Element:
+    """An agent fills it with its own figures; the schema wants it to be there."""
+    return Element(
+        "Header",
+        {
+            "creationTime": stamp(at),
+            "sender": "turndesk",
+            "instanceId": "1",
+            "version": f"{VERSION}.0.0",
+            "assetBufferSize": "1024",
+            "assetCount": "0",
+            "bufferSize": "131072",
+            "deviceModelChangeTime": stamp(at),
+        },
+    )
+
+
+def _element(component: Component, device: str, parent: Element) -> Element:
+    """A component with its items, then its parts, as the schema orders them.
+
+    Identifiers begin with the device's name: one agent may have many machines, and no two may be alike.
+    """
+    named = {"id": f"{device}_{component.kind}_{component.name}", "name": component.name}
+    element = SubElement(parent, component.kind, named)
+    if component.items:
+        items = SubElement(element, "DataItems")
+        for item in component.items:
+            SubElement(items, "DataItem", _attributes(item, device))
+    if component.parts:
+        parts = SubElement(element, "Components")
+        for part in component.parts:
+            _element(part, device, parts)
+    return element
+
+
+def _attributes(item: DataItem, device: str) -> dict[str, str]:
+    told = {
+        "category": item.category.value,
+        "id": f"{device}_{item.key}",
+        "name": item.key,
+        "type": item.type,
+        "subType": item.sub_type,
+        "units": item.units,
+        "coordinateSystem": item.frame,
+    }
+    return {name: text for name, text in told.items() if text}

@@ -1,7 +1,6 @@
-"""Input devices of Linux (evdev): found by name or USB number, opened for us alone, asked what is pressed.
+"""Input devices of Linux (evdev): found by name or USB number, opened for us alone, their events read.
 
-What a device is called stands in /sys, which everybody may read; that it may be read itself is for udev to
-say. So "not there" and "not allowed" are told apart.
+Events are as the kernel writes them: ``struct input_event``, its packets, and what gets lost.
 """
 
 from __future__ import annotations
@@ -10,17 +9,73 @@ import array
 import contextlib
 import os
 import struct
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from core.message import Message
 from core.ports import DriverError
-from drivers.pendant.input_codes import ABS, AXES, KEY, KEYS, REL, Control
-from drivers.pendant.pendant_buttons import AxisRange
+from drivers.pendant.pendant_table import ABS, AXES, KEY, KEYS, REL, SYN, SYN_DROPPED, SYN_REPORT, Control
+
+# Two C longs of time, then type, code and value: 24 bytes where a long has 8. It is part of the kernel's
+# promise to programs (Documentation/input/event-codes.rst), and does not change.
+EVENT = struct.Struct("@llHHi")
+
+
+class InputEvent(NamedTuple):
+    """``t`` is when the kernel had it, seconds of the clock that the device was told to use."""
+
+    t: float
+    kind: int
+    code: int
+    value: int
+
+
+class Packet(NamedTuple):
+    """What changed at once; ``lost``: events before it were thrown away, so nothing in it can be counted."""
+
+    events: tuple[InputEvent, ...]
+    lost: bool = False
+
+
+class Packets:
+    """Bytes in, whole packets out. From SYN_DROPPED to the next SYN_REPORT everything is worth nothing."""
+
+    def __init__(self) -> None:
+        self._bytes = b""
+        self._events: list[InputEvent] = []
+        self._lost = False
+
+    def feed(self, data: bytes) -> Iterator[Packet]:
+        """Every packet that is whole now."""
+        self._bytes += data
+        whole = len(self._bytes) // EVENT.size * EVENT.size
+        read, self._bytes = self._bytes[:whole], self._bytes[whole:]
+        for seconds, micro, kind, code, value in EVENT.iter_unpack(read):
+            event = InputEvent(seconds + 1e-6 * micro, kind, code, value)
+            if kind != SYN:
+                self._events.append(event)
+            elif code == SYN_DROPPED:
+                self._lost = True
+            elif code == SYN_REPORT:
+                packet = Packet(() if self._lost else tuple(self._events), self._lost)
+                self._events, self._lost = [], False
+                yield packet
+
+
+class AxisRange(NamedTuple):
+    """What an axis tells: from ``low`` to ``high``, ``value`` now."""
+
+    low: int
+    high: int
+    value: int
+
 
 NODES, SYSFS = Path("/dev/input"), Path("/sys/class/input")
+# --- Devices: found, and opened for us alone.
+
+
 _BLUETOOTH = "0005"
 _CAPABILITIES = {KEY: "key", REL: "rel", ABS: "abs"}
 RULES = "/etc/udev/rules.d/70-turndesk-pendant.rules"
@@ -111,43 +166,36 @@ def chosen(
     if not meant:
         of = Message(" with serial number {serial}", serial=serial) if serial else ""
         raise DriverError(
-            Message("the pendant {device}{total} is not plugged in", device=device, total=of),
-            reason="missing",
+            "the pendant {device}{total} is not plugged in", reason="missing", device=device, total=of
         )
     groups: dict[str, list[DeviceEntry]] = {}
     for each in meant:
         groups.setdefault(each.stem, []).append(each)
     if len(groups) > 1:
         raise DriverError(
-            Message(
-                "{groups_count} devices match {device}; unplug all but one of these devices; {meant}",
-                groups_count=len(groups),
-                device=device,
-                meant=_apart(meant),
-            ),
+            "{groups_count} devices match {device}; unplug all but one of these devices; {meant}",
             reason="several",
+            groups_count=len(groups),
+            device=device,
+            meant=_apart(meant),
         )
     able = frozenset().union(*(each.able for each in meant))
     lacking = [name for name, control in wanted.items() if control[:2] not in able]
     if lacking:
         names = ", ".join(lacking)
         raise DriverError(
-            Message(
-                "the pendant {device} does not have the button or handwheel that the machine file "
-                "assigns to {names}",
-                device=device,
-                names=names,
-            ),
+            "the pendant {device} does not have the button or handwheel that the machine file "
+            "assigns to {names}",
             reason="lacks-control",
+            device=device,
+            names=names,
         )
     if any(each.bluetooth for each in meant):
         raise DriverError(
-            Message(
-                "the pendant {device} uses Bluetooth, where a lost link cannot be distinguished from "
-                "a button held down; use a pendant with a cable",
-                device=device,
-            ),
+            "the pendant {device} uses Bluetooth, where a lost link cannot be distinguished from "
+            "a button held down; use a pendant with a cable",
             reason="bluetooth",
+            device=device,
         )
     needed = {control[:2] for control in wanted.values()}
     return tuple(each for each in meant if each.able & needed)
@@ -198,12 +246,10 @@ class KernelDevice:
             raise DriverError(_not_allowed(entry, path)) from error
         except OSError as error:
             raise DriverError(
-                Message(
-                    "the pendant {entry} cannot be opened: {cause}",
-                    entry=entry.name,
-                    cause=error.strerror,
-                ),
+                "the pendant {entry} cannot be opened: {cause}",
                 reason="not-opened",
+                entry=entry.name,
+                cause=error.strerror,
             ) from error
         self._able = entry.able
         try:
@@ -212,12 +258,10 @@ class KernelDevice:
         except OSError as error:
             os.close(self._fd)
             raise DriverError(
-                Message(
-                    "another program is using the pendant {entry}; close that program ({cause})",
-                    entry=entry.name,
-                    cause=error.strerror,
-                ),
+                "another program is using the pendant {entry}; close that program ({cause})",
                 reason="taken",
+                entry=entry.name,
+                cause=error.strerror,
             ) from error
 
     def fileno(self) -> int:

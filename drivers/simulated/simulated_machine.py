@@ -6,12 +6,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
-from core.message import Message
 from core.ports import (
     AxisSample,
     Cam,
     Clock,
-    DriverError,
     FloatArray,
     Geared,
     Latch,
@@ -20,7 +18,7 @@ from core.ports import (
     StationState,
     Stop,
 )
-from drivers.sample_log import KEPT, SampleLog
+from drivers.port_parts import KEPT, SampleLog, demand_axis, demand_estop_released, demand_spindle
 from drivers.simulators.plant import Plant
 from drivers.simulators.plant_config import SimConfig
 from drivers.simulators.plant_hands import PlantHands, Schedule
@@ -90,8 +88,7 @@ class SimAxes(_OnPlant):
 
     def home(self, axis: str) -> None:
         """Start looking for the home switch; ``sample().homed`` says when it is found."""
-        if axis not in self.axes:
-            raise DriverError(Message("axis {axis} does not exist", axis=f"{axis!r}"), reason="no-axis")
+        demand_axis(axis, self.axes)
         self._plant.home(axis)
 
     def clear_fault(self) -> None:
@@ -138,16 +135,8 @@ class SimSpindlePort(_OnPlant):
         plant = self._plant
         with plant.lock:
             now = plant.advance()
-            if rpm and plant.panel.estop:
-                raise DriverError(
-                    "the spindle stays off while the E-stop is pressed; release the E-stop first",
-                    "spindle-off",
-                )
-            if rpm and plant.spindle.faults.fault:
-                raise DriverError(
-                    Message("the spindle stays off: {problem}", problem=plant.spindle.faults.fault),
-                    "spindle-off",
-                )
+            if rpm:
+                _demand_spindle(plant)
             plant.spindle.order(now, rpm)
 
     def coast(self) -> None:
@@ -174,6 +163,12 @@ class SimSpindlePort(_OnPlant):
         return self._plant.spindle.faults.fault
 
 
+def _demand_spindle(plant: Plant) -> None:
+    """Raise DriverError in E-stop, or with a fault of the inverter."""
+    demand_estop_released(plant.panel.estop)
+    demand_spindle(plant.spindle.faults.fault)
+
+
 class SimOrientation(_OnPlant):
     """``core.ports.SpindleOrientation`` on the plant."""
 
@@ -182,16 +177,7 @@ class SimOrientation(_OnPlant):
         plant = self._plant
         with plant.lock:
             now = plant.advance()
-            if plant.panel.estop:
-                raise DriverError(
-                    "the spindle stays off while the E-stop is pressed; release the E-stop first",
-                    "spindle-off",
-                )
-            if plant.spindle.faults.fault:
-                raise DriverError(
-                    Message("the spindle stays off: {problem}", problem=plant.spindle.faults.fault),
-                    "spindle-off",
-                )
+            _demand_spindle(plant)
             plant.spindle.orient(now, angle, sense)
 
     def release(self) -> None:

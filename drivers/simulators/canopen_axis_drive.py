@@ -9,8 +9,8 @@ from collections.abc import Callable
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_objects import BIT_12, CSP, HM, IP, NEW, PP, REACHED, DriveState
 from drivers.canopen.drive_profiles import CIA402, DriveProfile, Records
+from drivers.canopen.driven_axes import unpacked, unpacked_segment
 from drivers.canopen.pvt_mode import hermite
-from drivers.canopen.pvt_records import unpacked, unpacked_segment
 from drivers.simulators.servo_axis import Servo
 
 # --- The power states of a CiA 402 drive as the drive keeps them, with the transitions of the profile.

@@ -14,8 +14,7 @@ import numpy as np
 
 from core.ports import BoolArray, FloatArray
 from drivers.setpoint_pieces import INF, Piece
-from drivers.simulators.servo_axis import Servo
-from drivers.simulators.servo_response import AT_REST, Response, Setpoints
+from drivers.simulators.servo_axis import AT_REST, Response, Servo, Setpoints
 
 _FARTHEST = 256  # grid points; new setpoints usually replace the piece before that
 _WORTH_FORESEEING = 4  # grid points; fewer are quicker one by one

@@ -8,7 +8,6 @@ import socket
 import tty
 from collections.abc import Callable
 
-from core.message import Message
 from core.ports import DriverError
 from drivers.simulators.grblhal_firmware import Firmware
 
@@ -47,7 +46,7 @@ class TcpEnd:
             self._listener = socket.create_server((host, port))
         except OSError as error:
             raise DriverError(
-                Message("tcp://{host}:{port} cannot be opened: {error}", host=host, port=port, error=error)
+                "tcp://{host}:{port} cannot be opened: {error}", host=host, port=port, error=error
             ) from error
         self.name = "tcp://{}:{}".format(*self._listener.getsockname()[:2])
         self._host: socket.socket | None = None

@@ -7,9 +7,8 @@ import re
 from dataclasses import dataclass
 from typing import Protocol
 
-from drivers.simulators.grblhal_settings import Quirks, Registers
+from drivers.simulators.grblhal_settings import Quirks, Registers, Wait, coolant_wait, spindle_wait
 from drivers.simulators.grblhal_slides import Place, PlannedBlock, Shape, Slides, circle, straight
-from drivers.simulators.grblhal_waits import Wait, coolant_wait, spindle_wait
 from drivers.simulators.spindle_motor import TurnedSpindle
 
 

@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from core.message import Message
 from core.ports import (
     BoolArray,
     Cam,
@@ -21,20 +20,17 @@ from core.ports import (
     Segments,
     StationState,
     Stop,
-    code_of,
 )
 from drivers.operator_station import Panel
-from drivers.sample_log import SampleLog
-from drivers.setpoint_queue import Tolerance, straight
-from drivers.simulators.drive_limits import check_cam, check_drives
+from drivers.port_parts import SampleLog, demand_no_fault, demand_no_homing, demand_power
+from drivers.setpoint_queue import straight
 from drivers.simulators.foreseen_motion import ForeseenMotion, foresee
 from drivers.simulators.plant_config import SimConfig
-from drivers.simulators.plant_terminals import Terminals
-from drivers.simulators.servo_axis import Servo
+from drivers.simulators.plant_terminals import Terminals, ToolSetter
+from drivers.simulators.servo_axis import Servo, check_cam, check_drives
 from drivers.simulators.spindle_motor import SpindleMotor
-from drivers.simulators.tool_setter import ToolSetter
 from drivers.spindle_gear import GearedQueue, Phase, Slides
-from drivers.wakeup import Touch, Wakeup
+from drivers.waiting import Touch, Wakeup
 
 _NEVER = float("inf")
 Motion = tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]
@@ -60,14 +56,7 @@ class Plant:
         self.terminals = Terminals(config.outputs, config.inputs, config.collet, config.seed)
         self.terminals.setter = ToolSetter(config.setter) if config.setter is not None else None
         self.panel = Panel(config.palms, config.start_pulse, config.seed)
-        slides = Slides(
-            self.names,
-            tuple(axis.vmax for axis in config.axes),
-            tuple(axis.amax for axis in config.axes),
-            config.commit,
-            Tolerance.of(config.axes),
-        )
-        self.queue = GearedQueue(slides, self._readings())
+        self.queue = GearedQueue(Slides.of(config.axes, config.commit), self._readings())
         self.enabled = False
         self.fault: str = ""
         self._off_at = _NEVER
@@ -159,14 +148,7 @@ class Plant:
                 raise DriverError(
                     "the drives stay off while the E-stop is pressed; release the E-stop first", "no-power"
                 )
-            if self.fault:
-                raise DriverError(
-                    Message(
-                        "the drives stay off because of a fault ({fault}); clear the fault first",
-                        fault=self.fault,
-                    ),
-                    "no-power",
-                )
+            demand_no_fault(self.fault)
             if not self.enabled:
                 self.queue.rest_at(self._readings())
             self.enabled, self._off_at = True, _NEVER
@@ -195,11 +177,9 @@ class Plant:
             rest, velocity = self.queue.demand_at(now)
             if any(velocity) or self._homing is not None:
                 raise DriverError(
-                    Message(
-                        "{axis} cannot home while an axis is moving; wait until all axes are at rest",
-                        axis=name,
-                    ),
+                    "{axis} cannot home while an axis is moving; wait until all axes are at rest",
                     reason="axis-moves",
+                    axis=name,
                 )
             pieces = straight(
                 now + self.config.commit,
@@ -247,17 +227,8 @@ class Plant:
         return tuple(servo.reading for servo in self.servos)
 
     def _need_power(self) -> None:
-        if self.fault:
-            raise DriverError(
-                Message("{fault}; clear the fault first", fault=self.fault), code_of(self.fault, "axis")
-            )
-        if not self.enabled or self._off_at < _NEVER:
-            raise DriverError("the drives are off; switch them on first", "power-lost")
-        if self._homing is not None:
-            raise DriverError(
-                Message("{name} is homing; wait until homing is complete", name=self._homing[0].axis.name),
-                reason="homing",
-            )
+        demand_power(self.fault, self.enabled and self._off_at >= _NEVER)
+        demand_no_homing(self._homing[0].axis.name if self._homing is not None else "")
 
     def _power_off(self) -> None:
         self.enabled, self._off_at, self._homing = False, _NEVER, None
@@ -345,7 +316,7 @@ class Plant:
         """One step towards setpoint ``p`` ``v``; whether a drive has given up, now or before."""
         for servo, position, speed in zip(self.servos, p, v, strict=True):
             if servo.follow(position, speed, dt) and not self.fault:
-                self.fault = Fault(Message("{axis}: following error", axis=servo.axis.name), "following")
+                self.fault = Fault("{axis}: following error", "following", axis=servo.axis.name)
         if self.fault and self._off_at == _NEVER:
             self._off_at = self.queue.brake(self.t, [axis.amax for axis in self.config.axes])
         return bool(self.fault)

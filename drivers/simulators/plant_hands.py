@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 
-from core.message import Message
 from core.ports import DriverError
 from drivers.operator_station import StationHands
 from drivers.simulated.simulated_table import PlannedFault
 from drivers.simulators.plant import Plant
-from drivers.simulators.servo_axis import Servo
-from drivers.simulators.worn_axis import TURN
+from drivers.simulators.servo_axis import TURN, Servo
 
 
 class PlantHands(StationHands):
@@ -21,14 +20,19 @@ class PlantHands(StationHands):
         super().__init__(plant.panel, plant.touch, plant.clock)
         self._plant = plant
 
+    @contextmanager
+    def _now(self) -> Iterator[float]:
+        """Keep the machine in hand, at the clock's time in seconds."""
+        with self._plant.touch:
+            yield self._plant.advance()
+
     def press_estop(self) -> None:
         """Hit the E-stop: it latches."""
         self._plant.press_estop()
 
     def release_estop(self) -> None:
         """Twist the E-stop free."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             self._plant.panel.estop = False
 
     def set_input(self, name: str, on: bool) -> None:
@@ -40,61 +44,53 @@ class PlantHands(StationHands):
 
     def jam(self, axis: str, on: bool = True) -> None:
         """Something blocks the slide."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             self._servo(axis).jammed = on
 
     def encoder_stuck(self, axis: str, on: bool = True) -> None:
         """The encoder no longer counts."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             servo = self._servo(axis)
             servo.stuck = servo.reading if on else None
 
     def runaway(self, axis: str, speed: float) -> None:
         """Its drive goes its own way at this speed, mm/s or degrees/s, while it has power; 0 mends it."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             self._servo(axis).runaway = speed
 
     def loose_gib(self, axis: str, play: float) -> None:
         """The slide has ``play`` mm against its screw, which each reversal loses; 0 sets the gib again."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             servo = self._servo(axis)
             servo.worn.loosen(play, servo.p)
 
     def encoder_ripple(self, axis: str, size: float, turn: float = TURN) -> None:
         """Its encoder is wrong by up to ``size`` mm once in each ``turn`` mm; 0 mends it."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             worn = self._servo(axis).worn
             worn.ripple, worn.turn = size, turn
 
     def encoder_missed(self, axis: str, size: float, turn: float = TURN) -> None:
         """Its encoder does not count ``size`` mm at one spot of each ``turn`` mm; 0 mends it."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             worn = self._servo(axis).worn
             worn.missed, worn.turn = size, turn
 
     def belt_slip(self, fraction: float) -> None:
         """The spindle loses up to this fraction of its speed in the cut; 0 is a belt that holds."""
-        with self._plant.touch:
-            now = self._plant.advance()
+        with self._now() as now:
             self._plant.spindle.faults.belt = fraction
             self._plant.spindle.cut_load(now, cutting=False)
 
     def push(self, axis: str, way: float) -> None:
         """Somebody moves a slide that has no power, or forces one that has."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             self._servo(axis).push(way)
 
     def switch_output(self, name: str, on: bool) -> None:
         """Somebody else switches an output: a fuse, a terminal, a hand at the relay."""
-        with self._plant.touch:
-            self._plant.terminals.write(name, on, self._plant.advance())
+        with self._now() as now:
+            self._plant.terminals.write(name, on, now)
 
     def drive_fault(self, axis: str, text: str = "drive fault") -> None:
         """A drive trips."""
@@ -103,39 +99,34 @@ class PlantHands(StationHands):
 
     def spindle_bog(self, fraction: float) -> None:
         """The motor reaches only this fraction of what is commanded; 1 is healthy."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             self._plant.spindle.faults.bog = fraction
 
     def spindle_wander(self, fraction: float, period: float = 2.0) -> None:
         """The speed swings by this fraction about what is commanded, once in ``period`` seconds."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             self._plant.spindle.faults.wander = fraction
             self._plant.spindle.faults.wander_period = period
 
     def spindle_ignores_stop(self, on: bool = True) -> None:
         """The inverter no longer obeys when asked to slow down."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             self._plant.spindle.faults.ignores_stop = on
 
     def spindle_fault(self, text: str) -> None:
         """The inverter trips and the spindle coasts; an empty text mends it."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             self._plant.spindle.faults.fault = text
 
     def spindle_never_oriented(self, on: bool = True) -> None:
         """The drive does not say that the spindle stands at its angle, whether it does or not."""
-        with self._plant.touch:
-            self._plant.advance()
+        with self._now():
             self._plant.spindle.faults.never_oriented = on
 
     def collet_sensor_stuck(self, on: bool = True) -> None:
         """The collet's switch stays where it is."""
-        with self._plant.touch:
-            self._plant.terminals.read(self._plant.advance())
+        with self._now() as now:
+            self._plant.terminals.read(now)
             self._plant.terminals.sensor_stuck = on
 
     def station_silent(self, on: bool = True) -> None:
@@ -223,6 +214,6 @@ def _acts(machine: PlantHands, fault: PlannedFault) -> tuple[Callable[[], None],
         "pot_noise": ((value,), (0.0,)),
     }
     if fault.what not in known:
-        raise DriverError(Message("the simulator cannot simulate the fault {what}", what=f"{fault.what!r}"))
+        raise DriverError("the simulator cannot simulate the fault {what}", what=f"{fault.what!r}")
     act, (breaks, mends) = getattr(machine, fault.what), known[fault.what]
     return partial(act, *breaks), None if mends is None else partial(act, *mends)

@@ -1,14 +1,37 @@
-"""Inputs and outputs, and what hangs on them: the collet with its switch."""
+"""Inputs and outputs of the simulated machine, and what hangs on them: the collet and the tool setter."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Mapping
 
-from core.message import Message
 from core.ports import PROBE, DriverError
-from drivers.simulators.plant_config import SimCollet, SimOutput
-from drivers.simulators.tool_setter import ToolSetter
+from drivers.port_parts import output_of
+from drivers.simulators.plant_config import SimCollet, SimOutput, SimSetter
+
+
+class ToolSetter:
+    """``made`` is its input; where the slides were when that came on is kept, as a fast drive would."""
+
+    def __init__(self, config: SimSetter) -> None:
+        self._config = config
+        self.made = False
+        self.deepest = 0.0  # mm that a tip has gone into the stylus at most
+        self.kept: tuple[float, tuple[float, ...]] | None = None
+
+    def look(self, t: float, x: float, z: float, readings: tuple[float, ...]) -> None:
+        """The slides stand at ``x z``; their encoders say ``readings``."""
+        config = self._config
+        half = config.width / 2.0
+        depths = [
+            half - max(abs(x - tip_x - config.x), abs(z - tip_z - config.z)) for tip_x, tip_z in config.tips
+        ]
+        depth = max(depths, default=-1.0)
+        if depth > 0.0 and not self.made and self.kept is None:
+            self.kept = (t, readings)
+        self.made = depth > 0.0
+        self.deepest = max(self.deepest, depth)
+
 
 _GUARD = "guard"
 
@@ -31,11 +54,7 @@ class Terminals:
 
     def write(self, name: str, on: bool, now: float) -> None:
         """Switch an output; raises DriverError for a name that the machine has not."""
-        if name not in self.outputs:
-            raise DriverError(
-                Message("output {name} is not in the machine file; add it under [io.out]", name=f"{name!r}"),
-                "output",
-            )
+        output_of(name, self.outputs)
         if name == self._collet.output and on != self.outputs[name]:
             self._closed_at = now + self._late(self._collet.close_time) if on else float("inf")
             self._opened_at = now + self._late(self._collet.open_time)
@@ -52,7 +71,7 @@ class Terminals:
         """Close or open a terminal by hand; raises DriverError for an unknown name."""
         if name not in self.inputs:
             raise DriverError(
-                Message("input {name} is not in the machine file; add it under [io.in]", name=f"{name!r}")
+                "input {name} is not in the machine file; add it under [io.in]", name=f"{name!r}"
             )
         self.inputs[name] = on
 

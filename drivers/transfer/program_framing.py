@@ -1,16 +1,56 @@
-"""Programs as characters of a line: framed by %, whole, every parity right, or not at all."""
+"""Programs as characters of a line: framed by %, whole, every parity right, or not at all.
+
+``TransferSettings`` say how a program goes over the line, beside the line's own settings.
+"""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from hashlib import sha256
 
 from core.message import Message
 from core.ports import DriverError
-from drivers.serial_line import PARITIES, parity_of
-from drivers.transfer.transfer_settings import DC2, DC4, TransferSettings
+from drivers.serial_line import PARITIES, LineSettings, parity_of
+
+DC1, DC2, DC3, DC4 = b"\x11", b"\x12", b"\x13", b"\x14"
+
+
+@dataclass(frozen=True, slots=True)
+class TransferSettings:
+    """``wrap`` is the line before and behind a program; empty: none, and only silence tells the end.
+
+    ``dc_codes``: DC2 before and DC4 behind what is sent, DC1 and DC3 around what is received. ``wait``: send
+    only when the other side has said DC1. ``leader``: so many NULs before and behind.
+    """
+
+    line: LineSettings
+    wrap: str = "%"
+    eol: str = "\r\n"
+    dc_codes: bool = False
+    wait: bool = False
+    leader: int = 0
+
+    @property
+    def own_parity(self) -> bool:
+        """Seven bits and a parity bit look like eight bits on the line: every parity is checked here."""
+        return self.line.bits == 7 and self.line.parity in PARITIES
+
+    @property
+    def sending(self) -> LineSettings:
+        """The line as it is opened to send: a DC1 that is waited for must not be taken for flow control."""
+        held = self.line.flow == "xonxoff" and self.wait
+        return replace(self.line, flow="none") if held else self.line
+
+    @property
+    def receiving(self) -> LineSettings:
+        """The line as it is opened to receive. Nothing is held up: what comes is read at once."""
+        flow = "rtscts" if self.line.flow == "rtscts" else "none"
+        if self.own_parity:
+            return replace(self.line, bits=8, parity="N", flow=flow)
+        return replace(self.line, flow=flow)
+
 
 # --- Lines and name of what has come, as tapes and controls write them.
 
@@ -117,10 +157,8 @@ class Incoming:
         self.count += len(come)
         if self.count > LARGEST:
             raise IncompleteError(
-                Message(
-                    "more than {largest} MB were received; the received data is not a program",
-                    largest=LARGEST // 1000000,
-                )
+                "more than {largest} MB were received; the received data is not a program",
+                largest=LARGEST // 1000000,
             )
         for character in come:
             if self.phase is Phase.WAITING:
@@ -163,24 +201,20 @@ class Incoming:
     def _check(self, line: bytes, number: int) -> None:
         if self._wrap and line.lstrip().startswith(self._wrap):
             raise IncompleteError(
-                Message(
-                    "line {number} begins with {wrap}, so more than one program was received; send "
-                    "only one program",
-                    number=number,
-                    wrap=self._settings.wrap,
-                ),
+                "line {number} begins with {wrap}, so more than one program was received; send "
+                "only one program",
                 reason="several",
+                number=number,
+                wrap=self._settings.wrap,
             )
         for character in line:
             if character < 0x20 and character != _TAB:
                 raise IncompleteError(
-                    Message(
-                        "line {number} contains the control character {character} because of "
-                        "interference on the serial line. Nothing was saved; send the program again",
-                        number=number,
-                        character=f"{character:02X}",
-                    ),
+                    "line {number} contains the control character {character} because of "
+                    "interference on the serial line. Nothing was saved; send the program again",
                     reason="control-character",
+                    number=number,
+                    character=f"{character:02X}",
                 )
 
     def _wait(self, character: int) -> None:
@@ -232,14 +266,12 @@ class Incoming:
             self._wait(character)
             return
         raise IncompleteError(
-            Message(
-                "parity error in line {lines}; nothing was saved. Check the serial port "
-                "settings ({line}) and the shield and ground of the cable, then send the "
-                "program again",
-                lines=self.lines,
-                line=self._settings.line.words,
-            ),
+            "parity error in line {lines}; nothing was saved. Check the serial port "
+            "settings ({line}) and the shield and ground of the cable, then send the "
+            "program again",
             reason="parity",
+            lines=self.lines,
+            line=self._settings.line.words,
         )
 
     def _at_end(self) -> bool:
@@ -260,21 +292,16 @@ class Incoming:
                 else "nothing came"
             )
             return IncompleteError(
-                Message(
-                    "{came}; check the serial port settings and the other device, then send the "
-                    "program again",
-                    came=came,
-                ),
+                "{came}; check the serial port settings and the other device, then send the program again",
                 reason="no-begin" if self.count else "nothing",
+                came=came,
             )
         return IncompleteError(
-            Message(
-                "the end character {wrap} is missing after {lines} lines: the program is incomplete "
-                "and was not saved; send the program again",
-                wrap=wrap,
-                lines=self.lines,
-            ),
+            "the end character {wrap} is missing after {lines} lines: the program is incomplete "
+            "and was not saved; send the program again",
             reason="no-end",
+            wrap=wrap,
+            lines=self.lines,
         )
 
 
@@ -335,19 +362,15 @@ def _check(line: bytes, number: int, wrap: bytes, *, seven: bool) -> None:
     for character in line:
         if character < 0x20 and character != 0x09:
             raise DriverError(
-                Message(
-                    "line {number} contains the control character {character}; remove this character",
-                    number=number,
-                    character=f"{character:02X}",
-                ),
+                "line {number} contains the control character {character}; remove this character",
                 reason="control-character",
+                number=number,
+                character=f"{character:02X}",
             )
         if seven and character >= _TOP:
             raise DriverError(
-                Message(
-                    "line {number} contains a character that 7 bits cannot represent; remove this "
-                    "character, or use 8 bits",
-                    number=number,
-                ),
+                "line {number} contains a character that 7 bits cannot represent; remove this "
+                "character, or use 8 bits",
                 reason="eighth-bit",
+                number=number,
             )

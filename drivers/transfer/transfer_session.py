@@ -5,11 +5,18 @@ from __future__ import annotations
 import threading
 from dataclasses import dataclass
 
-from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.serial_line import FlowWire, table_of
-from drivers.transfer.program_framing import Incoming, IncompleteError, Phase, Program
-from drivers.transfer.transfer_settings import DC1, DC3, DC4, TransferSettings
+from drivers.transfer.program_framing import (
+    DC1,
+    DC3,
+    DC4,
+    Incoming,
+    IncompleteError,
+    Phase,
+    Program,
+    TransferSettings,
+)
 
 CHUNK = 64  # bytes: what a USB adapter may still send after the other side has said stop
 TICK = 0.05  # s
@@ -120,12 +127,10 @@ class Sending(_Transfer):
         still = now - self._moved
         if still > PATIENCE:
             raise DriverError(
-                Message(
-                    "the other device paused the transfer after {file} bytes and has not continued "
-                    "for 2 minutes; check whether that device is ready",
-                    file=out,
-                ),
+                "the other device paused the transfer after {file} bytes and has not continued "
+                "for 2 minutes; check whether that device is ready",
                 reason="held",
+                file=out,
             )
         self._tell(out, HELD_BACK if still > HELD else "")
 
@@ -182,13 +187,11 @@ class Receiving(_Transfer):
         incoming.feed(come)
         if self._wire.damaged and incoming.phase is not Phase.WAITING:
             raise IncompleteError(
-                Message(
-                    "a character in line {lines} is damaged; nothing was saved. Check the serial "
-                    "port settings and the shield and ground of the cable, then send the program "
-                    "again",
-                    lines=incoming.lines,
-                ),
+                "a character in line {lines} is damaged; nothing was saved. Check the serial "
+                "port settings and the shield and ground of the cable, then send the program "
+                "again",
                 reason="damaged",
+                lines=incoming.lines,
             )
         if incoming.phase is not Phase.WAITING:
             self.reach = Reach(incoming.count, 0, incoming.lines)

@@ -6,6 +6,7 @@ import ast
 from collections.abc import Iterator
 
 _MARKS = frozenset({"tr", "Message", "runs_cut_off"})
+_WITH_VALUES = frozenset({"DriverError", "ScriptError", "Fault"})  # templates where values follow by name
 _OF_PAGES = frozenset({"meaning", "purpose"})  # of keys of the machine file, for its page
 _MISTAKES = frozenset(
     {"ValueError", "RuntimeError", "TypeError", "TimeoutError", "KeyError", "AssertionError"}
@@ -17,10 +18,15 @@ _MISTAKES = frozenset(
 def marked(tree: ast.Module) -> Iterator[str]:
     """Yield the texts in ``tr("…")`` and the templates of messages, whatever they look like."""
     for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and _name(node.func) in _MARKS and node.args:
+        if isinstance(node, ast.Call) and node.args and _is_marked(node):
             for part in ast.walk(node.args[0]):
                 if isinstance(part, ast.Constant) and isinstance(part.value, str):
                     yield part.value
+
+
+def _is_marked(call: ast.Call) -> bool:
+    name = _name(call.func)
+    return name in _MARKS or (name in _WITH_VALUES and any(each.arg != "reason" for each in call.keywords))
 
 
 def texts_of(tree: ast.Module) -> Iterator[str]:

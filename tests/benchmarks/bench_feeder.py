@@ -42,14 +42,13 @@ from app.compose.feeder_process import driven
 from app.compose.machine_files import load_machine
 from app.compose.played_machine import play_peers
 from core.ports import DriverError, FloatArray, MachinePorts, Segments
-from drivers.canopen.cyclic_mode import CyclicFollower, SyncSchedule
-from drivers.clocks import RealClock
-from drivers.feeder.feeder_line import Line
-from drivers.feeder.feeder_links import SocketLink
+from drivers.canopen.position_modes import CyclicFollower, SyncSchedule
+from drivers.feeder.feeder_line import Line, SocketLink
 from drivers.feeder.feeder_loop import PRIORITY, keep_memory, real_time, serve
 from drivers.feeder.feeder_messages import NOTHING, Inbox, Message, packed
 from drivers.feeder.feeder_ports import feeder_ports
 from drivers.setpoint_queue import straight
+from drivers.waiting import RealClock
 from tests.benchmarks.footprint import keep_result
 
 GROUP = "239.74.163.2"

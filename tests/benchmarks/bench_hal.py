@@ -18,10 +18,10 @@ import numpy as np
 
 from app.compose.hal_backend import hal_config
 from app.compose.machine_files import load_machine
-from drivers.clocks import RealClock
 from drivers.hal.bridge.packets import Head, number
 from drivers.hal.hal_machine import HalMachine
 from drivers.hal.hal_session import HalSession
+from drivers.waiting import RealClock
 from tests.drivers.hal.halrun import folder_with_halrun, one_session
 from tests.drivers.hal.lathes import lathe
 

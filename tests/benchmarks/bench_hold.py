@@ -19,7 +19,7 @@ from core.executor.job import Proof, make_job
 from core.executor.snapshot import State
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 
 TICK = 0.01
 PRESSES = 20

@@ -20,7 +20,7 @@ from core.executor.job import Proof, make_job
 from core.executor.snapshot import Event, State
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from drivers.clocks import RealClock
+from drivers.waiting import RealClock
 from tests.benchmarks.bench_hold import TICK, chords
 
 HOG = "while True: sum(range(1000))"

@@ -24,8 +24,8 @@ from app.quality.parts_watch import PartsWatch
 from core.executor.executor import Executor
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.store.store import Store
-from drivers.clocks import StepClock
 from drivers.simulators.plant_hands import PlantHands
+from drivers.waiting import StepClock
 
 INCH = 25.4
 NAME = "night.nc"

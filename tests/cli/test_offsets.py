@@ -18,7 +18,7 @@ from app.compose.stored_offsets import stored_offsets
 from core.coded_error import CodedError
 from core.store.store import Store
 from core.store.store_rows import SecondaryRow, ToolRow
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.coded import recorded_refusals
 
 Captured = pytest.CaptureFixture[str]

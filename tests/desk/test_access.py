@@ -50,7 +50,7 @@ from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind
 from core.store.tool_lives import insert_changes
 from core.store.touch_off import Touch
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.texts import begins, pattern, shows
 from tests.texts import text as wording
 

@@ -22,7 +22,7 @@ from app.special.special_functions import SpecialFunctions
 from core.executor.executor import Executor
 from core.executor.snapshot import State
 from core.machine.machine_model import Machine
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.attached import attached
 from tests.texts import begins, shows
 from tests.texts import text as wording

@@ -13,7 +13,7 @@ from app.desk import program_folder
 from app.desk.program_folder import ProgramFile, ProgramFolders
 from app.desk.program_loading import Loaded, Phase
 from core.language.source import load_source
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.texts import begins
 
 

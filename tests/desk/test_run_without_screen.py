@@ -13,7 +13,7 @@ from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.job_setup import Setup
 from core.language.source import Source
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 
 ESTOP = make_alarm("estop", "", 0, 0.0)
 

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.ports import FloatArray, Segments
-from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.simulators.plant_config import SimAxis, SimConfig, SimOutput, SimSpindle
 from drivers.simulators.plant_hands import PlantHands
+from drivers.waiting import StepClock
 
 SLIDE = SimAxis(
     name="X",

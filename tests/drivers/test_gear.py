@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from core.ports import Cam, DriverError, Gear, Segments, Stop, at_rest
-from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import Simulation
 from drivers.spindle_gear import Phase
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.machines import play, ramp, simulation
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.ports import FloatArray, Segments, Stop
-from drivers.sample_log import SampleLog
+from drivers.port_parts import SampleLog
 from drivers.simulated.simulated_machine import Simulation
 from drivers.simulators import plant
 from tests.drivers.machines import play, ramp, simulation

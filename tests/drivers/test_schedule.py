@@ -11,10 +11,10 @@ from app.compose.machine_files import load_machine, parse_machine
 from core.faults import code_of
 from core.ports import DriverError
 from core.table_schema import MachineFileError
-from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import SimAxes, Simulation, build_simulation
 from drivers.simulated.simulated_table import FAULTS, PlannedFault, SimulatedTable
 from drivers.simulators.plant import Plant
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 

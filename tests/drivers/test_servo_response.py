@@ -10,8 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from drivers.simulators.plant_config import SimAxis
-from drivers.simulators.servo_axis import Servo
-from drivers.simulators.servo_response import ServoLoop, Setpoints
+from drivers.simulators.servo_axis import Servo, ServoLoop, Setpoints
 from tests.drivers.machines import SLIDE
 
 DT = 0.001  # s

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import build_simulation
+from drivers.waiting import StepClock
 from tests.drivers.machines import CONFIG
 
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from core.ports import FloatArray
-from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import Simulation
 from drivers.simulated.simulated_table import PlannedFault
+from drivers.waiting import StepClock
 from tests.drivers.machines import CONFIG, play, ramp, simulation
 
 WN = 2.0 * math.pi * 40.0

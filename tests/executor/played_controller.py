@@ -15,7 +15,7 @@ from core.executor.spindle_control import SpindleControl
 from core.executor.station_signals import StationSignals
 from core.machine.machine_model import Machine
 from core.ports import BlockOp, BlockState
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 
 
 @dataclass

@@ -20,8 +20,8 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.language.source import Source
 from core.machine.machine_model import Machine
-from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import Simulation
+from drivers.waiting import StepClock
 
 INCH = 25.4
 TICK = 0.02  # s; the longest that the executor has between two ticks

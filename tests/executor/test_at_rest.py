@@ -14,9 +14,9 @@ from core.executor.executor import Executor
 from core.executor.rest import RESTS
 from core.executor.snapshot import State
 from core.ports import DriverError, Stop
-from drivers.clocks import StepClock
 from drivers.simulated.simulated_machine import build_simulation
 from drivers.simulated.simulated_table import PlannedFault
+from drivers.waiting import StepClock
 from tests.executor.rig import FINE, Rig
 
 

@@ -15,7 +15,7 @@ from core.executor.watchdog import ExecutorThread
 from core.interpreter.actions import Collet, Dwell, SpindleRun
 from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN, StationState
-from drivers.clocks import RealClock
+from drivers.waiting import RealClock
 from tests.executor.made import Maker
 from tests.executor.rig import FINE, INCH, Rig, unhomed_machine
 from tests.texts import text

@@ -19,7 +19,7 @@ from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import Snapshot, State
 from core.interpreter.job_setup import ToolOffset
 from core.ports import DriverError
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.executor.rig import INCH, CreepingClock, Rig
 from tests.texts import pattern, text
 

@@ -8,12 +8,10 @@ from collections.abc import Iterable, Iterator
 from core.ports import DriverError
 from drivers.grblhal.grblhal_report import read_identity, read_report
 from drivers.inverter.modbus_rtu import answer_in
-from drivers.mtconnect.agent_links import AgentLink, LostError
+from drivers.mtconnect.agent_links import Active, AgentLink, LostError, clean, text_of, values_line
 from drivers.mtconnect.mtconnect_items import Category, DataItem
-from drivers.mtconnect.shdr_lines import Active, clean, text_of, values_line
 from drivers.serial_line import LineSettings
-from drivers.transfer.program_framing import Incoming, Phase, outgoing
-from drivers.transfer.transfer_settings import TransferSettings
+from drivers.transfer.program_framing import Incoming, Phase, TransferSettings, outgoing
 from tests.fuzz.fuzz_files import FILES
 from tests.fuzz.fuzz_target import Target
 from tests.fuzz.fuzz_wires import CAN, GRBLHAL

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from core.store.store import Store
-from drivers.clocks import RealClock
 from drivers.simulators.canopen_devices import CanopenDevices
+from drivers.waiting import RealClock
 from tests.drivers.feeder.bus import SteadyClock, bus_file, peers_on
 from tests.killed.bench import Process, process
 

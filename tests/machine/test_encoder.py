@@ -6,7 +6,7 @@ import pytest
 
 import resources
 from app.compose.machine_files import parse_machine
-from drivers.canopen.encoder_table import EncoderTable
+from drivers.canopen.canopen_table import EncoderTable
 from drivers.inverter.inverter_table import InverterTable
 from tests.machine.test_hardware import CAN, assert_refused, changed
 

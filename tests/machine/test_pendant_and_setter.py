@@ -14,9 +14,9 @@ from app.compose.pendant_wire import wired, with_pendant
 from core.machine.machine_model import Machine
 from core.machine.setter_table import SetterModel
 from core.table_schema import MachineFileError
-from drivers.clocks import StepClock
-from drivers.pendant.pendant_buttons import AxisRange
+from drivers.pendant.input_devices import AxisRange
 from drivers.pendant.pendant_table import PendantModel
+from drivers.waiting import StepClock
 from tests.drivers.pendant.made import ABS_HAT0X, Peer
 from tests.texts import text as wording
 

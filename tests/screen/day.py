@@ -28,8 +28,8 @@ from app.screen.window_frame import Frame
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
-from drivers.clocks import StepClock
 from drivers.simulators.plant_hands import PlantHands
+from drivers.waiting import StepClock
 
 Key = Qt.Key
 NONE, SHIFT = Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.ShiftModifier

@@ -42,7 +42,7 @@ from core.store.people import PersonRow
 from core.store.store import Store
 from core.store.store_rows import Kind
 from core.store.tool_lives import LifeRow
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.screen.picture_shop import put_drawing
 
 SIZES = ((1024, 600), (1920, 1080), (3840, 2160))

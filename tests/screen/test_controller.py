@@ -17,9 +17,9 @@ from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.theme import DARK
 from core.executor.snapshot import State
-from drivers.clocks import RealClock
 from drivers.simulators.grblhal_far_end import TcpEnd, serve
 from drivers.simulators.grblhal_firmware import Firmware
+from drivers.waiting import RealClock
 from tests.screen.hands import Key
 from tests.screen.yes import yes
 from tests.texts import text as wording

@@ -21,7 +21,7 @@ from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import load_source
 from core.proving.proof_report import Report
 from core.proving.prove_program import prove
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.screen.hands import Key
 from tests.worked import worked
 

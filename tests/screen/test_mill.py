@@ -24,7 +24,7 @@ from app.screen.theme import DARK
 from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.screen.hands import Key
 from tests.screen.yes import yes
 from tests.texts import shows

@@ -12,7 +12,7 @@ import sys
 import app.screen.run_screen
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 desk, _ = desk_and_executor(None, stored_offsets, StepClock())
 read = [name for name in sys.modules["linecache"].cache if "/app/" in name or "/core/" in name]
 print(*sys.modules)
@@ -29,7 +29,7 @@ OF_LATER = (
     ),
     *("core.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
     *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen.canopen_machine", "drivers.feeder"),
-    *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.pendant.pendant_reader"),
+    *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.pendant.pendant_station"),
     *("drivers.mtconnect.mtconnect_adapter", "drivers.transfer"),
     *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.shapes"),
     *("ezdxf", "svgelements"),

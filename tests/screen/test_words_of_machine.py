@@ -18,7 +18,7 @@ from app.quality.trends_section import TrendsSection
 from app.screen.page_table import menu_keys
 from app.special.inputs_outputs import InputsOutputs
 from core.executor.snapshot import Snapshot
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.attached import attached
 from tests.screen.hands import Hands
 

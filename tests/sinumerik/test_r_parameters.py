@@ -17,7 +17,7 @@ from app.special.special_functions import SpecialFunctions
 from core.executor.job import make_job
 from core.language.diagnostics import Severity
 from core.store.store import Store
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.sinumerik.lathe import MODULO, good, run, setup, source
 
 WAY = "G0 X=R1 Z5"

@@ -20,7 +20,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.language.diagnostics import Severity
 from core.store.store_rows import Kind
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 
 pytestmark = pytest.mark.long
 

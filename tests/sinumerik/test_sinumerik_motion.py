@@ -20,7 +20,7 @@ from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine
 from core.proving.program_timeline import MotionSpan, Timeline
 from core.proving.prove_program import prove
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.sinumerik.lathe import LINEAR, MODULO, setup, source
 
 HOME = (0.0, 0.0, 0.0)

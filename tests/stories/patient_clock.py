@@ -11,7 +11,7 @@ import threading
 import time
 
 from app.screen import event_times
-from drivers.clocks import RealClock
+from drivers.waiting import RealClock
 
 GRACE = 0.12  # s; the control at rest ticks every 0.095 s
 _CONTROL, _SCREEN = "control", "screen"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from drivers.hal.boards import spindle_as_c
+from drivers.hal.boards.board_parts import c_speed_pins, c_turn_pins, load_c
 from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
 
 XML = "ethercat-conf.xml"
@@ -83,7 +83,7 @@ def _load(file: HalFile, drives: list[str]) -> None:
     file.first += ["lcec.read-all", *(f"cia402.{name}.read-all" for name in drives)]
     file.first += ["spindle-per-s"] * ("spindle" in drives)
     if lathe.c is not None:
-        spindle_as_c.load(file, chosen=True)
+        load_c(file, chosen=True)
     file.last += [*(f"cia402.{name}.write-all" for name in drives), "lcec.write-all"]
 
 
@@ -109,7 +109,7 @@ def _drive(file: HalFile, name: str) -> None:
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
-    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    board, name = file.lathe.board.axes[axis.name], axis.name.lower()
     place, pin = f"slave {board.channel}", f"cia402.{axis.name.lower()}"
     file.section(f"Axis {axis.name}: slave {board.channel}, cyclic synchronous position")
     file.setp(f"{pin}.csp-mode", 1)
@@ -121,9 +121,8 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
         "a drive fault is reset when power is requested again with Reset and DRIVES ON",
     )
     _drive(file, name)
-    file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.pos-cmd", place=place, needed=True)
-    file.role(f"{path}.feedback", f"{name}-pos-fb", f"{pin}.pos-fb", place=place, needed=True)
-    file.role(f"{path}.fault", f"{name}-fault", f"{pin}.drv-fault", place=place)
+    file.positions(axis.name, [f"{pin}.pos-cmd"], [f"{pin}.pos-fb"], place)
+    file.role(f"hal.axes.{axis.name}.fault", f"{name}-fault", f"{pin}.drv-fault", place=place)
 
 
 def _spindle(file: HalFile) -> None:
@@ -138,13 +137,13 @@ def _spindle(file: HalFile) -> None:
             sign * 4 * file.lathe.encoder_lines,
             "increments of object 6064 per revolution: 4 x encoder lines",
         )
-        further = spindle_as_c.turns(file)
+        further = c_turn_pins(file)
         file.role("hal.spindle.position", "spindle-turns", f"{pin}.pos-fb", *further, place=place)
     _drive(file, "spindle")
     file.setp("spindle-per-s.gain", 1.0 / 60.0)
     file.net("spindle-rpm-fb", f"{pin}.velocity-fb", "spindle-per-s.in")
     file.role("hal.spindle.velocity", "spindle-rps", "spindle-per-s.out", place=place)
-    speed, on = spindle_as_c.chosen_speed(file, f"{pin}.velocity-cmd", f"{pin}.enable")
+    speed, on = c_speed_pins(file, f"{pin}.velocity-cmd", f"{pin}.enable")
     file.role("hal.spindle.speed", "spindle-rpm-cmd", speed, place=place, needed=True)
     file.role("hal.spindle.on", "spindle-on", on, place=place, needed=True)
     file.role("hal.spindle.fault", "spindle-fault", f"{pin}.drv-fault", place=place)

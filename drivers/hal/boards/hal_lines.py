@@ -170,6 +170,12 @@ class HalFile:
         self._wire(path, signal, on, place, name)
         return signal
 
+    def positions(self, axis: str, command: Iterable[str], feedback: Iterable[str], place: str = "") -> None:
+        """Pins of the commanded and of the measured position of an axis."""
+        path, name = f"hal.axes.{axis}", axis.lower()
+        self.role(f"{path}.command", f"{name}-pos-cmd", *command, place=place, needed=True)
+        self.role(f"{path}.feedback", f"{name}-pos-fb", *feedback, place=place, needed=True)
+
     def at_terminal(self, path: str, signal: str, name: str, pin: str, *, drives: bool = True) -> None:
         """A terminal that [board] names, wired to one pin."""
         found = self.terminal(name)

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import re
 
-from drivers.hal.boards import spindle_as_c
+from drivers.hal.boards.board_parts import (
+    NOTES,
+    c_speed_pins,
+    encoder,
+    load_c,
+    load_card,
+    load_pid,
+    spindle_encoder,
+)
 from drivers.hal.boards.hal_lines import C, HalFile, Lathe, LatheAxis, Terminal
-from drivers.hal.boards.mesa_card import NOTES, encoder, load_card, load_pid, spindle_encoder
 
 _CARD = "hm2_7i97.0"
 _IN = re.compile(re.escape(_CARD) + r"\.inmux\.00\.input-(\d\d)(-not)?")
@@ -46,7 +53,7 @@ def mesa_servo_lathe(lathe: Lathe) -> HalFile:
     load_card(file, _CARD, f"num_encoders={encoders} num_pwmgens={1 + max(channels)} num_stepgens=0")
     load_pid(file, lathe.driven)
     if lathe.c is not None:
-        spindle_as_c.load(file, chosen=True)
+        load_c(file, chosen=True)
     file.section("Analog outputs")
     file.setp(f"{_CARD}.pwmgen.pwm_frequency", _PWM_HZ)
     for axis in lathe.driven:
@@ -83,7 +90,7 @@ def _analog(file: HalFile, pin: str, full: float, what: str) -> None:
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
-    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    board, name = file.lathe.board.axes[axis.name], axis.name.lower()
     out, counter, pid = (
         f"{_CARD}.pwmgen.{board.channel:02d}",
         f"{_CARD}.encoder.{board.channel:02d}",
@@ -101,16 +108,8 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     file.setp(f"{pid}.FF2", board.ff2)
     file.setp(f"{pid}.maxoutput", full, f"{axis.unit}/s: 10 V")
     file.setp(f"{pid}.error-previous-target", 1)
-    file.role(f"{path}.command", f"{name}-pos-cmd", f"{pid}.command", place=place, needed=True)
-    file.role(
-        f"{path}.feedback",
-        f"{name}-pos-fb",
-        f"{counter}.position",
-        f"{pid}.feedback",
-        place=place,
-        needed=True,
-    )
-    index = f"{path}.index_enable"
+    file.positions(axis.name, [f"{pid}.command"], [f"{counter}.position", f"{pid}.feedback"], place)
+    index = f"hal.axes.{axis.name}.index_enable"
     file.role(index, f"{name}-index", f"{counter}.index-enable", f"{pid}.index-enable", place=place)
     file.net(f"{name}-output", f"{pid}.output", f"{out}.value")
 
@@ -121,6 +120,6 @@ def _speed(file: HalFile) -> None:
     file.section(f"Spindle: analog output {board.channel}")
     _analog(file, pin, board.full_speed, "spindle speed at 10 V, in rpm")
     speed = "speed" if file.lathe.names.get("hal.spindle.speed") else "speed_abs"
-    value, enable = spindle_as_c.chosen_speed(file, f"{pin}.value", f"{pin}.enable")
+    value, enable = c_speed_pins(file, f"{pin}.value", f"{pin}.enable")
     file.role(f"hal.spindle.{speed}", "spindle-rpm-cmd", value, place=place, needed=True)
     file.role("hal.spindle.on", "spindle-on", enable, place=f"enable of {place}", needed=True)

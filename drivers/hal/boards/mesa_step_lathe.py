@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import re
 
-from drivers.hal.boards import spindle_as_c
+from drivers.hal.boards.board_parts import (
+    NOTES,
+    change_over_to_c,
+    close_c_loop,
+    load_c,
+    load_card,
+    load_pid,
+    spindle_encoder,
+)
 from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
-from drivers.hal.boards.mesa_card import NOTES, load_card, load_pid, spindle_encoder
 
 _CARD = "hm2_7i76e.0"
 _FIELD = f"{_CARD}.7i76.0.0"  # the card's own field I/O, first port of its smart serial
@@ -138,26 +145,25 @@ def _steps(file: HalFile, axis: LatheAxis) -> str:
 
 def _spindle_c(file: HalFile, axis: LatheAxis) -> None:
     """The same drive takes steps once it is changed over; its place is the spindle's encoder."""
-    spindle_as_c.load(file, chosen=False)
+    load_c(file, chosen=False)
     file.section(
         f"C: step generator {file.lathe.board.axes[axis.name].channel} for the spindle drive, "
         "with feedback from the spindle encoder"
     )
     pin = _steps(file, axis)
     file.setp(f"{pin}.control-type", 1)
-    spindle_as_c.loop(file, axis, f"{pin}.velocity-cmd")
-    spindle_as_c.changed_over(file)
+    close_c_loop(file, axis, f"{pin}.velocity-cmd")
+    change_over_to_c(file)
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
-    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    board, name = file.lathe.board.axes[axis.name], axis.name.lower()
     place = f"TB{2 if board.channel < 4 else 3} STEP{board.channel} DIR{board.channel}"
     file.section(f"Axis {axis.name}: step generator {board.channel}, {board.mode} mode")
     pin = _steps(file, axis)
     if board.mode == "position":
         file.setp(f"{pin}.control-type", 0)
-        file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.position-cmd", place=place, needed=True)
-        file.role(f"{path}.feedback", f"{name}-pos-fb", f"{pin}.position-fb", place=place, needed=True)
+        file.positions(axis.name, [f"{pin}.position-cmd"], [f"{pin}.position-fb"], place)
         return
     file.setp(f"{pin}.control-type", 1)
     file.setp(
@@ -176,15 +182,8 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     file.setp(f"pid.{name}.maxerror", max(_MOST_ERROR, 2.0 * axis.count), axis.unit)
     file.setp(f"pid.{name}.maxoutput", 1.5 * axis.vmax, f"{axis.unit}/s")
     file.setp(f"pid.{name}.error-previous-target", 1)
-    file.role(f"{path}.command", f"{name}-pos-cmd", f"pid.{name}.command", place=place, needed=True)
-    file.role(
-        f"{path}.feedback",
-        f"{name}-pos-fb",
-        f"{pin}.position-fb",
-        f"pid.{name}.feedback",
-        place=place,
-        needed=True,
-    )
+    measured = f"{pin}.position-fb", f"pid.{name}.feedback"
+    file.positions(axis.name, [f"pid.{name}.command"], measured, place)
     file.net(f"{name}-vel-cmd", f"pid.{name}.output", f"{pin}.velocity-cmd")
 
 

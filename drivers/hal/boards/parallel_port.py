@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from drivers.hal.boards import spindle_as_c
+from drivers.hal.boards.board_parts import c_turn_pins, change_over_to_c, close_c_loop, load_c
 from drivers.hal.boards.hal_lines import HalFile, Lathe, LatheAxis, Terminal
 
 _PIN = re.compile(r"parport\.0\.pin-(\d\d)-(in|in-not|out)")
@@ -39,7 +39,7 @@ def parallel_port(lathe: Lathe) -> HalFile:
     for channel, axis in enumerate(lathe.axes):
         _axis(file, channel, axis)
     if lathe.c is not None:
-        spindle_as_c.changed_over(file)
+        change_over_to_c(file)
     file.section("Drive power")
     file.enable(*(f"stepgen.{channel}.enable" for channel in range(len(lathe.axes))))
     if lathe.board.spindle.pwm:
@@ -70,7 +70,7 @@ def _load(file: HalFile, *, encoder: bool) -> None:
     file.base += ["parport.0.write", "parport.0.reset"]
     file.first += ["stepgen.capture-position", *["encoder.capture-position"] * encoder]
     if lathe.c is not None:
-        spindle_as_c.load(file, chosen=False)
+        load_c(file, chosen=False)
     file.last += ["stepgen.update-freq", *["pwmgen.update"] * pwm]
 
 
@@ -82,7 +82,7 @@ def _terminal(name: str) -> Terminal | None:
 
 
 def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
-    board, name, path = file.lathe.board.axes[axis.name], axis.name.lower(), f"hal.axes.{axis.name}"
+    board, name = file.lathe.board.axes[axis.name], axis.name.lower()
     pin = f"stepgen.{channel}"
     file.section(f"Axis {axis.name}: step generator {channel}")
     sign = -1.0 if board.reversed else 1.0
@@ -106,10 +106,9 @@ def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
             "after the switch to step mode, the spindle drive follows these step pulses; the "
             "spindle encoder reports the spindle position"
         )
-        spindle_as_c.loop(file, axis, f"{pin}.velocity-cmd")
+        close_c_loop(file, axis, f"{pin}.velocity-cmd")
     else:
-        file.role(f"{path}.command", f"{name}-pos-cmd", f"{pin}.position-cmd", needed=True)
-        file.role(f"{path}.feedback", f"{name}-pos-fb", f"{pin}.position-fb", needed=True)
+        file.positions(axis.name, [f"{pin}.position-cmd"], [f"{pin}.position-fb"])
     for what, port in (("step", board.step), ("dir", board.direction)):
         file.at_terminal(
             f"board.axis.{axis.name}.{'step' if what == 'step' else 'direction'}",
@@ -141,7 +140,7 @@ def _encoder(file: HalFile) -> None:
         if port:
             key = f"board.spindle.phase_{phase.lower()}"
             file.at_terminal(key, f"spindle-{phase.lower()}", port, f"encoder.0.phase-{phase}", drives=False)
-    file.role("hal.spindle.position", "spindle-turns", "encoder.0.position", *spindle_as_c.turns(file))
+    file.role("hal.spindle.position", "spindle-turns", "encoder.0.position", *c_turn_pins(file))
     file.role("hal.spindle.velocity", "spindle-rps", "encoder.0.velocity")
     if board.phase_z:
         file.role("hal.spindle.index_enable", "spindle-index", "encoder.0.index-enable")

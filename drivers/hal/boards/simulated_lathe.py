@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from drivers.hal.boards import spindle_as_c
+from drivers.hal.boards.board_parts import c_turn_pins, load_simulated_c, simulated_c_speed
 from drivers.hal.boards.hal_lines import HalFile, Lathe, Terminal, signal_of
 
 _TRAILS = 0.67  # of the way to its setpoint that a slide makes in one period
@@ -28,7 +28,7 @@ def simulated_lathe(lathe: Lathe) -> HalFile:
     file.first += ["spindle-ramp", "spindle-rps", "spindle"]
     file.last += [f"{name}-{what}" for what in ("servo", "motor") for name in names] + ["collet-switch"]
     if lathe.c is not None:
-        spindle_as_c.load_simulated(file)
+        load_simulated_c(file)
     file.section(
         "Axes: each axis lags its setpoint by half of the distance that it travels in one "
         "period; an axis without power does not move"
@@ -60,8 +60,8 @@ def _spindle(file: HalFile) -> None:
     file.setp("spindle.scale", 1.0)
     file.role("hal.spindle.speed", "spindle-rpm-cmd", "spindle-ramp.in")
     file.net("spindle-rpm", "spindle-ramp.out", "spindle-rps.in")
-    file.role("hal.spindle.velocity", "spindle-rps", spindle_as_c.simulated(file), "spindle.velocity-cmd")
-    further = spindle_as_c.turns(file)
+    file.role("hal.spindle.velocity", "spindle-rps", simulated_c_speed(file), "spindle.velocity-cmd")
+    further = c_turn_pins(file)
     file.role("hal.spindle.position", "spindle-turns", "spindle.position-fb", *further)
     file.role("hal.spindle.index_enable", "spindle-index", "spindle.index-enable")
 

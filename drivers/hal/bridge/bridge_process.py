@@ -22,8 +22,8 @@ from typing import Any
 sys.path.append(str(Path(__file__).resolve().parents[3]))
 
 from drivers.hal.bridge import hal_pins
-from drivers.hal.bridge.hal_bridge import Bridge, BridgeAxis, BridgeConfig
-from drivers.hal.bridge.packets import Head, pack, unpack
+from drivers.hal.bridge.hal_bridge import Bridge
+from drivers.hal.bridge.packets import BridgeAxis, BridgeConfig, Head, pack, unpack
 
 _PERIOD = 0.002  # s between two rounds
 _REPORTS = 2  # rounds between two reports

@@ -9,11 +9,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Protocol
 
-from drivers.hal.bridge.packets import Head, flat, number, pack, pieces_of, text
-from drivers.hal.bridge.row_streams import Pins, RowStreams, Stream
+from drivers.hal.bridge.packets import BridgeConfig, Head, flat, number, pack, pieces_of, text
+from drivers.hal.bridge.row_streams import Pins, RowStreams, Sampler, Stream
 from drivers.hal.bridge.setpoint_player import Player, rows_of
 from drivers.setpoint_pieces import INF, Piece
 
@@ -33,47 +31,6 @@ _STANDS = 0.1  # turns/s
 _SURE = 0.9  # of the time until the spindle is somewhere, as it turns now
 _ROWS = 300  # samples in one report
 _STILL = 1e-3  # mm/s
-
-
-@dataclass(frozen=True, slots=True)
-class BridgeAxis:
-    """One axis: what it brakes with, and how far it may be off its setpoint for how long."""
-
-    name: str
-    amax: float
-    window: float
-    time: float
-    is_spindle: bool = False  # it follows only while the spindle's drive is C
-
-
-@dataclass(frozen=True, slots=True)
-class BridgeConfig:
-    """What the bridge has to know of the machine. ``outputs``: their safe states, None keeps.
-
-    ``turns`` and ``speed``: the samples have them, behind the axes. ``bits``: pins that are told as they are.
-    """
-
-    axes: tuple[BridgeAxis, ...]
-    period: float
-    ahead: float
-    outputs: Mapping[str, bool | None] = field(default_factory=dict)
-    lamps: tuple[str, ...] = ()  # of the outputs: they tell of an open chain
-    inputs: tuple[str, ...] = ()
-    analog: tuple[str, ...] = ()
-    bits: tuple[str, ...] = ()
-    spindle: tuple[str, ...] = ()  # pins that are written
-    turns: bool = False
-    speed: bool = False
-    marks: int = 0  # bits at the end of each sample: switches for homing, the probe
-    figures: tuple[str, ...] = ()  # pins with numbers
-
-
-class Sampler(Protocol):
-    """``hal.stream`` of the sampler."""
-
-    @property
-    def readable(self) -> bool: ...
-    def read(self) -> Sequence[float]: ...
 
 
 class Bridge:

@@ -1,4 +1,7 @@
-"""One packet between the driver and its bridge: the length of a JSON head, the head, and doubles."""
+"""Packets between the driver and its bridge, and what the bridge has to know of the machine.
+
+A packet is the length of a JSON head, the head, and doubles.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ import json
 import struct
 from array import array
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from drivers.setpoint_pieces import Piece
 
@@ -66,3 +70,36 @@ def text(head: Mapping[str, object], key: str) -> str:
     """A text of a head."""
     value = head.get(key)
     return value if isinstance(value, str) else ""
+
+
+@dataclass(frozen=True, slots=True)
+class BridgeAxis:
+    """One axis: what it brakes with, and how far it may be off its setpoint for how long."""
+
+    name: str
+    amax: float
+    window: float
+    time: float
+    is_spindle: bool = False  # it follows only while the spindle's drive is C
+
+
+@dataclass(frozen=True, slots=True)
+class BridgeConfig:
+    """What the bridge has to know of the machine. ``outputs``: their safe states, None keeps.
+
+    ``turns`` and ``speed``: the samples have them, behind the axes. ``bits``: pins that are told as they are.
+    """
+
+    axes: tuple[BridgeAxis, ...]
+    period: float
+    ahead: float
+    outputs: Mapping[str, bool | None] = field(default_factory=dict)
+    lamps: tuple[str, ...] = ()  # of the outputs: they tell of an open chain
+    inputs: tuple[str, ...] = ()
+    analog: tuple[str, ...] = ()
+    bits: tuple[str, ...] = ()
+    spindle: tuple[str, ...] = ()  # pins that are written
+    turns: bool = False
+    speed: bool = False
+    marks: int = 0  # bits at the end of each sample: switches for homing, the probe
+    figures: tuple[str, ...] = ()  # pins with numbers

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
 _NEVER = -1.0  # a row that does not come
@@ -194,3 +194,11 @@ class RowStreams:
 
 def _same(one: Row, other: Row) -> bool:
     return all(abs(a - b) <= _SAME for a, b in zip(one, other, strict=True))
+
+
+class Sampler(Protocol):
+    """``hal.stream`` of the sampler."""
+
+    @property
+    def readable(self) -> bool: ...
+    def read(self) -> Sequence[float]: ...

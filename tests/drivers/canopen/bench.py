@@ -16,9 +16,9 @@ from app.compose.canopen_backend import canopen_machine, canopen_peers
 from app.compose.machine_files import parse_machine
 from core.machine.machine_model import Machine
 from drivers.canopen.canopen_machine import CanopenMachine
-from drivers.clocks import StepClock
 from drivers.simulators.canopen_devices import CanopenDevices
 from drivers.simulators.canopen_node import Device
+from drivers.waiting import StepClock
 
 TICK = 0.005
 _channels = itertools.count()

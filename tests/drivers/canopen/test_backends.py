@@ -10,8 +10,8 @@ from app.compose.canopen_backend import can_driven
 from app.compose.machine_files import load_machine, parse_machine
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.clocks import StepClock
 from drivers.operator_station import PanelStation
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import can_machine
 

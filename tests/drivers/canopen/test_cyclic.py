@@ -10,7 +10,7 @@ import pytest
 from core.faults import code_of
 from core.ports import Segments, Stop
 from drivers.canopen import canopen_objects as od
-from drivers.canopen.cyclic_mode import SyncSchedule
+from drivers.canopen.position_modes import SyncSchedule
 from tests.drivers.canopen.bench import CanBench, cyclic
 from tests.drivers.machines import ramp
 

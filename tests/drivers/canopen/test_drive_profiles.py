@@ -8,11 +8,11 @@ import resources
 from app.compose.machine_files import parse_machine
 from core.ports import Segments
 from core.table_schema import Finding, MachineFileError
-from drivers.canopen.bus_load import cyclic_load, frame_bits
 from drivers.canopen.canopen_config import AxisConfig
 from drivers.canopen.canopen_objects import drive_objects
+from drivers.canopen.canopen_rules import cyclic_load, frame_bits
 from drivers.canopen.drive_profiles import CIA402, PROFILES, profile_of
-from drivers.canopen.pvt_records import segment, unpacked_segment
+from drivers.canopen.driven_axes import segment, unpacked_segment
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
 from tests.drivers.machines import ramp
 

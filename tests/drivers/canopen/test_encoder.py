@@ -13,7 +13,7 @@ from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen.canopen_encoder import CanEncoder
 from drivers.canopen.canopen_survey import survey
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 

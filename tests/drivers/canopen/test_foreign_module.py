@@ -15,7 +15,7 @@ from drivers.canopen.canopen_nodes import CanNode
 from drivers.canopen.canopen_nodes import CanTerminal as Terminal
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.canopen.canopen_terminals import CanopenIO
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.canopen.foreign import NODE, ForeignModule
 

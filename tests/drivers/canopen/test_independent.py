@@ -12,8 +12,8 @@ from canopen.profiles.p402 import BaseNode402
 from app.compose.canopen_backend import canopen_peers
 from drivers.canopen.canopen_objects import drive_objects
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.clocks import RealClock
 from drivers.simulators.canopen_devices import CanopenDevices
+from drivers.waiting import RealClock
 from tests.drivers.canopen.bench import can_machine
 
 PATIENT = (

@@ -13,7 +13,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import State
 from core.ports import MachinePorts
 from drivers.canopen.canopen_encoder import MeasuredSpindle
-from drivers.inverter.inverter_obedience import Agreement
+from drivers.inverter.inverter_attendant import Agreement
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
 from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_encoder import OWN

@@ -21,7 +21,7 @@ from core.ports import DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.canopen.drive_profiles import profile_of
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic, says
 from tests.drivers.machines import ramp
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from drivers.canopen.driven_axes import packed, unpacked
 from drivers.canopen.pvt_mode import deviation, hermite, span
-from drivers.canopen.pvt_records import packed, unpacked
 
 Point = tuple[tuple[float, ...], tuple[float, ...]]
 

@@ -13,9 +13,9 @@ from core.faults import code_of
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen import canopen_objects as od
-from drivers.clocks import StepClock
 from drivers.simulators.canopen_axis_drive import AxisDrive
 from drivers.simulators.canopen_devices import CanopenDevices
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic, says
 from tests.drivers.machines import ramp

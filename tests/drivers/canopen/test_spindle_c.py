@@ -11,8 +11,8 @@ from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Rese
 from core.executor.snapshot import State
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.canopen.spindle_as_c import SpindleC, Step
-from drivers.clocks import StepClock
+from drivers.canopen.canopen_spindle import SpindleC, Step
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.canopen.test_executor import BusRig

@@ -12,7 +12,7 @@ from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen.canopen_survey import Answer, survey
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import can_machine
 

@@ -16,8 +16,8 @@ from drivers.canopen.canopen_machine import CanopenMachine
 from drivers.feeder.feeder_line import Line, Link, cleared
 from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Driven, Feeder
-from drivers.reopening import Opening
 from drivers.simulators.plant_hands import PlantHands
+from drivers.waiting import Opening
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.simulated import FEEDER_FAULTS, FEEDER_WORDS, BrokenLink

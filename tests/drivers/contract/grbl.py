@@ -9,11 +9,11 @@ from typing import ClassVar
 from app.compose.grblhal_backend import grblhal_config
 from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN
-from drivers.clocks import StepClock
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.operator_station import PanelStation
 from drivers.simulators.grblhal_firmware import Firmware
 from drivers.simulators.spindle_motor import SpindleMotor
+from drivers.waiting import StepClock
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import Readings
 from tests.drivers.grblhal.bench import LoopWire, grbl_machine, quirky

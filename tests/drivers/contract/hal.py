@@ -15,10 +15,10 @@ from app.compose.machine_files import parse_machine
 from app.compose.simulated_backend import sim_config
 from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN
-from drivers.clocks import StepClock
 from drivers.hal.hal_machine import HalMachine
 from drivers.simulators.hal_far_end import HalFarEnd
 from drivers.simulators.plant_hands import PlantHands
+from drivers.waiting import StepClock
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 

@@ -12,8 +12,7 @@ import resources
 from app.compose.inverter_backend import ClearingAxes, halt_with, unknown_with
 from app.compose.machine_files import parse_machine
 from core.ports import Unknown
-from drivers.inverter.inverter_attendant import AttendantThread
-from drivers.inverter.inverter_obedience import PRESS
+from drivers.inverter.inverter_attendant import PRESS, AttendantThread
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
 from tests.drivers.contract.lockstep import LockstepClock
 from tests.drivers.contract.rig import Fault

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 
 _LOOK = 0.02  # s of real time between two looks whether the other thread still lives
 

@@ -11,8 +11,8 @@ from typing import ClassVar
 from core.faults import FaultCode
 from core.machine.machine_model import Machine
 from core.ports import BlockSink, MachinePorts, Unknown
-from drivers.clocks import StepClock
 from drivers.simulators.plant_hands import PlantHands
+from drivers.waiting import StepClock
 from tests.drivers.contract.moves import hand_over, start
 from tests.drivers.contract.world import World
 

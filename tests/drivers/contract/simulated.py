@@ -10,14 +10,12 @@ from app.compose.machine_files import load_machine
 from app.compose.simulated_backend import simulated
 from core.machine.machine_model import InputModel, Machine
 from core.ports import ALL_UNKNOWN, DriverError, MachinePorts
-from drivers.clocks import StepClock
-from drivers.feeder.feeder_line import Line, Link, cleared
-from drivers.feeder.feeder_links import LoopLink
+from drivers.feeder.feeder_line import Line, Link, LoopLink, cleared
 from drivers.feeder.feeder_messages import Message
 from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Driven, Feeder
-from drivers.reopening import Opening
 from drivers.simulators.plant_hands import PlantHands
+from drivers.waiting import Opening, StepClock
 from tests.drivers.contract.rig import Fault, Rig
 from tests.drivers.contract.world import SimWorld
 

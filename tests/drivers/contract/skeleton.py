@@ -24,12 +24,12 @@ from core.ports import (
     Stop,
     Unknown,
 )
-from drivers.clocks import StepClock
 from drivers.operator_station import PanelStation
 from drivers.setpoint_queue import SetpointQueue, Tolerance, check_limits
 from drivers.simulators.plant_config import SimConfig
 from drivers.simulators.plant_terminals import Terminals
 from drivers.simulators.spindle_motor import SpindleMotor
+from drivers.waiting import StepClock
 from tests.drivers.contract import rig
 from tests.drivers.contract.simulated import unhomed, with_probe
 from tests.drivers.contract.world import Readings

@@ -12,8 +12,8 @@ import resources
 from app.compose.canopen_backend import canopen_peers
 from app.compose.machine_files import load_machine
 from core.ports import DriverError
-from drivers.clocks import StepClock
 from drivers.simulators.canopen_devices import CanopenDevices
+from drivers.waiting import StepClock
 from tests.late_computer import tell
 
 # A bus whose times a loaded computer can keep: nothing here is about how fast Python is.

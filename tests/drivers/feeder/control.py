@@ -12,8 +12,8 @@ from app.compose.feeder_process import FeederProcess
 from app.compose.machine_files import load_machine
 from core.faults import code_of
 from core.ports import Segments
-from drivers.clocks import RealClock
 from drivers.feeder.feeder_ports import feeder_ports
+from drivers.waiting import RealClock
 
 SPEED, CRUISE, UP = 20.0, 1.4, 0.02  # mm/s, s, s: 28.4 mm of X and as much of Z
 TICK = 0.02

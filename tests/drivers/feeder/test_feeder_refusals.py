@@ -11,14 +11,13 @@ from collections.abc import Callable
 import pytest
 
 from core.ports import DriverError
-from drivers.clocks import StepClock
-from drivers.feeder import feeder_links, feeder_loop
-from drivers.feeder.feeder_line import Line, cleared
-from drivers.feeder.feeder_links import LoopLink, SocketLink
+from drivers.feeder import feeder_line, feeder_loop
+from drivers.feeder.feeder_line import Line, LoopLink, SocketLink, cleared
 from drivers.feeder.feeder_messages import NOTHING, Message, floats, packed
 from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Driven, Feeder
 from drivers.simulated.simulated_machine import Simulation, build_simulation
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.contract.simulated import simulation_driven
 from tests.drivers.machines import CONFIG
@@ -131,7 +130,7 @@ def test_a_reset_that_the_drives_refuse_starts_no_feeder(monkeypatch: pytest.Mon
 
 def test_an_answer_in_parts_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
     """A socket gives what has come: half a message is none yet, and no end of the feeder."""
-    monkeypatch.setattr(feeder_links, "_CHUNK", 5)  # bytes
+    monkeypatch.setattr(feeder_line, "_CHUNK", 5)  # bytes
     ours, theirs = socket.socketpair()
     theirs.sendall(packed(Message({"value": 7.0}, NOTHING)))
     link = SocketLink(ours)

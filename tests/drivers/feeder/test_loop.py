@@ -20,15 +20,14 @@ from app.compose.feeder_process import FeederProcess, beat, without_priority
 from app.compose.machine_files import parse_machine
 from core.faults import code_of
 from core.ports import DriverError, MachinePorts
-from drivers.clocks import RealClock, StepClock
-from drivers.feeder import feeder_links, feeder_loop
-from drivers.feeder.feeder_line import Line
-from drivers.feeder.feeder_links import SocketLink
+from drivers.feeder import feeder_line, feeder_loop
+from drivers.feeder.feeder_line import Line, SocketLink
 from drivers.feeder.feeder_loop import Ear, serve
 from drivers.feeder.feeder_messages import NOTHING, Message, packed
 from drivers.feeder.feeder_ports import feeder_ports
 from drivers.feeder.feeder_server import Driven, Feeder
 from drivers.simulated.simulated_machine import Simulation, build_simulation
+from drivers.waiting import RealClock, StepClock
 from tests.coded import raises_code
 from tests.drivers.contract.simulated import simulation_driven
 from tests.drivers.machines import CONFIG
@@ -37,7 +36,7 @@ from tests.drivers.machines import CONFIG
 @pytest.fixture
 def patient(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
     """A control that waits for an answer as long as a loaded computer may take: no test of lateness."""
-    monkeypatch.setattr(feeder_links, "_QUICK", 60.0)
+    monkeypatch.setattr(feeder_line, "_QUICK", 60.0)
     return monkeypatch
 
 
@@ -255,7 +254,7 @@ def test_a_feeder_that_stands_while_its_control_sleeps_is_told_with_the_next_loo
     ports.wakeup.wait(0.0)
     process.process.send_signal(signal.SIGSTOP)
     assert not ports.wakeup.wait(0.1)
-    patient.setattr(feeder_links, "_QUICK", 0.5)
+    patient.setattr(feeder_line, "_QUICK", 0.5)
     sample = ports.axes.sample()
     assert code_of(sample.fault, "driver") == "feeder-silent"
     assert not sample.enabled

@@ -9,7 +9,7 @@ import pytest
 import resources
 from app.compose.feeder_process import FeederProcess
 from app.compose.machine_files import parse_machine
-from drivers.clocks import RealClock
+from drivers.waiting import RealClock
 
 
 def test_closing_in_a_restart_leaves_no_broken_thread_and_no_feeder(monkeypatch: pytest.MonkeyPatch) -> None:

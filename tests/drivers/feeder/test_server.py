@@ -10,15 +10,12 @@ import numpy as np
 import pytest
 
 from core.ports import DriverError, MachinePorts
-from drivers.clocks import StepClock
-from drivers.feeder.feeder_hands import FeederHands
-from drivers.feeder.feeder_line import Line
-from drivers.feeder.feeder_links import LoopLink
+from drivers.feeder.feeder_line import Line, LoopLink
 from drivers.feeder.feeder_messages import LARGEST, NOTHING, Inbox, Message, packed
-from drivers.feeder.feeder_ports import feeder_ports
+from drivers.feeder.feeder_ports import FeederHands, feeder_ports
 from drivers.feeder.feeder_server import PERIOD, RESTS, Driven, Feeder, TripGuard, act
 from drivers.simulated.simulated_machine import Simulation, build_simulation
-from drivers.wakeup import Bell
+from drivers.waiting import Bell, StepClock
 from tests.coded import raises_code
 from tests.drivers.contract.simulated import simulation_driven
 from tests.drivers.machines import CONFIG, ramp

@@ -19,11 +19,11 @@ from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
-from drivers.clocks import StepClock
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_wire import WireLostError
 from drivers.simulators.grblhal_firmware import Firmware
 from drivers.simulators.grblhal_settings import Quirks
+from drivers.waiting import StepClock
 
 TICK = 0.01
 SHIPPED = resources.machine_file("gt75-grblhal.toml")

@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 from core.ports import Clock
-from drivers.clocks import RealClock, StepClock
 from drivers.simulators.grblhal_firmware import Firmware
+from drivers.waiting import RealClock, StepClock
 from tests.drivers.grblhal.bench import quirky
 from tests.drivers.grblhal.test_like_the_simulator import AS_IT_COMES
 from tests.free_port import free_port

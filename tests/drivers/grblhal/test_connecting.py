@@ -11,10 +11,10 @@ from app.compose.grblhal_backend import grblhal_config
 from core.executor.commands import EnableDrives, Reset
 from core.executor.snapshot import State
 from core.ports import DriverError, LineOp
-from drivers.clocks import StepClock
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_wire import TcpWire
 from drivers.simulators.grblhal_firmware import Firmware
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import GrblBench, LoopWire, grbl_machine, quirky
 

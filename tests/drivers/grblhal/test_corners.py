@@ -6,10 +6,10 @@ import math
 
 import pytest
 
-from drivers.clocks import StepClock
 from drivers.simulators.grblhal_firmware import Firmware
 from drivers.simulators.grblhal_settings import Quirks, Registers
 from drivers.simulators.grblhal_slides import Place, PlannedBlock, Slides, straight
+from drivers.waiting import StepClock
 
 STEP = 0.001
 ACCEL = 3000.0  # $120 and $122 of the simulator, mm/s²

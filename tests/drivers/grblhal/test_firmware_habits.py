@@ -9,8 +9,8 @@ import math
 
 import pytest
 
-from drivers.clocks import StepClock
 from drivers.simulators.grblhal_firmware import Firmware
+from drivers.waiting import StepClock
 from tests.drivers.grblhal.bench import quirky
 
 LATHE = b"G8G18G21G90G94G97\n"

@@ -16,10 +16,10 @@ from app.compose.grblhal_backend import grblhal_config
 from app.compose.machine_files import load_machine, parse_machine
 from core.ports import DriverError
 from core.table_schema import MachineFileError
-from drivers.clocks import RealClock
 from drivers.simulators.grblhal_far_end import TcpEnd, serve
 from drivers.simulators.grblhal_firmware import Firmware
 from drivers.simulators.spindle_motor import SpindleFaults
+from drivers.waiting import RealClock
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import SHIPPED, quirky
 from tests.drivers.inverter.inverter_simulators import HuanyangSlave, Inverter

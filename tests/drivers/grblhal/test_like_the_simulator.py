@@ -11,9 +11,9 @@ import pytest
 from app.cli.main import main
 from core.executor.commands import Reset
 from core.executor.snapshot import State
-from drivers.clocks import RealClock
 from drivers.simulators.grblhal_far_end import TcpEnd, serve
 from drivers.simulators.grblhal_firmware import Firmware
+from drivers.waiting import RealClock
 from tests.drivers.grblhal.bench import SHIPPED, GrblBench, quirky
 from tests.drivers.grblhal.test_faults import THREAD
 from tests.texts import text as text_of

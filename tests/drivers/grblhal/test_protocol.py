@@ -6,13 +6,13 @@ import pytest
 
 from app.compose.grblhal_backend import grblhal_config
 from core.ports import ArcOp, DriverError, LineOp, RapidOp, ThreadOp
-from drivers.clocks import StepClock
-from drivers.grblhal.grblhal_dialogue import Stream
-from drivers.grblhal.grblhal_gcode import jog_line, line_of, number
+from drivers.grblhal.grblhal_codes import jog_line, line_of, number
 from drivers.grblhal.grblhal_machine import GrblMachine
-from drivers.grblhal.grblhal_overrides import steps_to
+from drivers.grblhal.grblhal_operator import steps_to
 from drivers.grblhal.grblhal_report import read_identity, read_report
 from drivers.grblhal.grblhal_scripts import MISSED
+from drivers.grblhal.grblhal_wire import Stream
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import grbl_machine
 

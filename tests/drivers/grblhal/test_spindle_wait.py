@@ -10,11 +10,11 @@ import pytest
 from core.executor.commands import Reset
 from core.executor.snapshot import State
 from core.faults import code_of
-from drivers.clocks import StepClock
-from drivers.grblhal.grblhal_waits import AT_MOST, longest_wait
+from drivers.grblhal.grblhal_reported import AT_MOST, longest_wait
 from drivers.simulators.grblhal_firmware import Firmware
 from drivers.simulators.plant_config import SimSpindle
 from drivers.simulators.spindle_motor import SpindleMotor
+from drivers.waiting import StepClock
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 
 TOLERANCE, ON, OFF, COOLANT = 340, 394, 539, 673

@@ -9,7 +9,7 @@ import pytest
 from core.executor.commands import FeedHold, FeedOverride, Reset
 from core.executor.snapshot import State
 from core.ports import ArcOp
-from drivers.grblhal.grblhal_gcode import line_of
+from drivers.grblhal.grblhal_codes import line_of
 from tests.drivers.grblhal.bench import GrblBench, quirky
 from tests.drivers.grblhal.test_faults import THREAD, clear
 

@@ -12,10 +12,10 @@ import pytest
 
 from app.cli.main import main
 from core.ports import DriverError
-from drivers.clocks import RealClock
 from drivers.grblhal.grblhal_wire import open_wire
 from drivers.simulators.grblhal_far_end import PtyEnd, TcpEnd, serve
 from drivers.simulators.grblhal_firmware import Firmware
+from drivers.waiting import RealClock
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import SHIPPED
 from tests.drivers.ptys import open_pty

@@ -22,7 +22,7 @@ from core.executor.snapshot import Event, Snapshot, State
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.proving.prove_program import prove
-from drivers.clocks import RealClock
+from drivers.waiting import RealClock
 from tests.drivers.hal.halrun import as_halrun
 from tests.late_computer import LATE, OF_SILENCE, tell, told_late
 

@@ -8,11 +8,11 @@ from contextlib import contextmanager
 from app.compose.hal_backend import hal_config
 from app.compose.machine_files import parse_machine
 from app.compose.simulated_backend import sim_config
-from drivers.clocks import StepClock
 from drivers.hal.bridge.packets import flat
 from drivers.hal.hal_machine import HalMachine
 from drivers.setpoint_pieces import Piece
 from drivers.simulators.hal_far_end import HalFarEnd
+from drivers.waiting import StepClock
 from tests.drivers.contract.hal import hal_text
 
 LIMIT = ('fault = "x-fault"\n', 'fault = "x-fault"\nlimit_high = "x-high"\n')

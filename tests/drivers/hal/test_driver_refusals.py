@@ -8,9 +8,9 @@ import pytest
 
 from core.faults import code_of
 from core.ports import DriverError, Stop
-from drivers.clocks import StepClock
-from drivers.hal.bridge.hal_bridge import BridgeConfig
+from drivers.hal.bridge.packets import BridgeConfig
 from drivers.hal.hal_link import HalLink
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.hal.played import Bench, powered
 from tests.drivers.hal.test_whom_it_blames import Bridge

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from drivers.hal.hal_leftovers import clear_away, new_folder
+from drivers.hal.hal_session import clear_away, new_folder
 
 
 @pytest.fixture(autouse=True)

@@ -14,8 +14,7 @@ from core.faults import code_of
 from core.ports import DriverError
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_link import HalLink
-from drivers.hal.hal_spindle_c import HalSpindleC, Step
-from drivers.hal.hal_terminals import HalSpindle
+from drivers.hal.hal_spindle import HalSpindle, HalSpindleC, Step
 from tests.coded import raises_code
 from tests.drivers.hal.lathes import PATIENT, changed
 

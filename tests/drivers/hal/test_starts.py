@@ -13,8 +13,7 @@ from app.compose.hal_backend import hal_config
 from app.compose.machine_files import parse_machine
 from core.ports import DriverError
 from drivers.hal.hal_config import HalConfig
-from drivers.hal.hal_leftovers import PREFIX
-from drivers.hal.hal_session import HalSession
+from drivers.hal.hal_session import PREFIX, HalSession
 from tests.coded import raises_code
 from tests.texts import text
 

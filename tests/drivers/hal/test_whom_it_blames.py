@@ -10,13 +10,12 @@ import pytest
 
 from core.faults import code_of
 from core.ports import DriverError
-from drivers.clocks import StepClock
-from drivers.feeder import feeder_links
-from drivers.feeder.feeder_links import SocketLink
+from drivers.feeder import feeder_line
+from drivers.feeder.feeder_line import SocketLink
 from drivers.feeder.feeder_messages import NOTHING, Message
-from drivers.hal.bridge.hal_bridge import BridgeConfig
-from drivers.hal.bridge.packets import Head
+from drivers.hal.bridge.packets import BridgeConfig, Head
 from drivers.hal.hal_link import HalLink
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 
 ROUND = 0.005  # s
@@ -96,8 +95,8 @@ def looks(monkeypatch: pytest.MonkeyPatch) -> list[float]:
         now[0] += took.pop(0) if len(took) > 1 else took[0]
         return [], [], []
 
-    monkeypatch.setattr(feeder_links, "select", SimpleNamespace(select=nothing))
-    monkeypatch.setattr(feeder_links, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    monkeypatch.setattr(feeder_line, "select", SimpleNamespace(select=nothing))
+    monkeypatch.setattr(feeder_line, "time", SimpleNamespace(monotonic=lambda: now[0]))
     return took
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from drivers.clocks import StepClock
 from drivers.inverter.inverter_attendant import Attendant
 from drivers.inverter.inverter_spindle import InverterSpindle, attendant
 from drivers.inverter.inverter_table import InverterTable
+from drivers.waiting import StepClock
 from tests.drivers.inverter.inverter_simulators import (
     HZ_PER_RPM,
     DeltaMemory,

@@ -8,9 +8,9 @@ from __future__ import annotations
 import pytest
 from pymodbus.framer.rtu import FramerRTU
 
-from drivers.clocks import StepClock
 from drivers.inverter.inverter_attendant import Attendant
 from drivers.inverter.inverter_spindle import attendant
+from drivers.waiting import StepClock
 from tests.drivers.inverter.benches import config
 
 ECHO = ""  # the answer is the request

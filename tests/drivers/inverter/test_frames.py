@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.clocks import StepClock
 from drivers.inverter import modbus_rtu
 from drivers.inverter.modbus_rtu import Modbus, NoAnswerError, RefusedError
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, Inverter, RtuSlave
 from tests.drivers.inverter.wires import BenchWire

@@ -19,8 +19,8 @@ from app.compose.machine_files import load_machine
 from core.faults import code_of
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.clocks import RealClock, StepClock
-from drivers.inverter.inverter_obedience import PRESS
+from drivers.inverter.inverter_attendant import PRESS
+from drivers.waiting import RealClock, StepClock
 from tests.coded import raises_code
 from tests.drivers.inverter.benches import FAMILIES
 from tests.drivers.inverter.inverter_simulators import DeltaMemory, HitachiMemory, HuanyangSlave, Inverter

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from drivers.inverter.inverter_attendant import OBEYS_WITHIN, PRESS, Obedience
 from drivers.inverter.inverter_family import Look
-from drivers.inverter.inverter_obedience import OBEYS_WITHIN, PRESS, Obedience
 from tests.texts import text
 
 

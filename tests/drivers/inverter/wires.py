@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import deque
 from typing import Protocol
 
-from drivers.clocks import StepClock
 from drivers.serial_line import WireError
+from drivers.waiting import StepClock
 
 
 class UnexpectedError(Exception):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
 from core.ports import Clock
-from drivers.mtconnect.devices_xml import NAMESPACE
+from drivers.mtconnect.mtconnect_adapter import NAMESPACE
 
 UNAVAILABLE = "UNAVAILABLE"
 

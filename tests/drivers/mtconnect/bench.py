@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 
-from drivers.clocks import StepClock
-from drivers.mtconnect.devices_xml import devices_xml
-from drivers.mtconnect.mtconnect_adapter import Adapter
+from drivers.mtconnect.agent_links import Active, Report, Value
+from drivers.mtconnect.mtconnect_adapter import Adapter, devices_xml
 from drivers.mtconnect.mtconnect_items import Component, Layout, machine_items
 from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Active, Report, Value
+from drivers.waiting import StepClock
 from tests.drivers.mtconnect.agent import FakeAgent
 
 BEGIN = datetime(2026, 1, 31, 23, 59, 58, 500_000, tzinfo=UTC)

@@ -9,11 +9,10 @@ from functools import partial
 import pytest
 
 from core.ports import DriverError
-from drivers.clocks import StepClock
-from drivers.mtconnect.agent_links import BEHIND, READ, AgentLink
+from drivers.mtconnect.agent_links import BEHIND, READ, Active, AgentLink, Report
 from drivers.mtconnect.mtconnect_adapter import MOST, Adapter
 from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Active, Report
+from drivers.waiting import StepClock
 from tests.drivers.mtconnect.bench import HEARTBEAT, Bench
 from tests.texts import shows
 

@@ -8,10 +8,10 @@ import threading
 import pytest
 
 from core.ports import DriverError
-from drivers.clocks import RealClock
+from drivers.mtconnect.agent_links import Report
 from drivers.mtconnect.mtconnect_adapter import Adapter, AdapterThread
 from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Report
+from drivers.waiting import RealClock
 from tests.coded import raises_code
 from tests.drivers.mtconnect.bench import lathe
 

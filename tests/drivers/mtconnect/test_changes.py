@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.mtconnect.shdr_lines import Active, AgentsState, Report, Value
+from drivers.mtconnect.agent_links import Active, AgentsState, Report, Value
 from tests.drivers.mtconnect.bench import lathe
 
 A, B = "2026-01-01T00:00:00.000Z", "2026-01-01T00:00:00.100Z"

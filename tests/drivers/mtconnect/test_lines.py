@@ -6,8 +6,7 @@ from datetime import UTC, datetime
 
 import pytest
 
-from drivers.mtconnect.mtconnect_items import Category, DataItem
-from drivers.mtconnect.shdr_lines import (
+from drivers.mtconnect.agent_links import (
     LONGEST,
     Active,
     active_line,
@@ -19,6 +18,7 @@ from drivers.mtconnect.shdr_lines import (
     unknown_line,
     values_line,
 )
+from drivers.mtconnect.mtconnect_items import Category, DataItem
 from tests.drivers.mtconnect.agent import tokens
 
 AT = "2026-11-21T22:17:39.000Z"

@@ -9,7 +9,7 @@ from xml.etree.ElementTree import Element
 import pytest
 
 from core.ports import DriverError
-from drivers.mtconnect.devices_xml import NAMESPACE, devices_xml
+from drivers.mtconnect.mtconnect_adapter import NAMESPACE, devices_xml
 from drivers.mtconnect.mtconnect_items import Layout, machine_items
 from tests.coded import raises_code
 from tests.drivers.mtconnect.bench import lathe

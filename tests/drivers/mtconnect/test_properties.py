@@ -5,10 +5,10 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from drivers.clocks import StepClock
-from drivers.mtconnect.devices_xml import devices_xml
+from drivers.mtconnect.agent_links import Active, AgentsState, Report, Value, clean, values_line
+from drivers.mtconnect.mtconnect_adapter import devices_xml
 from drivers.mtconnect.mtconnect_items import Category
-from drivers.mtconnect.shdr_lines import Active, AgentsState, Report, Value, clean, values_line
+from drivers.waiting import StepClock
 from tests.drivers.mtconnect.agent import FakeAgent, tokens
 from tests.drivers.mtconnect.bench import BEGIN, lathe
 

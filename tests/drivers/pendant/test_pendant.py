@@ -8,12 +8,9 @@ from collections.abc import Callable
 import pytest
 
 from core.ports import DriverError, StationState
-from drivers.pendant.input_codes import wheel_of
-from drivers.pendant.input_events import InputEvent, Packet, Packets
-from drivers.pendant.pendant_buttons import AxisRange, PendantButtons
-from drivers.pendant.pendant_reader import Pendant
-from drivers.pendant.pendant_station import LOST, PendantIO, PendantStation
-from drivers.pendant.pendant_table import STOPS
+from drivers.pendant.input_devices import AxisRange, InputEvent, Packet, Packets
+from drivers.pendant.pendant_station import LOST, Pendant, PendantButtons, PendantIO, PendantStation
+from drivers.pendant.pendant_table import STOPS, wheel_of
 from tests.coded import raises_code
 from tests.drivers.pendant.made import (
     ABS,

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from core.ports import DriverError
-from drivers.pendant.input_codes import ABS, KEY, REL, Control, button_of, wheel_of
 from drivers.pendant.input_devices import DeviceEntry, KernelDevice, chosen, entries
+from drivers.pendant.pendant_table import ABS, KEY, REL, Control, button_of, wheel_of
 from tests.coded import raises_code
 
 WANTED = {"hold": Control(KEY, 0x131), "handwheel": Control(REL, 7)}

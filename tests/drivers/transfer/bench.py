@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from drivers.clocks import StepClock
 from drivers.serial_line import WireError
+from drivers.waiting import StepClock
 
 
 class OtherSide:

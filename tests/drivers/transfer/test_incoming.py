@@ -7,8 +7,7 @@ from hashlib import sha256
 import pytest
 
 from drivers.serial_line import LineSettings
-from drivers.transfer.program_framing import Incoming, IncompleteError, Phase, Program
-from drivers.transfer.transfer_settings import TransferSettings
+from drivers.transfer.program_framing import Incoming, IncompleteError, Phase, Program, TransferSettings
 from tests.coded import raises_code
 
 EIGHT = TransferSettings(LineSettings("bench"))

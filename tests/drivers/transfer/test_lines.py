@@ -6,12 +6,11 @@ from concurrent.futures import Future, ThreadPoolExecutor
 
 import pytest
 
-from drivers.clocks import RealClock
 from drivers.serial_line import LineSettings, WireError
 from drivers.serial_port import SerialWire
-from drivers.transfer.program_framing import Program, outgoing
+from drivers.transfer.program_framing import Program, TransferSettings, outgoing
 from drivers.transfer.transfer_session import CancelledError, Receiving, Sending
-from drivers.transfer.transfer_settings import TransferSettings
+from drivers.waiting import RealClock
 from tests.coded import raises_code
 from tests.drivers.inverter.lines import WAIT, Pair, until
 from tests.drivers.transfer.far_end import FarEnd, feed

@@ -7,8 +7,7 @@ import pytest
 from core.ports import DriverError
 from drivers.serial_line import LineSettings
 from drivers.serial_port import Unmarker
-from drivers.transfer.program_framing import outgoing
-from drivers.transfer.transfer_settings import TransferSettings
+from drivers.transfer.program_framing import TransferSettings, outgoing
 from tests.coded import raises_code
 
 LINE = LineSettings("bench")

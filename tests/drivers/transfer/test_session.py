@@ -7,11 +7,10 @@ import dataclasses
 import pytest
 
 from core.ports import DriverError
-from drivers.clocks import StepClock
 from drivers.serial_line import LineSettings, WireError
-from drivers.transfer.program_framing import IncompleteError, outgoing
+from drivers.transfer.program_framing import IncompleteError, TransferSettings, outgoing
 from drivers.transfer.transfer_session import CancelledError, Reach, Receiving, Sending
-from drivers.transfer.transfer_settings import TransferSettings
+from drivers.waiting import StepClock
 from tests.coded import raises_code
 from tests.drivers.transfer.bench import OtherSide
 

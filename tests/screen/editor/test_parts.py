@@ -21,7 +21,7 @@ from app.editor.text_view import TextField
 from app.screen.look import Look
 from app.screen.theme import DARK, LIGHT
 from core.language.source import Dialect
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.editor.shop import GOOD
 
 

@@ -24,7 +24,7 @@ from app.screen.window_frame import Frame
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot, State
 from core.store.store import Store
-from drivers.clocks import StepClock
+from drivers.waiting import StepClock
 from tests.screen.yes import yes
 
 Key = Qt.Key

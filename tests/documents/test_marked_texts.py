@@ -1,0 +1,18 @@
+"""Which strings of the source code the translation catalog takes as templates."""
+
+import ast
+
+from resources.translations.reading import marked
+
+CODE = """
+Message("a {x}}}", x=1)
+DriverError("b {x}}}", "axis", x=1)
+Fault("c {x}", "axis", x=1)
+DriverError("of a cause", "axis", reason="far")
+DriverError(f"d {x}", reason="far")
+Other("e {x}", x=1)
+"""
+
+
+def test_a_driver_error_with_values_has_a_template_and_one_with_a_reason_alone_has_none() -> None:
+    assert list(marked(ast.parse(CODE))) == ["a {x}}}", "b {x}}}", "c {x}"]
