@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 from core.interpreter.job_setup import ZeroOffset
 from core.interpreter.modal_state import Modal
 from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame
 from core.interpreter.sinumerik.sinumerik_state import Motion, State
 from core.interpreter.sinumerik.variables import Scope, place_name
-from core.language.diagnostics import ProgramError
 from core.language.formulas import Parameter as Variable
 from core.language.sinumerik.call_arguments import Argument, Parameter
 from core.language.sinumerik.program_jumps import Jump
-from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_words import Line
 from core.message import Message
 
@@ -68,7 +67,7 @@ def handed_over(state: State, line: Line, heading: Jump | None) -> tuple[Scope, 
             arguments_count=len(arguments),
         )
         hint = "Correct the call, or the PROC line of the subprogram."
-        raise _refused(line, arguments[len(parameters)].column, TOO_MANY, text, hint)
+        raise line.refuse(arguments[len(parameters)].column, TOO_MANY, text, hint)
     scope, references = Scope(), list[tuple[str, str]]()
     for place, parameter in enumerate(parameters):
         argument = arguments[place] if place < len(arguments) else None
@@ -117,7 +116,7 @@ def _hand_over_array(
             parameter=parameter.name,
             call=line.call,
         )
-        raise _refused(line, column, NO_VARIABLE, text, "Pass the name of an array without an index.")
+        raise line.refuse(column, NO_VARIABLE, text, "Pass the name of an array without an index.")
     asked = tuple(size if each is None else each for each, size in zip(parameter.sizes, sizes, strict=False))
     if asked != sizes or len(parameter.sizes) != len(sizes):
         text = Message(
@@ -126,7 +125,7 @@ def _hand_over_array(
             text=" by ".join(map(str, sizes)),
             parameter=parameter.name,
         )
-        raise _refused(line, column, OTHER_SIZE, text, "Use the array sizes given in the PROC line.")
+        raise line.refuse(column, OTHER_SIZE, text, "Use the array sizes given in the PROC line.")
     scope.define(parameter.name, 0.0, sizes)
     for inside, outside in zip(scope.elements(parameter.name), outer.elements(name), strict=True):
         scope.numbers[inside] = outer.numbers[outside]
@@ -142,7 +141,7 @@ def _keep_nothing(parameter: Parameter, scope: Scope) -> None:
 
 def _value(state: State, line: Line, parameter: Parameter, given: Argument) -> float:
     assert given.formula is not None
-    value = state.worth(given.formula, lambda c, t, h: _refused(line, given.column, c, t, h))
+    value = state.worth(given.formula, partial(line.refuse, given.column))
     if parameter.kind == "INT" and value != round(value):
         return float(round(value))
     return value
@@ -158,11 +157,8 @@ def _place(state: State, line: Line, parameter: Parameter, argument: Argument | 
             call=line.call,
         )
         column = line.call_column if argument is None else argument.column
-        raise _refused(line, column, TOO_MANY, text, "Pass a variable or an R parameter.")
-
-    def refuse(code: int | str, text: str, hint: str) -> ProgramError:
-        return _refused(line, line.call_column, code, text, hint)
-
+        raise line.refuse(column, TOO_MANY, text, "Pass a variable or an R parameter.")
+    refuse = partial(line.refuse, line.call_column)
     return place_name(formula.letters, formula.number, lambda index: state.worth(index, refuse), refuse)
 
 
@@ -170,7 +166,3 @@ def _count(count: int) -> str:
     if not count:
         return "no parameters"
     return Message("{count} parameter" if count == 1 else "{count} parameters", count=count)
-
-
-def _refused(line: Line, column: int, code: int | str, text: str, hint: str) -> ProgramError:
-    return ProgramError(fault(line.number, column, code, line.block, text, hint))

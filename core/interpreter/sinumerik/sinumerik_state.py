@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from enum import IntEnum
+from functools import partial
 
 from core.interpreter.actions import Action, Dwell, ProgramStop
 from core.interpreter.diagnostic_log import Log
@@ -92,7 +93,7 @@ class State:
         self.behind_stop = self.place_assumed = False  # a place was read behind a stop, where a hand may move
         self.told: set[str] = set()  # functions without effect that have been told
         self.variables = Variables()
-        self.variables.r.update(setup.r)
+        self.variables.r.update((f"R{number}", value) for number, value in setup.r.items())
         self.modal_call: Line | None = None  # of MCALL
         self.transformation: PlaneInForce | None = None  # TRANSMIT or TRACYL
         self.master = 1  # SETMS: 2 is the live tool, whose S, M3 and G95 are meant then
@@ -132,7 +133,7 @@ class State:
         if word.value is not None:
             return word.value
         assert word.formula is not None
-        return self.worth(word.formula, lambda code, text, hint: statement.refuse(word, code, text, hint))
+        return self.worth(word.formula, partial(statement.refuse, word))
 
     def worth(self, formula: Formula, refuse: Refuse) -> float:
         """What a formula comes to. ``refuse`` makes the error to raise of its code, text and hint."""

@@ -47,8 +47,14 @@ class Variables:
     """All variables that a line can see."""
 
     def __init__(self) -> None:
-        self.r: dict[int, float] = {}
+        self.r: dict[str, float] = {}
         self.scope = Scope()
+
+    def _holder(self, name: str) -> tuple[dict[str, float], str]:
+        """What holds the number of a place, and by which name: R7 for R007."""
+        if name[0] == "R" and name[1:].isdigit():
+            return self.r, name if name[1] != "0" else f"R{int(name[1:])}"
+        return self.scope.numbers, name
 
     def value(self, asked: Parameter, worth: Callable[[Formula], float], refuse: Refuse) -> float:
         """What an R parameter or a variable holds. Raises what ``refuse`` makes where it holds nothing."""
@@ -58,13 +64,10 @@ class Variables:
             )
             raise refuse("system-variable", text, "Write the value, or an R parameter that contains it.")
         name = place_name(asked.letters, asked.number, worth, refuse)
-        if asked.letters == "R" and name[1:].isdigit():
-            found = self.r.get(int(name[1:]))
-        else:
-            found = self.scope.numbers.get(name)
-        if found is None:
+        holder, name = self._holder(name)
+        if name not in holder:
             raise refuse(*self.missing(asked.letters, name))
-        return found
+        return holder[name]
 
     def fill(self, letters: str, first: str, values: Values, worth: Callable[[Formula], float]) -> int:
         """Give elements their values from the place ``first`` on; how many of them had no element left."""
@@ -81,12 +84,10 @@ class Variables:
 
     def keep(self, name: str, value: float) -> bool:
         """This place holds a value from now on; False where no DEF has named it."""
-        if name[0] == "R" and name[1:].isdigit():
-            self.r[int(name[1:])] = value
-        elif name in self.scope.numbers:
-            self.scope.numbers[name] = value
-        else:
+        holder, name = self._holder(name)
+        if holder is not self.r and name not in holder:
             return False
+        holder[name] = value
         return True
 
     def missing(self, letters: str, name: str) -> tuple[int | str, str, str]:
@@ -128,6 +129,13 @@ class Variables:
             )
         text = Message("the name {jump} is not defined with DEF.", jump=name)
         return NOT_DEFINED, text, Message("Write DEF REAL {word} before this block.", word=name)
+
+
+def variable_named(name: str, column: int) -> Parameter:
+    """The R parameter or the variable of this name, as formulas have it."""
+    if name[0] == "R" and name[1:].isdigit():
+        return Parameter("R", int(name[1:]), column)
+    return Parameter(name, None, column)
 
 
 def place_name(
