@@ -118,11 +118,11 @@ _DEEPEST = 40
 
 
 class FormulaReader:
-    """Reads one formula from ``text`` (in capitals) at ``at``; ``at`` then stands behind it."""
+    """Reads formulas from ``text`` (in capitals) at ``at``, which then stands behind them."""
 
     def __init__(self, grammar: Grammar, text: str, at: int) -> None:
         self._grammar = grammar
-        self._text = text
+        self.text = text
         self.at = at
         self._depth = 0
 
@@ -149,11 +149,11 @@ class FormulaReader:
         return made
 
     def _operator(self) -> str | None:
-        self._blanks()
-        return self._grammar.operator(self._text, self.at)
+        self.blanks()
+        return self._grammar.operator(self.text, self.at)
 
     def _operand(self) -> Formula:
-        self._blanks()
+        self.blanks()
         at = self.at
         if self._takes("-"):
             return Operation("negative", (self._expression(self._grammar.negation),), at + 1)
@@ -166,10 +166,10 @@ class FormulaReader:
     def _word(self, at: int) -> Formula | None:
         """A function with what it is asked of, or a constant."""
         grammar = self._grammar
-        if word := grammar.function(self._text, at):
+        if word := grammar.function(self.text, at):
             self.at += len(word)
             return Operation(grammar.functions[word], self._asked_of(), at + 1)
-        if word := grammar.constant(self._text, at):
+        if word := grammar.constant(self.text, at):
             self.at += len(word)
             return Number(grammar.constants[word])
         return None
@@ -177,13 +177,13 @@ class FormulaReader:
     def _figure(self, at: int) -> Formula:
         """A parameter or a number."""
         grammar = self._grammar
-        if match := grammar.parameter.match(self._text, at):
+        if match := grammar.parameter.match(self.text, at):
             self.at = match.end()
             letters, number = match.group(1), match.group(2)
-            if not number and grammar.indexed and self._text.startswith("[", self.at):
+            if not number and grammar.indexed and self.text.startswith("[", self.at):
                 return Parameter(letters, self.index(), at + 1)
             return Parameter(letters, int(number) if number else None, at + 1)
-        if match := grammar.number.match(self._text, at):
+        if match := grammar.number.match(self.text, at):
             self.at = match.end()
             return Number(float(match.group().replace(",", ".").replace("EX", "E")))
         raise FormulaError(at, "A number or a parameter is missing in the formula", "Complete the formula.")
@@ -208,7 +208,7 @@ class FormulaReader:
 
     def _asked_of(self) -> tuple[Formula, ...]:
         """What a function is asked of: one operand, or a list in brackets where the language has that."""
-        self._blanks()
+        self.blanks()
         if not self._grammar.separator or not self._takes("("):
             return (self._expression(_CLOSEST),)
         found = [self._expression(0)]
@@ -222,12 +222,13 @@ class FormulaReader:
             raise FormulaError(self.at, "A closing parenthesis is missing", "Write ) after the formula.")
 
     def _takes(self, sign: str) -> bool:
-        self._blanks()
-        if not self._text.startswith(sign, self.at):
+        self.blanks()
+        if not self.text.startswith(sign, self.at):
             return False
         self.at += len(sign)
         return True
 
-    def _blanks(self) -> None:
-        while self.at < len(self._text) and self._text[self.at].isspace():
+    def blanks(self) -> None:
+        """Go to the next sign that is no blank."""
+        while self.at < len(self.text) and self.text[self.at].isspace():
             self.at += 1

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from core.language.formulas import Formula, FormulaError, FormulaReader
-from core.language.sinumerik.sinumerik_formulas import GRAMMAR
+from core.language.formulas import Formula, FormulaError
+from core.language.sinumerik.block_reader import BlockReader
 
 _LIST = re.compile(r"\s*(SET|REP)?\s*\(")
 _NEXT = re.compile(r"\s*([,)])")
@@ -23,41 +23,29 @@ class Values(NamedTuple):
     times: Formula | None = None
 
 
-def read_values(text: str, at: int, *, bare: bool) -> tuple[Values, int] | None:
-    """The list that begins at ``at`` and the index behind it; None where none does. Raises FormulaError.
+def read_values(reader: BlockReader, *, bare: bool) -> Values | None:
+    """The list that begins here; None where none does. Raises FormulaError.
 
-    ``text`` is in capitals. ``bare`` takes brackets without SET before them, which elsewhere begin a formula.
+    ``bare`` takes brackets without SET before them, which elsewhere begin a formula.
     """
-    match = _LIST.match(text, at)
+    match = _LIST.match(reader.text, reader.at)
     if match is None or not (match[1] or bare):
         return None
     found: list[Formula | None] = []
-    at = match.end()
+    reader.at = match.end()
     while True:
-        formula, at = _element(text, at)
-        found.append(formula)
-        sign = _NEXT.match(text, at)
-        if sign is None:
-            raise FormulaError(
-                at,
-                "The closing parenthesis of the list of values is missing",
-                "Write ) after the last value.",
-            )
-        at = sign.end()
+        found.append(None if _NEXT.match(reader.text, reader.at) else reader.formula())
+        sign = reader.demand(
+            _NEXT,
+            "The closing parenthesis of the list of values is missing",
+            "Write ) after the last value.",
+        )
         if sign[1] == ")":
             break
     if match[1] != "REP":
-        return Values(tuple(found)), at
+        return Values(tuple(found))
     if found[0] is None or len(found) > 2:
         raise FormulaError(
             match.end(), "REP accepts only a value and a number of elements", "Write, for example, REP(0)."
         )
-    return Values((found[0],), repeated=True, times=found[1] if found[1:] else None), at
-
-
-def _element(text: str, at: int) -> tuple[Formula | None, int]:
-    """A formula, or nothing before the next comma."""
-    if _NEXT.match(text, at):
-        return None, at
-    reader = FormulaReader(GRAMMAR, text, at)
-    return reader.formula(), reader.at
+    return Values((found[0],), repeated=True, times=found[1] if found[1:] else None)

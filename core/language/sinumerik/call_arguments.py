@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from core.language.formulas import Formula, FormulaError, FormulaReader
-from core.language.sinumerik.sinumerik_formulas import GRAMMAR
+from core.language.formulas import Formula, FormulaError
+from core.language.sinumerik.block_reader import BlockReader
 
 _QUOTED = re.compile(r'\s*"([^"]*)"\s*(?=[,)])')
 _AXIS = re.compile(r"\s*([A-CU-Z][0-9]?)\s*(?=[,)])")
@@ -47,67 +47,57 @@ class Parameter(NamedTuple):
     sizes: tuple[int | None, ...] = ()
 
 
-def read_arguments(text: str, written: str, at: int) -> tuple[tuple[Argument, ...], int]:
-    """The arguments in the brackets that open at ``at``, and the index behind them. Raises FormulaError.
-
-    ``text`` is in capitals, ``written`` the same in its own case.
-    """
+def read_arguments(reader: BlockReader) -> tuple[Argument, ...]:
+    """The arguments in the brackets that open here. Raises FormulaError."""
     found: list[Argument] = []
-    start, at = at, at + 1
+    start = reader.at
+    reader.at += 1
     while True:
-        at = _blanks(text, at)
-        argument, at = _argument(text, written, at)
-        found.append(argument)
-        match = _NEXT.match(text, at)
+        reader.blanks()
+        found.append(_argument(reader))
+        match = reader.take(_NEXT)
         if match is None:
             hint = "Write ( , , )."
-            if at >= len(text):
+            if not reader.text[reader.at :]:
                 raise FormulaError(start, "The argument list has no closing parenthesis", hint)
-            raise FormulaError(at, "The argument list contains text that is not an argument", hint)
-        at = match.end()
+            raise FormulaError(reader.at, "The argument list contains text that is not an argument", hint)
         if match[1] == ")":
-            return (() if len(found) == 1 and not found[0].given else tuple(found)), at
+            return () if len(found) == 1 and not found[0].given else tuple(found)
 
 
-def _argument(text: str, written: str, at: int) -> tuple[Argument, int]:
-    column = at + 1
-    if text[at : at + 1] in {",", ")"}:
-        return Argument(None, None, column), at
-    if quoted := _QUOTED.match(written, at):
-        return Argument(None, quoted[1].strip(), column), quoted.end()
-    if axis := _AXIS.match(text, at):
-        return Argument(None, axis[1], column), axis.end()
-    reader = FormulaReader(GRAMMAR, text, at)
-    return Argument(reader.formula(), None, column), reader.at
+def _argument(reader: BlockReader) -> Argument:
+    column = reader.at + 1
+    if reader.text[reader.at : reader.at + 1] in {",", ")"}:
+        return Argument(None, None, column)
+    if quoted := reader.take(_QUOTED, written=True):
+        return Argument(None, quoted[1].strip(), column)
+    if axis := reader.take(_AXIS):
+        return Argument(None, axis[1], column)
+    return Argument(reader.formula(), None, column)
 
 
-def read_parameters(text: str, written: str, at: int) -> tuple[tuple[Parameter, ...], int]:
-    """The parameters in the brackets that open at ``at``, and the index behind them. Raises FormulaError."""
+def read_parameters(reader: BlockReader) -> tuple[Parameter, ...]:
+    """The parameters in the brackets that open here. Raises FormulaError."""
     found: list[Parameter] = []
-    at = _blanks(text, at + 1)
-    if text[at : at + 1] == ")":
-        return (), at + 1
+    reader.at += 1
+    reader.blanks()
+    if reader.text[reader.at : reader.at + 1] == ")":
+        reader.at += 1
+        return ()
     while True:
-        match = _PARAMETER.match(text, at)
-        if match is None:
-            raise FormulaError(
-                at, "A parameter needs a type and a name", "Write, for example, PROC NAME(REAL LENGTH)."
-            )
+        match = reader.demand(
+            _PARAMETER, "A parameter needs a type and a name", "Write, for example, PROC NAME(REAL LENGTH)."
+        )
         sizes = _sizes(match)
-        at, default = match.end(), None
-        if match[5]:
-            default, at = _argument(text, written, at)
+        default = _argument(reader) if match[5] else None
         found.append(Parameter(match[3] or "", match[2], match[1] is not None, default, sizes))
-        end = _NEXT.match(text, at)
-        if end is None:
-            raise FormulaError(
-                at,
-                "The closing parenthesis of the parameter list is missing",
-                "Write ) after the last parameter.",
-            )
-        at = end.end()
+        end = reader.demand(
+            _NEXT,
+            "The closing parenthesis of the parameter list is missing",
+            "Write ) after the last parameter.",
+        )
         if end[1] == ")":
-            return tuple(found), at
+            return tuple(found)
 
 
 def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:
@@ -120,9 +110,3 @@ def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:
             "An array parameter needs VAR and whole numbers as its sizes",
                            "Write, for example, PROC NAME(VAR REAL LIST[3]).")  # fmt: skip
     return tuple(int(each[1][:9]) if each is not None and each[1] else None for each in found)
-
-
-def _blanks(text: str, at: int) -> int:
-    while text[at : at + 1].isspace():
-        at += 1
-    return at

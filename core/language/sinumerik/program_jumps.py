@@ -6,10 +6,10 @@ import re
 from enum import StrEnum
 from typing import NamedTuple
 
-from core.language.formulas import INDICES, Formula, FormulaError, FormulaReader, Operation
+from core.language.formulas import INDICES, Formula, FormulaError, Operation
 from core.language.sinumerik.array_values import Values, read_values
+from core.language.sinumerik.block_reader import BlockReader
 from core.language.sinumerik.call_arguments import Parameter, read_parameters
-from core.language.sinumerik.sinumerik_formulas import GRAMMAR
 from core.message import Message
 
 
@@ -131,11 +131,10 @@ def read_jump(text: str, written: str, at: int, steering: Steering) -> Jump:
     return jump
 
 
-class _Reader:
+class _Reader(BlockReader):
     def __init__(self, text: str, written: str, at: int, steering: Steering) -> None:
-        self._text, self._written, self._steering = text, written, steering
-        self._column = at + 1
-        self._at = at + len(steering)
+        super().__init__(text, written, at + len(steering))
+        self._steering, self._column = steering, at + 1
 
     def jump(self) -> Jump:
         read = {
@@ -151,124 +150,89 @@ class _Reader:
             Steering.MESSAGE: self._message,
             Steering.ALARM: self._alarm,
         }.get(self._steering)
-        if self._steering in _TOLERATED_BRACKET and _ANY_BRACKET.match(self._text, self._at):
-            self._at = len(self._text)
+        if self._steering in _TOLERATED_BRACKET:
+            self.take(_ANY_BRACKET)
         return Jump(self._steering, self._column) if read is None else read()
 
     def _goto(self) -> Jump:
         return Jump(self._steering, self._column, target=self._target())
 
     def _conditional(self) -> Jump:
-        return Jump(self._steering, self._column, self._formula())
+        return Jump(self._steering, self._column, self.formula())
 
     def _define(self) -> Jump:
         return Jump(self._steering, self._column, defined=tuple(self._definitions()))
 
     def demand_end(self) -> None:
-        rest = self._text[self._at :]
-        if rest.strip():
-            at = self._at + len(rest) - len(rest.lstrip())
-            raise FormulaError(
-                at,
-                Message("Unexpected text after {steering}", steering=self._steering),
-                "Put the extra text in a separate block.",
-            )
+        self.blanks()
+        if self.rest:
+            text = Message("Unexpected text after {steering}", steering=self._steering)
+            raise FormulaError(self.at, text, "Put the extra text in a separate block.")
 
     def _if(self) -> Jump:
         """With a jump behind the condition the whole branch; without one the beginning of IF … ENDIF."""
-        condition = self._formula()
-        match = _GOTO.match(self._text, self._at)
+        condition = self.formula()
+        match = self.take(_GOTO)
         if match is None:
             return Jump(Steering.IF, self._column, condition)
-        self._at = match.end()
         steering = Steering(match.group(1))
         target = "" if steering is Steering.GOTO_START else self._target()
         jump = Jump(steering, self._column, condition, target)
-        if another := _NEXT_IF.match(self._text, self._at):
-            self._at, self._column = another.end(), another.end() - 1
+        if self.take(_NEXT_IF):
+            self._column = self.at - 1
             jump = jump._replace(other=self._if())
         return jump
 
     def _case(self) -> Jump:
         """CASE R1 OF 1 GOTOF A 2 GOTOF B DEFAULT GOTOF C."""
-        condition, choices = self._formula(), list[Choice]()
-        match = _OF.match(self._text, self._at)
-        if match is None:
-            raise FormulaError(
-                self._at, "CASE needs OF", "Write, for example, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B."
-            )
-        self._at = match.end()
-        while self._text[self._at :].strip():
-            default = _DEFAULT.match(self._text, self._at)
-            if default:
-                self._at = default.end()
-            formula = None if default else self._formula()
-            jump = _GOTO.match(self._text, self._at)
-            if jump is None:
-                raise FormulaError(
-                    self._at, "A CASE branch needs a jump", "Write, for example, 1 GOTOF LABEL."
-                )
-            self._at = jump.end()
+        condition, choices = self.formula(), list[Choice]()
+        self.demand(_OF, "CASE needs OF", "Write, for example, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.")
+        while self.rest:
+            formula = None if self.take(_DEFAULT) else self.formula()
+            jump = self.demand(_GOTO, "A CASE branch needs a jump", "Write, for example, 1 GOTOF LABEL.")
             choices.append(Choice(formula, Steering(jump.group(1)), self._target()))
         if not choices:
-            raise FormulaError(self._at, "CASE has no branch", "Write, for example, CASE R1 OF 1 GOTOF A.")
+            raise FormulaError(self.at, "CASE has no branch", "Write, for example, CASE R1 OF 1 GOTOF A.")
         return Jump(Steering.CASE, self._column, condition, choices=tuple(choices))
 
     def _for(self) -> Jump:
-        match = _NAME.match(self._text, self._at)
-        if match is None:
-            raise FormulaError(self._at, "FOR needs a variable and =", "Write, for example, FOR R1 = 1 TO 5.")
-        self._at = match.end()
-        first = self._formula()
-        to = _TO.match(self._text, self._at)
-        if to is None:
-            raise FormulaError(self._at, "FOR needs TO", "Write, for example, FOR R1 = 1 TO 5.")
-        self._at = to.end()
-        last = self._formula()
-        return Jump(Steering.FOR, self._column, name=match.group(1), first=first, last=last)
+        hint = "Write, for example, FOR R1 = 1 TO 5."
+        name = self.demand(_NAME, "FOR needs a variable and =", hint).group(1)
+        first = self.formula()
+        self.demand(_TO, "FOR needs TO", hint)
+        return Jump(Steering.FOR, self._column, name=name, first=first, last=self.formula())
 
     def _repeat(self) -> Jump:
         """REPEAT alone begins REPEAT … UNTIL; with a label or two it runs a part of the program again."""
         labels = list[str]()
-        while len(labels) < 2 and (match := _REPEATED.match(self._text, self._at)):
+        while len(labels) < 2 and (match := self.take(_REPEATED)):
             labels.append(match.group(1))
-            self._at = match.end()
         if not labels:
             return Jump(self._steering, self._column)
-        passes = None
-        if match := _PASSES.match(self._text, self._at):
-            self._at = match.end()
-            passes = self._formula()
-        return Jump(self._steering, self._column, target=labels[0], until=labels[-1] if labels[1:] else "",
-                    passes=passes)  # fmt: skip
+        passes = self.formula() if self.take(_PASSES) else None
+        until = labels[-1] if labels[1:] else ""
+        return Jump(self._steering, self._column, target=labels[0], until=until, passes=passes)
 
     def _definitions(self) -> list[Defined]:
-        match = _TYPE.match(self._text, self._at)
-        if match is None:
-            raise FormulaError(
-                self._at, "DEF needs REAL, INT, BOOL or STRING", "Write, for example, DEF REAL NAME = 0."
-            )
-        if match[1] not in _NUMBERS | {"STRING"}:
-            text = Message("Variables of type {name} are not supported", name=match[1])
-            raise FormulaError(self._at, text, "Use REAL, INT, BOOL or STRING.")
-        self._at = match.end()
-        found: list[Defined] = []
-        while True:
-            found.append(self._defined(match[1]))
-            if not self._text[self._at :].strip():
-                return found
+        hint = "Write, for example, DEF REAL NAME = 0."
+        kind = self.demand(_TYPE, "DEF needs REAL, INT, BOOL or STRING", hint)
+        if kind[1] not in _NUMBERS | {"STRING"}:
+            text = Message("Variables of type {name} are not supported", name=kind[1])
+            raise FormulaError(kind.start(), text, "Use REAL, INT, BOOL or STRING.")
+        found = [self._defined(kind[1])]
+        while self.rest:
+            found.append(self._defined(kind[1]))
+        return found
 
     def _defined(self, kind: str) -> Defined:
-        variable = _VARIABLE.match(self._text, self._at)
-        if variable is None:
-            raise FormulaError(
-                self._at, "DEF needs a variable name", "Write, for example, DEF REAL NAME = 0."
-            )
-        self._at = variable.end()
-        made, after = Defined(variable.group(1), None, kind), variable.group(2)
+        hint = "Write, for example, DEF REAL NAME = 0."
+        name, after = self.demand(_VARIABLE, "DEF needs a variable name", hint).groups()
+        made = Defined(name, None, kind)
         if after == "[":
-            self._at -= 1
-            made = made._replace(sizes=self._sizes())
+            self.at -= 1
+            size = self.index()
+            several = isinstance(size, Operation) and size.name == INDICES
+            made = made._replace(sizes=size.operands if several else (size,))
             after = self._sign()
         if after == "=":
             made = self._first_value(made)
@@ -277,96 +241,64 @@ class _Reader:
 
     def _first_value(self, made: Defined) -> Defined:
         """What stands behind the = of DEF: a text, a list for an array, a formula."""
-        quoted = _JOINED.match(self._written, self._at)
+        quoted = _JOINED.match(self.written, self.at)
         if made.kind == "STRING" and quoted and quoted[1] is not None:
-            self._at = quoted.end()
+            self.at = quoted.end()
             return made._replace(text=quoted[1])
-        listed = read_values(self._text, self._at, bare=True) if made.sizes else None
-        if listed is None:
-            return made._replace(formula=self._formula())
-        self._at = listed[1]
-        return made._replace(values=listed[0])
-
-    def _sizes(self) -> tuple[Formula, ...]:
-        reader = FormulaReader(GRAMMAR, self._text, self._at)
-        size = reader.index()
-        self._at = reader.at
-        return size.operands if isinstance(size, Operation) and size.name == INDICES else (size,)
+        values = read_values(self, bare=True) if made.sizes else None
+        return made._replace(formula=self.formula()) if values is None else made._replace(values=values)
 
     def _sign(self) -> str:
         """A comma or = that stands here."""
-        rest = self._text[self._at :].lstrip()
-        sign = rest[:1] if rest[:1] in {",", "="} else ""
-        self._at = len(self._text) - len(rest) + len(sign)
+        self.blanks()
+        sign = self.rest[:1] if self.rest[:1] in {",", "="} else ""
+        self.at += len(sign)
         return sign
 
     def _procedure(self) -> Jump:
-        name, parameters = self._heading()
+        jump = self._extern()
         saves = False
-        while match := _ATTRIBUTE.match(self._text, self._at):
+        while match := self.take(_ATTRIBUTE):
             saves = saves or match[1] == "SAVE"
-            self._at = match.end()
-        return Jump(self._steering, self._column, name=name, parameters=parameters, saves=saves)
+        return jump._replace(saves=saves)
 
     def _extern(self) -> Jump:
-        name, parameters = self._heading()
-        return Jump(self._steering, self._column, name=name, parameters=parameters)
-
-    def _heading(self) -> tuple[str, tuple[Parameter, ...]]:
-        match = _PROCEDURE.match(self._text, self._at)
-        if match is None:
-            raise FormulaError(
-                self._at,
-                Message("{steering} needs a subprogram name", steering=self._steering),
-                "Write, for example, PROC NAME(REAL LENGTH).",
-            )
-        self._at = match.end()
-        parameters = tuple[Parameter, ...]()
-        if self._text.startswith("(", self._at):
-            parameters, self._at = read_parameters(self._text, self._written, self._at)
-        return match[1], parameters
+        text = Message("{steering} needs a subprogram name", steering=self._steering)
+        match = self.demand(_PROCEDURE, text, "Write, for example, PROC NAME(REAL LENGTH).")
+        parameters = read_parameters(self) if self.rest.startswith("(") else ()
+        return Jump(self._steering, self._column, name=match[1], parameters=parameters)
 
     def _message(self) -> Jump:
         """MSG("TEXT"<<R1): texts and formulas, joined by <<."""
-        rest = self._text[self._at :].lstrip()
-        closing = self._text.rstrip()
-        if not rest.startswith("(") or not closing.endswith(")"):
-            raise FormulaError(self._at, "MSG needs its text in parentheses", 'Write MSG("TEXT").')
-        self._at, end = len(self._text) - len(rest) + 1, len(closing) - 1
+        closing = self.text.rstrip()
+        if not self.rest.startswith("(") or not closing.endswith(")"):
+            raise FormulaError(self.at, "MSG needs its text in parentheses", 'Write MSG("TEXT").')
+        self.blanks()
+        self.at, end = self.at + 1, len(closing) - 1
         pieces: list[str | Formula] = []
-        while self._text[self._at : end].strip():
-            if match := _JOINED.match(self._written, self._at, end):
-                self._at = match.end()
+        while self.text[self.at : end].strip():
+            if match := _JOINED.match(self.written, self.at, end):
+                self.at = match.end()
                 pieces += [] if match[1] is None else [match[1]]
-            elif self._text[self._at : end].lstrip().startswith(","):
+            elif self.text[self.at : end].lstrip().startswith(","):
                 break  # what stands behind the text says only how it is shown
             else:
-                pieces.append(self._formula())
-        self._at = len(self._text)
+                pieces.append(self.formula())
+        self.at = len(self.text)
         return Jump(self._steering, self._column, pieces=tuple(pieces))
 
     def _alarm(self) -> Jump:
-        rest = self._text[self._at :]
-        if not rest.lstrip().startswith("("):
+        if not self.rest.startswith("("):
             raise FormulaError(
-                self._at, "SETAL needs a number in parentheses", "Write, for example, SETAL(65000)."
+                self.at, "SETAL needs a number in parentheses", "Write, for example, SETAL(65000)."
             )
-        self._at += len(rest) - len(rest.lstrip()) + 1
-        number = self._formula()
-        self._at = len(self._text)
+        self.blanks()
+        self.at += 1
+        number = self.formula()
+        self.at = len(self.text)
         return Jump(self._steering, self._column, number)
 
     def _target(self) -> str:
-        while self._text[self._at : self._at + 1].isspace():
-            self._at += 1
-        match = _TARGET.match(self._text, self._at)
-        if match is None:
-            raise FormulaError(self._at, "A jump needs a label", "Write a label, or N with a block number.")
-        self._at = match.end()
+        self.blanks()
+        match = self.demand(_TARGET, "A jump needs a label", "Write a label, or N with a block number.")
         return match.group().strip()
-
-    def _formula(self) -> Formula:
-        reader = FormulaReader(GRAMMAR, self._text, self._at)
-        made = reader.formula()
-        self._at = reader.at
-        return made

@@ -9,6 +9,7 @@ from core.language.diagnostics import Diagnostic
 from core.language.formulas import Formula, FormulaError, FormulaReader, Number, Operation, Parameter
 from core.language.sinumerik import sinumerik_words as known
 from core.language.sinumerik.array_values import read_values
+from core.language.sinumerik.block_reader import BlockReader
 from core.language.sinumerik.call_arguments import Argument, read_arguments
 from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE, CYCLES_TAKEN
 from core.language.sinumerik.iso_words import iso_habit
@@ -337,17 +338,23 @@ class _Scanner:
 
     def _transformation(self, name: str, at: int, end: int) -> int:
         """TRANSMIT, TRACYL and TRAFOOF with what stands in their brackets."""
-        arguments: tuple[Argument, ...] = ()
-        if bracket := _BRACKET.match(self._text, end):
-            try:
-                arguments, end = read_arguments(self._text, self._written, bracket.end() - 1)
-            except FormulaError as problem:
-                self.refuse(
-                    problem.at + 1, Message("{name}: {problem}", name=name, problem=problem), problem.hint
-                )
-                return len(self._text)
-        self.words.append(Word(name, None, at + 1, name, arguments=arguments))
-        return end
+        arguments, end = self._arguments(name, end)
+        if end >= 0:
+            self.words.append(Word(name, None, at + 1, name, arguments=arguments or ()))
+        return end if end >= 0 else len(self._text)
+
+    def _arguments(self, name: str, end: int) -> tuple[tuple[Argument, ...] | None, int]:
+        """What stands in the brackets that follow, None without them; and where it ends, -1 for an error."""
+        bracket = _BRACKET.match(self._text, end)
+        if bracket is None:
+            return None, end
+        reader = BlockReader(self._text, self._written, bracket.end() - 1)
+        try:
+            return read_arguments(reader), reader.at
+        except FormulaError as problem:
+            text = Message("{name}: {problem}", name=name, problem=problem)
+            self.refuse(problem.at + 1, text, problem.hint)
+            return None, -1
 
     def _of_a_spindle(self, name: str, at: int, end: int) -> int:
         """SETMS, WAITS, SETMS(1): with the number of a spindle behind, or meant for the first."""
@@ -373,14 +380,9 @@ class _Scanner:
 
     def _called(self, name: str, at: int, end: int) -> int:
         self.call, self.call_column = name, at + 1
-        if bracket := _BRACKET.match(self._text, end):
-            try:
-                self.arguments, end = read_arguments(self._text, self._written, bracket.end() - 1)
-            except FormulaError as problem:
-                self.refuse(
-                    problem.at + 1, Message("{name}: {problem}", name=name, problem=problem), problem.hint
-                )
-                return len(self._text)
+        self.arguments, end = self._arguments(name, end)
+        if end < 0:
+            return len(self._text)
         passes = _PASSES.match(self._text, end)
         if passes is not None:
             end = passes.end()
@@ -406,18 +408,17 @@ class _Scanner:
             why = known.WHY_OUTSIDE.get(name, "this control does not support axis-specific words")
             return self._outside(at, match.end(), name, why)
         try:
-            reader = FormulaReader(GRAMMAR, self._text, self._text.index("[", at))
+            reader = BlockReader(self._text, self._written, self._text.index("[", at))
             place = reader.index()
             _demand_parameters(place, at)
-            sign = _SET.match(self._text, reader.at)
-            if sign is None:
+            if reader.take(_SET) is None:
                 return self._skip(
                     at,
                     Message("{name}[ ] needs = and a value", name=name),
                     Message("Write {name}[1]=…", name=name),
                 )
-            listed = read_values(self._text, sign.end(), bare=False)
-            value = value_at(self._text, sign.end()) if listed is None else Value(0.0, None, listed[1])
+            listed = read_values(reader, bare=False)
+            value = value_at(self._text, reader.at) if listed is None else Value(0.0, None, reader.at)
         except FormulaError as problem:
             return self._skip(
                 at, Message("{name}[ ]= has no value: {problem}", name=name, problem=problem), problem.hint
@@ -425,7 +426,7 @@ class _Scanner:
         written = "".join(self._text[at : value.end].split())
         named = "R0" if name == "R" else name
         word = Word(named, value.number, at + 1, written, Form.PLAIN, value.formula, element=place)
-        return self._keep(word if listed is None else word._replace(values=listed[0]), value.end)
+        return self._keep(word._replace(values=listed), value.end)
 
     def _assigned(self, match: re.Match[str]) -> int:
         """A word with =."""
