@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.interpreter.formula_values import NoValueError, worth
+from core.interpreter.formula_values import worth
 from core.interpreter.klartext.klartext_state import State
+from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Parameter
 from core.language.klartext.cycle_blocks import PREDEFINED
 from core.language.klartext.klartext_faults import ARITHMETIC, CYCLE_MISSING, INPUT_VALUE, MissingValueError
@@ -65,13 +66,11 @@ def value(state: State, formula: Formula) -> float:
             return float(held(state, asked.letters.removesuffix(WHETHER), asked.number) is not None)
         return content(state, asked.letters, asked.number, asked.column)
 
-    try:
-        found = worth(formula, parameter)
-    except NoValueError as problem:
-        error = state.refuse(
-            problem.column, ARITHMETIC, Message("{what}.", what=problem), "Correct the formula."
-        )
-        raise state.of_the_place(error) from None
+    def no_value(column: int, why: str) -> ProgramError:
+        text = Message("{what}.", what=why)
+        return state.of_the_place(state.refuse(column, ARITHMETIC, text, "Correct the formula."))
+
+    found = worth(formula, parameter, no_value)
     if abs(found) > MOST_Q:
         text = Message(
             "The result {value} exceeds the limit of {most_q}.", value=f"{found:g}", most_q=f"{MOST_Q:.15g}"

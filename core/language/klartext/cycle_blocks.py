@@ -123,14 +123,12 @@ def _datum(cursor: Cursor, part: int) -> Datum:
     column = cursor.column
     if cursor.take(_FROM_TABLE):
         made = Datum(cycle=part, row=cursor.value("#"), column=column)
-        if not cursor.done:
-            raise cursor.expected("Unexpected word in cycle 7")
+        cursor.demand_end("Unexpected word in cycle 7")
         return made
     axes = axis_words(cursor, "XYZABC")
     if not axes:
         raise cursor.expected(Message("CYCL DEF 7.{part} needs a value for X, Y or Z", part=part))
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in cycle 7")
+    cursor.demand_end("Unexpected word in cycle 7")
     return Datum(axes, cycle=part)
 
 
@@ -153,8 +151,7 @@ def mirrored_axes(cursor: Cursor) -> str:
     axes = ""
     while match := cursor.take(_LETTERS):
         axes += match.group()
-    if not cursor.done:
-        raise cursor.expected("Mirroring accepts only the axes X, Y and Z")
+    cursor.demand_end("Mirroring accepts only the axes X, Y and Z")
     return axes
 
 
@@ -164,8 +161,7 @@ def rotation(cursor: Cursor, column: int) -> Transform:
     if match is None:
         raise cursor.expected("A rotation needs ROT and an angle")
     made = Transform("ROTATION", cursor.value("ROT"), incremental=bool(match.group(1)), column=column)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in a rotation")
+    cursor.demand_end("Unexpected word in a rotation")
     return made
 
 
@@ -174,8 +170,7 @@ def scale(cursor: Cursor, column: int) -> Transform:
     if cursor.take(_SCL) is None:
         raise cursor.expected("Scaling needs SCL and its factor")
     made = Transform("SCALE", cursor.value("SCL"), column=column)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in scaling")
+    cursor.demand_end("Unexpected word in scaling")
     return made
 
 

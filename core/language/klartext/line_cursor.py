@@ -158,6 +158,11 @@ class Cursor:
             self.advice(hint),
         )
 
+    def demand_end(self, message: str, hint: str = "") -> None:
+        """Raises the syntax error of ``expected`` where anything is left."""
+        if not self.done:
+            raise self.expected(message, hint)
+
     def advice(self, hint: str) -> str:
         """A hint, and what to do where text or a typographic character stands in the place."""
         word = "" if self.done else self.next_word

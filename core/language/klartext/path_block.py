@@ -151,8 +151,7 @@ def _demand_whole(cursor: Cursor, made: Move) -> None:
 def pole(cursor: Cursor, column: int) -> Pole:
     """The axes behind ``CC``."""
     made = Pole(axis_words(cursor, "XYZ"), column)
-    if not cursor.done:
-        raise cursor.expected("CC accepts only two axes")
+    cursor.demand_end("CC accepts only two axes")
     return made
 
 
@@ -164,8 +163,7 @@ def corner(cursor: Cursor, form: str, column: int) -> Corner:
     cursor.take(_SIZE)
     size = cursor.value(form)
     speed = feed(cursor)
-    if not cursor.done:
-        raise cursor.expected(Message("{form} accepts only a radius or length, and a feed rate", form=form))
+    cursor.demand_end(Message("{form} accepts only a radius or length, and a feed rate", form=form))
     return Corner(form, size, speed, column)
 
 

@@ -120,8 +120,7 @@ def assign(cursor: Cursor) -> Assign:
     if _OF_TEXTS.match(cursor.upper, cursor.at):
         raise STRING.error(cursor.line, cursor.column)
     made = formula(cursor, f"{kind}{number}")
-    if not cursor.done:
-        raise cursor.expected("Expected an operator")
+    cursor.demand_end("Expected an operator")
     return Assign(number, made, column, kind)
 
 
@@ -180,8 +179,7 @@ def _arithmetic(cursor: Cursor, number: int, column: int) -> Assign:
             word, name = ("ANG", "angle") if number == _ANGLE else _TWO[number]
             _demand(cursor, word, number)
             made = Operation(name, (made, _operand(cursor, q)), column)
-    if not cursor.done:
-        raise cursor.expected(Message("Unexpected word in FN {number}", number=number))
+    cursor.demand_end(Message("Unexpected word in FN {number}", number=number))
     return Assign(q, made, column, kind)
 
 
@@ -223,8 +221,7 @@ def _whole_jump(cursor: Cursor, condition: Formula) -> Jump:
         raise cursor.expected("A jump needs GOTO LBL")
     at = cursor.column
     made = Jump(condition, cursor.name("GOTO LBL", MOST_LABEL), at)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in a jump")
+    cursor.demand_end("Unexpected word in a jump")
     return made
 
 
@@ -246,8 +243,7 @@ def _system(cursor: Cursor, column: int) -> SystemRead:
         raise cursor.expected("FN 18 needs SYSREAD")
     kind, q = _target(cursor)
     group, number, index = _place(cursor, 18)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in FN 18")
+    cursor.demand_end("Unexpected word in FN 18")
     return SystemRead(q, group, number, index, column, kind)
 
 
@@ -258,8 +254,7 @@ def _system_write(cursor: Cursor, column: int) -> SystemWrite:
     if cursor.take(_EQUALS) is None:
         raise cursor.expected("FN 17 needs = and a value to write")
     made = SystemWrite(group, number, index, _operand(cursor, 0), column)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in FN 17")
+    cursor.demand_end("Unexpected word in FN 17")
     return made
 
 

@@ -120,8 +120,7 @@ def _demand_all(cursor: Cursor, corner: tuple[AxisWord, ...]) -> None:
             Message("{missing} is missing", missing=", ".join(missing)),
             "Write the X, Y and Z coordinates of the corner.",
         )
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in BLK FORM")
+    cursor.demand_end("Unexpected word in BLK FORM")
 
 
 def tool_call(cursor: Cursor) -> ToolCall:
@@ -232,8 +231,7 @@ def _datum(cursor: Cursor, column: int) -> Datum:
         made = Datum(row=cursor.value("TABLINE"), column=column, table=table)
     else:
         raise cursor.expected("TRANS DATUM needs AXIS or RESET")
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in TRANS DATUM")
+    cursor.demand_end("Unexpected word in TRANS DATUM")
     return made
 
 
@@ -241,8 +239,7 @@ def label(cursor: Cursor) -> Label:
     """The number or name behind ``LBL``."""
     column = cursor.column
     made = Label(cursor.name("LBL", MOST_LABEL), column)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in LBL")
+    cursor.demand_end("Unexpected word in LBL")
     return made
 
 
@@ -257,8 +254,7 @@ def call(cursor: Cursor) -> Call:
     if cursor.keyword("REP"):
         repeat = _repeats(cursor)
         cursor.take(_OF_REPEATS)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in CALL LBL")
+    cursor.demand_end("Unexpected word in CALL LBL")
     return Call(name, repeat, column)
 
 
@@ -281,8 +277,7 @@ def call_program(cursor: Cursor, column: int) -> ProgramCall:
 def call_selected(cursor: Cursor, column: int) -> ProgramCall:
     """Behind ``CALL SELECTED``: PGM."""
     cursor.keyword("PGM")
-    if not cursor.done:
-        raise cursor.expected("CALL SELECTED accepts only PGM")
+    cursor.demand_end("CALL SELECTED accepts only PGM")
     return ProgramCall("", column)
 
 
@@ -324,8 +319,7 @@ def _dwell(cursor: Cursor, column: int) -> CycleLine:
     if cursor.take(_SECONDS) is None:
         raise unsupported(cursor.line, column, "FUNCTION DWELL in revolutions")
     made = CycleLine(9, 1, (AxisWord("", cursor.value("TIME")),), column=column)
-    if not cursor.done:
-        raise cursor.expected("Unexpected word in FUNCTION DWELL")
+    cursor.demand_end("Unexpected word in FUNCTION DWELL")
     return made
 
 
