@@ -15,7 +15,7 @@ NoValue = Callable[[int, str], ProgramError]
 
 
 def worth(formula: Formula, parameter: Callable[[Parameter], float], no_value: NoValue) -> float:
-    """The value; ``parameter`` gives that of a parameter. Raises what ``no_value`` makes where there is none."""
+    """The value; ``parameter`` gives that of a parameter. Raises what ``no_value`` makes."""
     if isinstance(formula, Number):
         return formula.value
     if isinstance(formula, Parameter):

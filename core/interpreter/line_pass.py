@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator
-from typing import Generic, TypeVar
+from collections.abc import Callable, Iterator
+from typing import Generic, Protocol, TypeVar
 
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, MOST_LINES_WITHOUT_BLOCK, Interpretation
 
-Line = TypeVar("Line")
+
+class Numbered(Protocol):
+    """A line of a program; ``number`` from 1."""
+
+    @property
+    def number(self) -> int: ...
+
+
+Line = TypeVar("Line", bound=Numbered)
 
 
 class LinePass(Interpretation, Generic[Line]):
@@ -22,41 +30,34 @@ class LinePass(Interpretation, Generic[Line]):
         self._taken: Line | None = None  # a line at which block search has stopped
         self._left = MOST_LINES
 
-    @property
     @abstractmethod
-    def _made(self) -> int:
-        """Blocks made so far."""
-
-    @abstractmethod
-    def _taken_line(self) -> Line | None:
-        """The next line of the flow, which is taken; None at the end."""
-
-    @abstractmethod
-    def _number(self, line: Line) -> int:
-        """The number by which block search asks for a line; 0 for one at which it cannot stop."""
+    def _can_stop(self, line: Line) -> bool:
+        """Whether block search may stop before this line: one of the main file that does something."""
 
     @abstractmethod
     def _never_ends(self, line: Line) -> None:
         """Tell that more has been executed than any program is meant to."""
 
-    def _lines(self) -> Iterator[Line]:
-        """The lines as they come, until a stop of block search or more than anybody runs."""
-        idle = made = 0
-        while (line := self._next_line()) is not None:
+    def _lines(self, take: Callable[[], Line | None], made: Callable[[], int]) -> Iterator[Line]:
+        """The lines as they come, until a stop of block search or more than anybody runs.
+
+        ``take`` gives the next line, ``made`` the count of blocks so far.
+        """
+        idle = blocks = 0
+        while (line := self._next_line(take)) is not None:
             self._left -= 1
-            idle, made = (idle + 1, made) if self._made == made else (0, self._made)
-            if self._left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or made >= MOST_BLOCKS:
+            idle, blocks = (idle + 1, blocks) if made() == blocks else (0, made())
+            if self._left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or blocks >= MOST_BLOCKS:
                 self._never_ends(line)
                 self._left = -1
                 return
             yield line
 
-    def _next_line(self) -> Line | None:
-        """The line that comes next, which is taken; None at the end, and where block search stops."""
+    def _next_line(self, take: Callable[[], Line | None]) -> Line | None:
         taken, self._taken = self._taken, None
-        line = taken if taken is not None else self._taken_line()
+        line = taken if taken is not None else take()
         asked = self.stop_before
-        if line is None or asked is None or not (number := self._number(line)) or not asked(number):
+        if line is None or asked is None or not self._can_stop(line) or not asked(line.number):
             return line
         self._taken, self.stopped_before = line, True
         return None

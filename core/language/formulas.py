@@ -46,6 +46,11 @@ TRIGONOMETRY = {
 }  # what every language calls them
 
 
+def indices_of(index: Formula) -> tuple[Formula, ...]:
+    """What stands in square brackets, one formula for each dimension."""
+    return index.operands if isinstance(index, Operation) and index.name == INDICES else (index,)
+
+
 class FormulaError(Exception):
     """What cannot be read. ``at`` is the index of the place in the text; ``str()`` a sentence about it."""
 

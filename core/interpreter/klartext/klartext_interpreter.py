@@ -101,15 +101,8 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         mid_program_startup.take_up(self._state, begin, inch=self._program.inch)
         self._approach = mid_program_startup.approach_blocks(self._state, begin)
 
-    @property
-    def _made(self) -> int:
-        return self._state.blocks
-
-    def _taken_line(self) -> nodes.KlartextLine | None:
-        return self._flow.next()
-
-    def _number(self, line: nodes.KlartextLine) -> int:
-        return 0 if line.node is None or self._flow.outside else line.number
+    def _can_stop(self, line: nodes.KlartextLine) -> bool:
+        return line.node is not None and not self._flow.outside
 
     def _never_ends(self, line: nodes.KlartextLine) -> None:
         self._stop_endless(line.number, "Reduce the repeat counts.")
@@ -117,7 +110,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """The elementary blocks, made as they are asked for. To be called once."""
         yield from self._approach
-        for line in self._lines():
+        for line in self._lines(self._flow.next, lambda: self._state.blocks):
             for block in self._guarded(line):
                 if not self._stopped:
                     yield block

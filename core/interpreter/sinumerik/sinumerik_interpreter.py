@@ -170,25 +170,18 @@ class Interpreter(LinePass[Line]):
         state = self._state
         self._approach = approach_blocks(begin, state.modal, state.setup.start, state.rpm_at)
 
-    @property
-    def _made(self) -> int:
-        return self._count
-
-    def _taken_line(self) -> Line | None:
-        return None if self._log.full else self._flow.next()
-
-    def _number(self, line: Line) -> int:
-        if not line.executable or self._flow.outside or self._deleted(line):
-            return 0
-        return line.number
+    def _can_stop(self, line: Line) -> bool:
+        return line.executable and not self._flow.outside and not self._deleted(line)
 
     def _deleted(self, line: Line) -> bool:
         return line.skip is not None and self._state.setup.block_delete
 
     def _pass(self) -> Iterator[Block]:
-        for line in self._lines():
+        for line in self._lines(self._flow.next, lambda: self._count):
             if line.executable and not self._deleted(line):
                 yield from self._line(line)
+            if self._log.full:
+                break
         if not self.stopped_before and self._left >= 0:
             yield from self._ended()
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from itertools import product
 
 from core.language.diagnostics import ProgramError
-from core.language.formulas import INDICES, Formula, Operation, Parameter
+from core.language.formulas import Formula, Parameter, indices_of
 from core.language.sinumerik.array_values import Values
 from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NOT_DEFINED, OTHER_INDEX
 from core.language.sinumerik.sinumerik_words import MOST_R
@@ -144,7 +144,7 @@ def place_name(
     """The name of a place: R7, LENGTH, TABLE[2]. Raises the error for an index that is no whole number."""
     if number is None or isinstance(number, int):
         return f"{letters}{'' if number is None else number}"
-    indices = [worth(each) for each in _several(number)]
+    indices = [worth(each) for each in indices_of(number)]
     for place, index in enumerate(indices):
         if abs(index - round(index)) > 1e-9 or index < 0 or (letters == "R" and place):
             code = OTHER_INDEX if place else FIRST_INDEX
@@ -156,10 +156,6 @@ def place_name(
             raise refuse(code, text, "Use a whole number of 0 or more as the index.")
     written = ",".join(str(round(each)) for each in indices)
     return f"R{written}" if letters == "R" else f"{letters}[{written}]"
-
-
-def _several(index: Formula) -> tuple[Formula, ...]:
-    return index.operands if isinstance(index, Operation) and index.name == INDICES else (index,)
 
 
 def _r_places() -> list[str]:

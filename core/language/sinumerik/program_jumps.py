@@ -6,7 +6,7 @@ import re
 from enum import StrEnum
 from typing import NamedTuple
 
-from core.language.formulas import INDICES, Formula, FormulaError, Operation
+from core.language.formulas import Formula, FormulaError, indices_of
 from core.language.sinumerik.array_values import Values, read_values
 from core.language.sinumerik.block_reader import BlockReader
 from core.language.sinumerik.call_arguments import Parameter, read_parameters
@@ -230,9 +230,7 @@ class _Reader(BlockReader):
         made = Defined(name, None, kind)
         if after == "[":
             self.at -= 1
-            size = self.index()
-            several = isinstance(size, Operation) and size.name == INDICES
-            made = made._replace(sizes=size.operands if several else (size,))
+            made = made._replace(sizes=indices_of(self.index()))
             after = self._sign()
         if after == "=":
             made = self._first_value(made)
