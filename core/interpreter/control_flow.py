@@ -45,12 +45,8 @@ class ControlFlow(Generic[AnyFrame]):
 
     def __init__(self, main: AnyFrame) -> None:
         self.at, self.end = main.at, main.end
-        self.frames = [main]  # the last one is being executed; its ``at`` is kept when it calls
-
-    @property
-    def here(self) -> AnyFrame:
-        """The program that is being executed."""
-        return self.frames[-1]
+        self.here = main  # what is being executed; its ``at`` is kept when it calls
+        self.frames = [main]
 
     @property
     def called(self) -> bool:
@@ -66,17 +62,23 @@ class ControlFlow(Generic[AnyFrame]):
         """Go on in a subprogram."""
         self.here.at = self.at
         self.frames.append(frame)
-        self.at, self.end = frame.at, frame.end
+        self.here, self.at, self.end = frame, frame.at, frame.end
 
-    def leave(self, depth: int = -1) -> None:
-        """Go on behind the call of the last subprogram, or of the one at this depth."""
-        del self.frames[depth:]
-        self.at, self.end = self.here.at, self.here.end
+    def leave(self) -> None:
+        """Go on behind the call of the subprogram."""
+        self.frames.pop()
+        self._go_on()
+
+    def _go_on(self) -> None:
+        """In the last frame, where it stands."""
+        self.here = here = self.frames[-1]
+        self.at, self.end = here.at, here.end
 
     def end_all(self) -> None:
         """End the program: nothing comes any more."""
         del self.frames[1:]
-        self.at = self.end = self.here.end
+        self._go_on()
+        self.at = self.end
 
     def shown_line(self, number: int) -> int:
         """The line of the main file that stands for line ``number`` of the program under way."""

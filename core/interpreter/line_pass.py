@@ -29,6 +29,7 @@ class LinePass(Interpretation, Generic[Line]):
         self._approach: Iterator[Block] = iter(())
         self._taken: Line | None = None  # a line at which block search has stopped
         self._left = MOST_LINES
+        self._made = 0  # blocks so far
 
     @abstractmethod
     def _can_stop(self, line: Line) -> bool:
@@ -38,26 +39,20 @@ class LinePass(Interpretation, Generic[Line]):
     def _never_ends(self, line: Line) -> None:
         """Tell that more has been executed than any program is meant to."""
 
-    def _lines(self, take: Callable[[], Line | None], made: Callable[[], int]) -> Iterator[Line]:
-        """The lines as they come, until a stop of block search or more than anybody runs.
-
-        ``take`` gives the next line, ``made`` the count of blocks so far.
-        """
+    def _lines(self, take: Callable[[], Line | None]) -> Iterator[Line]:
+        """The lines as ``take`` gives them, until a stop of block search or more than anybody runs."""
         idle = blocks = 0
-        while (line := self._next_line(take)) is not None:
+        while True:
+            line, self._taken = self._taken or take(), None
+            if line is None:
+                return
+            if self.stop_before is not None and self._can_stop(line) and self.stop_before(line.number):
+                self._taken, self.stopped_before = line, True
+                return
             self._left -= 1
-            idle, blocks = (idle + 1, blocks) if made() == blocks else (0, made())
+            idle, blocks = (idle + 1, blocks) if self._made == blocks else (0, self._made)
             if self._left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or blocks >= MOST_BLOCKS:
                 self._never_ends(line)
                 self._left = -1
                 return
             yield line
-
-    def _next_line(self, take: Callable[[], Line | None]) -> Line | None:
-        taken, self._taken = self._taken, None
-        line = taken if taken is not None else take()
-        asked = self.stop_before
-        if line is None or asked is None or not self._can_stop(line) or not asked(line.number):
-            return line
-        self._taken, self.stopped_before = line, True
-        return None

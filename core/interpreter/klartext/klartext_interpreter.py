@@ -110,10 +110,12 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """The elementary blocks, made as they are asked for. To be called once."""
         yield from self._approach
-        for line in self._lines(self._flow.next, lambda: self._state.blocks):
+        self._made = self._state.blocks
+        for line in self._lines(self._flow.next):
             for block in self._guarded(line):
                 if not self._stopped:
                     yield block
+            self._made = self._state.blocks
             if self._stopped and (to_first_error or self._log.full):
                 return
         if not (self._stopped or self.stopped_before or self._flow.ended_by_code):

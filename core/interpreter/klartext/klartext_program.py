@@ -271,9 +271,10 @@ class Flow(ControlFlow[_Level]):
             begun = self._begun
             if not begun:
                 return None
-            self.leave(begun)
+            del self.frames[begun:]
+            self._go_on()
         self.at += 1
-        return self.program.lines[self.at - 1]
+        return self.here.routine.lines[self.at - 1]
 
     def through_subprogram(self, label: int | str) -> Flow | None:
         """A way through one subprogram of the program under way; None where it has none of this name."""
@@ -308,7 +309,7 @@ class Flow(ControlFlow[_Level]):
 
     def call(self, line: int, node: Call, times: int) -> None:
         """CALL LBL, or ``times`` repeats of its section. Raises ProgramError for calls nested too deep."""
-        target = self.program.labels.get(node.name)
+        target = self.here.routine.labels.get(node.name)
         if target is None:
             return  # told when the program was read
         if node.repeat is not None:
@@ -331,7 +332,7 @@ class Flow(ControlFlow[_Level]):
 
     def jump(self, node: Jump) -> None:
         """On behind a label."""
-        target = self.program.labels.get(node.name)
+        target = self.here.routine.labels.get(node.name)
         if target is not None:  # else it was told when the program was read
             self.at = target + 1
 

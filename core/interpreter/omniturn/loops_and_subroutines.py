@@ -259,6 +259,7 @@ class Flow(ControlFlow[Frame[Structure]]):
         """The same place, to go on from there by itself."""
         twin = copy(self)
         twin.frames = [replace(each, left=dict(each.left)) for each in self.frames]
+        twin.here = twin.frames[-1]
         return twin
 
     def stop(self) -> None:
@@ -291,7 +292,7 @@ class Flow(ControlFlow[Frame[Structure]]):
         if place:
             structure = self.here.routine
             self.frames = [Frame(structure, run.back, run.end, dict(run.loops)) for run in place]
-            self.end = self.here.end
+            self._go_on()
         self.at = line - 1
 
     def _bound(self) -> None:

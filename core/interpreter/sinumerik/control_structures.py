@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from functools import partial
 from math import prod
 
 from core.interpreter.sinumerik.sinumerik_state import State
-from core.interpreter.sinumerik.variables import LARGEST_ARRAY, MOST_DIMENSIONS, variable_named
+from core.interpreter.sinumerik.variables import LARGEST_ARRAY, MOST_DIMENSIONS
 from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.program_jumps import Defined, Jump, Steering
 from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NESTING, NO_TARGET, NOT_DEFINED
@@ -26,6 +25,8 @@ _ENDS = {
     Steering.UNTIL: Steering.REPEAT,
 }
 _BEGINS = frozenset(_ENDS.values())
+_ASKED = frozenset({Steering.IF, Steering.WHILE, Steering.UNTIL})
+_BACK = frozenset({Steering.END_WHILE, Steering.END_LOOP})
 _SAME = 1e-12  # numbers of CASE that differ by less are equal
 _GOTO = frozenset({Steering.GOTO, Steering.GOTO_BACK, Steering.GOTO_FORWARD, Steering.GOTO_START})
 
@@ -139,32 +140,25 @@ def _structure(line: Line, jump: Jump, state: State, program: Routine, places: t
 
     None where it is the next one. Raises ProgramError.
     """
-    first, last = places[0], places[-1]
-    match jump.steering:
-        case Steering.IF | Steering.WHILE | Steering.UNTIL:
-            elsewhere = first if jump.steering is Steering.UNTIL else places[1]
-            return None if _worth(line, jump, state, jump.condition) else elsewhere + 1
-        case Steering.ELSE:
-            return last + 1
-        case Steering.END_WHILE | Steering.END_LOOP:
-            return first
-        case Steering.FOR:
-            return None if _counts(line, jump, jump, state) else last + 1
-        case Steering.END_FOR:
-            begin = program.line(first).jump
-            return first + 1 if begin is not None and _counts(line, jump, begin, state) else None
-    return None
+    first, last, steering = places[0], places[-1], jump.steering
+    if steering is Steering.END_FOR:
+        begin = program.line(first).jump
+        assert begin is not None
+        value = state.variables.number(begin.name) + 1.0
+        return first + 1 if _counts(line, jump, begin, state, value) else None
+    if steering is Steering.FOR:
+        value = _worth(line, jump, state, jump.first)
+        return None if _counts(line, jump, jump, state, value) else last + 1
+    if steering in _ASKED:
+        elsewhere = first if steering is Steering.UNTIL else places[1]
+        return None if _worth(line, jump, state, jump.condition) else elsewhere + 1
+    if steering is Steering.ELSE:
+        return last + 1
+    return first if steering in _BACK else None
 
 
-def _counts(line: Line, jump: Jump, begin: Jump, state: State) -> bool:
-    """Set the variable of FOR, or count it on at ENDFOR; whether it is not over the end.
-
-    Raises ProgramError.
-    """
-    if jump is begin:
-        value = _worth(line, jump, state, begin.first)
-    else:
-        value = _worth(line, jump, state, variable_named(begin.name, begin.column)) + 1.0
+def _counts(line: Line, jump: Jump, begin: Jump, state: State, value: float) -> bool:
+    """Give the variable of FOR its value; whether that is not over the end. Raises ProgramError."""
     if not state.variables.keep(begin.name, value):
         text = Message("the name {jump} is not defined with DEF.", jump=begin.name)
         hint = Message("Write DEF INT {jump} before this block.", jump=begin.name)
@@ -235,7 +229,7 @@ def _message(line: Line, jump: Jump, state: State) -> str:
 
 def _worth(line: Line, jump: Jump, state: State, formula: Formula | None) -> float:
     assert formula is not None
-    return state.worth(formula, partial(line.refuse, jump.column))
+    return state.worth(formula, lambda code, text, hint: line.refuse(jump.column, code, text, hint))
 
 
 def _target(line: Line, jump: Jump, program: Routine, at: int) -> int:

@@ -92,7 +92,6 @@ class Interpreter(LinePass[Line]):
         self._corners = Corners(self._state, self._log)
         self._compensation = Compensation(self._state, self._log)
         self._flow = Flow(source, self._state)
-        self._count = 0
         self._setup = setup
         self._no_axis: set[str] = set()  # axes that this machine has not, as far as told
         if setup.begin is not None:
@@ -116,8 +115,8 @@ class Interpreter(LinePass[Line]):
         yield from self._approach
         for block in self._pass():
             if not self._stopped:
-                self._count += 1
-                block.n = self._count
+                self._made += 1
+                block.n = self._made
                 yield block
             elif to_first_error:
                 return
@@ -128,7 +127,7 @@ class Interpreter(LinePass[Line]):
     def checkpoint(self) -> Checkpoint:
         """What the block inherits that would be executed next."""
         parts = Parts(self._state, self._corners, self._flow, self._taken)
-        return checkpoint_of(parts, (self._setup, self._log, *self._flow.routines), self._count)
+        return checkpoint_of(parts, (self._setup, self._log, *self._flow.routines), self._made)
 
     @property
     def _transformed(self) -> Transformation | None:
@@ -161,7 +160,7 @@ class Interpreter(LinePass[Line]):
         take_up(self._state, begin)
         if self._transformed is not None:
             self._transformed.stand()
-        self._count = 0 if begin.single else begin.checkpoint.blocks
+        self._made = 0 if begin.single else begin.checkpoint.blocks
         if begin.single:
             problem = needs_others(self._source, self._setup.limits.third_axis)
             if problem is not None:
@@ -177,7 +176,7 @@ class Interpreter(LinePass[Line]):
         return line.skip is not None and self._state.setup.block_delete
 
     def _pass(self) -> Iterator[Block]:
-        for line in self._lines(self._flow.next, lambda: self._count):
+        for line in self._lines(self._flow.next):
             if line.executable and not self._deleted(line):
                 yield from self._line(line)
             if self._log.full:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from enum import IntEnum
-from functools import partial
 
 from core.interpreter.actions import Action, Dwell, ProgramStop
 from core.interpreter.diagnostic_log import Log
@@ -133,7 +132,7 @@ class State:
         if word.value is not None:
             return word.value
         assert word.formula is not None
-        return self.worth(word.formula, partial(statement.refuse, word))
+        return self.worth(word.formula, lambda code, text, hint: statement.refuse(word, code, text, hint))
 
     def worth(self, formula: Formula, refuse: Refuse) -> float:
         """What a formula comes to. ``refuse`` makes the error to raise of its code, text and hint."""

@@ -50,12 +50,6 @@ class Variables:
         self.r: dict[str, float] = {}
         self.scope = Scope()
 
-    def _holder(self, name: str) -> tuple[dict[str, float], str]:
-        """What holds the number of a place, and by which name: R7 for R007."""
-        if name[0] == "R" and name[1:].isdigit():
-            return self.r, name if name[1] != "0" else f"R{int(name[1:])}"
-        return self.scope.numbers, name
-
     def value(self, asked: Parameter, worth: Callable[[Formula], float], refuse: Refuse) -> float:
         """What an R parameter or a variable holds. Raises what ``refuse`` makes where it holds nothing."""
         if asked.letters.startswith("$"):
@@ -64,10 +58,10 @@ class Variables:
             )
             raise refuse("system-variable", text, "Write the value, or an R parameter that contains it.")
         name = place_name(asked.letters, asked.number, worth, refuse)
-        holder, name = self._holder(name)
-        if name not in holder:
+        found = (self.r if asked.letters == "R" else self.scope.numbers).get(name)
+        if found is None:
             raise refuse(*self.missing(asked.letters, name))
-        return holder[name]
+        return found
 
     def fill(self, letters: str, first: str, values: Values, worth: Callable[[Formula], float]) -> int:
         """Give elements their values from the place ``first`` on; how many of them had no element left."""
@@ -84,11 +78,19 @@ class Variables:
 
     def keep(self, name: str, value: float) -> bool:
         """This place holds a value from now on; False where no DEF has named it."""
-        holder, name = self._holder(name)
-        if holder is not self.r and name not in holder:
+        if name[0] == "R" and name[1:].isdigit():
+            self.r[f"R{int(name[1:])}"] = value
+        elif name in self.scope.numbers:
+            self.scope.numbers[name] = value
+        else:
             return False
-        holder[name] = value
         return True
+
+    def number(self, name: str) -> float:
+        """What this place holds; 0 where it holds nothing."""
+        if name[0] == "R" and name[1:].isdigit():
+            return self.r.get(f"R{int(name[1:])}", 0.0)
+        return self.scope.numbers.get(name, 0.0)
 
     def missing(self, letters: str, name: str) -> tuple[int | str, str, str]:
         """Why there is no number at this place: code, text and hint."""
@@ -129,13 +131,6 @@ class Variables:
             )
         text = Message("the name {jump} is not defined with DEF.", jump=name)
         return NOT_DEFINED, text, Message("Write DEF REAL {word} before this block.", word=name)
-
-
-def variable_named(name: str, column: int) -> Parameter:
-    """The R parameter or the variable of this name, as formulas have it."""
-    if name[0] == "R" and name[1:].isdigit():
-        return Parameter("R", int(name[1:]), column)
-    return Parameter(name, None, column)
 
 
 def place_name(
