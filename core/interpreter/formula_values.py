@@ -6,35 +6,31 @@ import math
 from collections.abc import Callable
 
 from core.geometry.rotation_frames import cos_sin
+from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Number, Operation, Parameter
 from core.message import Message
 
-
-class NoValueError(Exception):
-    """A formula without a value. ``column`` is where its operation stands; ``str()`` says why."""
-
-    def __init__(self, column: int, why: str) -> None:
-        super().__init__(why)
-        self.column = column
+NoValue = Callable[[int, str], ProgramError]
+"""Makes the error to raise of the column at which an operation stands and of why it has no value."""
 
 
-def worth(formula: Formula, parameter: Callable[[Parameter], float]) -> float:
-    """The value; ``parameter`` gives that of a parameter. Raises NoValueError where there is none."""
+def worth(formula: Formula, parameter: Callable[[Parameter], float], no_value: NoValue) -> float:
+    """The value; ``parameter`` gives that of a parameter. Raises what ``no_value`` makes."""
     if isinstance(formula, Number):
         return formula.value
     if isinstance(formula, Parameter):
         return parameter(formula)
-    operands = [worth(each, parameter) for each in formula.operands]
+    operands = [worth(each, parameter, no_value) for each in formula.operands]
     try:
         found = OPERATIONS[formula.name](*operands)
     except ZeroDivisionError:
-        raise NoValueError(formula.column, "The formula divides by zero") from None
+        raise no_value(formula.column, "The formula divides by zero") from None
     except (ValueError, OverflowError):
-        raise NoValueError(formula.column, _undefined(formula, operands)) from None
+        raise no_value(formula.column, _undefined(formula, operands)) from None
     except TypeError:
-        raise NoValueError(formula.column, "A function has too few or too many arguments") from None
+        raise no_value(formula.column, "A function has too few or too many arguments") from None
     if not math.isfinite(found):
-        raise NoValueError(formula.column, "The result is too large")
+        raise no_value(formula.column, "The result is too large")
     return found
 
 

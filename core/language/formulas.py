@@ -53,6 +53,11 @@ FUNCTIONS = {
 """Functions that have the same name in every language."""
 
 
+def indices_of(index: Formula) -> tuple[Formula, ...]:
+    """What stands in square brackets, one formula for each dimension."""
+    return index.operands if isinstance(index, Operation) and index.name == INDICES else (index,)
+
+
 class FormulaError(Exception):
     """What cannot be read. ``at`` is the index of the place in the text; ``str()`` a sentence about it."""
 

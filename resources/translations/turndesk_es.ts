@@ -19109,6 +19109,11 @@
       <translation>los dos vectores son paralelos</translation>
     </message>
     <message>
+      <location filename="core/interpreter/control_flow.py" />
+      <source>{source} line {line}: {value}</source>
+      <translation>{source} línea {line}: {value}</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/dialects.py" />
       <source>A Klartext program needs a mill with X, Y, Z and [kinematics]; this machine does not meet these requirements.</source>
       <translation>Un programa Klartext necesita una fresadora con X, Y, Z y [kinematics]; esta máquina no cumple estos requisitos.</translation>
@@ -19225,8 +19230,18 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/blocks_without_motion.py" />
+      <source>Check the conditions under which the program reaches this block.</source>
+      <translation>Compruebe las condiciones con las que el programa llega a este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
       <source>In the loop, change a Q parameter that the jump condition uses.</source>
       <translation>Cambie en el bucle un parámetro Q que use la condición del salto.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/blocks_without_motion.py" />
+      <source>The program reports its own error {number} and stops.</source>
+      <translation>El programa emite su propio error {number} y se para.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/blocks_without_motion.py" />
@@ -20069,11 +20084,6 @@
       <translation>Escriba la misma unidad en BEGIN PGM y END PGM.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>{source} line {line}: {value}</source>
-      <translation>{source} línea {line}: {value}</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/klartext/klartext_state.py" />
       <source>{what} has no effect on this control.</source>
       <translation>{what} no tiene efecto en este control.</translation>
@@ -20675,11 +20685,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/q_functions.py" />
-      <source>Check the conditions under which the program reaches this block.</source>
-      <translation>Compruebe las condiciones con las que el programa llega a este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/q_functions.py" />
       <source>Correct the formula.</source>
       <translation>Corrija la fórmula.</translation>
     </message>
@@ -20687,11 +20692,6 @@
       <location filename="core/interpreter/klartext/q_functions.py" />
       <source>Q{number}=PREDEF, but no GLOBAL DEF defines Q{number2}.</source>
       <translation>Q{number}=PREDEF, pero ningún GLOBAL DEF define Q{number2}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/q_functions.py" />
-      <source>The program reports its own error {number} and stops.</source>
-      <translation>El programa emite su propio error {number} y se para.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/q_functions.py" />
@@ -22355,11 +22355,6 @@
     </message>
     <message>
       <location filename="core/interpreter/restart/program_search.py" />
-      <source>At the start of line {line}, the tool is in material that {which} should have cut.</source>
-      <translation>Al inicio de la línea {line}, la herramienta está en material que debió cortarse antes: {which}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/program_search.py" />
       <source>Line {line} does not exist; the last line of the program is {lines_count}.</source>
       <translation>La línea {line} no existe; la última línea del programa es la {lines_count}.</translation>
     </message>
@@ -22392,11 +22387,6 @@
       <location filename="core/interpreter/restart/program_search.py" />
       <source>The program reaches line {line} only {visits_count} times.</source>
       <translation>El programa llega a la línea {line} sólo {visits_count} veces.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/restart/program_search.py" />
-      <source>lines {first} to {last}</source>
-      <translation>líneas {first} a {last}</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/program_search.py" />
@@ -22452,6 +22442,11 @@
       <location filename="core/interpreter/restart/restart_lines.py" />
       <source>Line {line} uses the nose compensation that begins on line {begin}.</source>
       <translation>La línea {line} usa la compensación de punta que empieza en la línea {begin}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/state_rebuild.py" />
+      <source>At the start of line {line}, the tool is in material that {which} should have cut.</source>
+      <translation>Al inicio de la línea {line}, la herramienta está en material que debió cortarse antes: {which}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/restart/state_rebuild.py" />
@@ -22512,6 +22507,11 @@
       <location filename="core/interpreter/restart/state_rebuild.py" />
       <source>line {position} depends on an input, and the state of this input is unknown.</source>
       <translation>la línea {position} depende de una entrada, y se desconoce el estado de esa entrada.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/restart/state_rebuild.py" />
+      <source>lines {first} to {last}</source>
+      <translation>líneas {first} a {last}</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/boring_cycles.py" />

@@ -8,7 +8,7 @@ from collections import Counter
 import pytest
 
 from core.interpreter.actions import Coolant
-from core.interpreter.sinumerik import subprogram_flow
+from core.interpreter.sinumerik import control_structures
 from core.language.sinumerik.sinumerik_lexer import lex_line
 from core.language.sinumerik.sinumerik_words import Line
 from tests.sinumerik.lathe import good, refused, run
@@ -157,9 +157,19 @@ def test_a_loop_reads_no_line_at_each_pass(loop: str, monkeypatch: pytest.Monkey
         read[number] += 1
         return lex_line(number, text, third_axis)
 
-    monkeypatch.setattr(subprogram_flow, "lex_line", counted)
+    monkeypatch.setattr(control_structures, "lex_line", counted)
     good(f"R1=0\n{loop}\nG0 X30\nOUT: G0 X40\nM30")
     assert max(read.values()) <= 4
+
+
+def test_endfor_counts_on_after_a_jump_into_the_loop() -> None:
+    ran = run("GOTOF IN\nFOR R3=5 TO 6\nG0 X30\nIN: G0 X40\nENDFOR\nG0 Z=R3\nM30")
+    assert (ran.found, ran.moves[-1].z) == ([], 7.0)  # from 0, which a parameter without a value is
+
+
+@pytest.mark.parametrize("name", ["COUNT", "UNDEF"])
+def test_a_loop_whose_variable_is_not_defined_is_one_error(name: str) -> None:
+    assert refused(f"FOR {name}=1 TO 3\nG0 X30\nENDFOR\nM30").code == "12550"
 
 
 def test_a_block_number_is_not_found_in_a_longer_one() -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from core.interpreter.actions import ProgramEnd
 from core.language.called_files import with_called_files
+from core.language.diagnostics import AT_THE_STOP
 from core.language.source import Dialect, Source, load_source
 from tests.sinumerik.lathe import good, refused, run, setup, source
 
@@ -63,6 +64,12 @@ def test_a_mistake_in_a_subprogram_is_told_with_its_file_and_line() -> None:
     assert (error.code, error.line) == ("16830", 3)
     assert "BAD.spf line 2" in error.message
     assert "block N7 axis C" in error.message
+
+
+def test_a_mistake_in_a_subprogram_that_rests_on_a_place_behind_a_stop_says_so() -> None:
+    sub = Source("PROBE.spf", "R1=1/($AA_IW[X]-20)\nM17\n", Dialect.SINUMERIK)
+    error = refused(source("G0 X20\nM0\nPROBE\nM30", sub))
+    assert (error.line, error.code, error.assumed) == (3, "arithmetic", (AT_THE_STOP,))
 
 
 def test_subprograms_that_call_themselves() -> None:

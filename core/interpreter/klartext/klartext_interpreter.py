@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence
 from core.geometry.rotary_axes import Kinematics
 from core.interpreter.actions import ProgramEnd, ProgramStop
 from core.interpreter.checkpoint import Begin, Checkpoint
+from core.interpreter.control_flow import LoopWatch
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, MOST_LINES_WITHOUT_BLOCK, Interpretation
+from core.interpreter.interpretation import MOST_LINES_WITHOUT_BLOCK
 from core.interpreter.job_setup import Setup
 from core.interpreter.klartext import (
     feed_rates,
@@ -17,7 +18,7 @@ from core.interpreter.klartext import (
     mid_program_startup,
     tip_control,
 )
-from core.interpreter.klartext.blocks_without_motion import EndlessJumps, Reckoned, go_on, reckon
+from core.interpreter.klartext.blocks_without_motion import Reckoned, go_on, reckon, refuse_endless
 from core.interpreter.klartext.consequent_faults import Consequences, ends_the_pass
 from core.interpreter.klartext.contour_figures import ContourFigure, FigureRunner, copy_of
 from core.interpreter.klartext.coordinate_transformations import datum, transform
@@ -28,6 +29,7 @@ from core.interpreter.klartext.mid_program_startup import Parts
 from core.interpreter.klartext.path_functions import PathRunner
 from core.interpreter.klartext.plane_functions import plane
 from core.interpreter.klartext.tool_call import define_tool, tool_call
+from core.interpreter.line_pass import LinePass
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import ProgramError
 from core.language.klartext import klartext_nodes as nodes
@@ -37,7 +39,7 @@ from core.language.klartext.table_file import Row
 from core.message import Message
 
 
-class Interpreter(Interpretation):
+class Interpreter(LinePass[nodes.KlartextLine]):
     """One pass through a Klartext program."""
 
     def __init__(self, program: Program, setup: Setup, kinematics: Kinematics) -> None:
@@ -46,12 +48,10 @@ class Interpreter(Interpretation):
         self._state = State(setup, kinematics, self._log, inch=program.inch)
         self._state.blank = program.corners
         self._flow = Flow(program)
-        self._jumps = EndlessJumps(self._flow)
+        self._watch = None if self._flow.reads_the_control else LoopWatch()
         self._path = PathRunner(self._state)
         self._cycles = Cycles(self._state)
         self._setup = setup
-        self._taken: nodes.KlartextLine | None = None  # a line at which block search has stopped
-        self._approach: Iterator[Block] = iter(())
         self._consequences = Consequences()
         if setup.begin is not None:
             self._go_on_from(setup.begin)
@@ -101,35 +101,24 @@ class Interpreter(Interpretation):
         mid_program_startup.take_up(self._state, begin, inch=self._program.inch)
         self._approach = mid_program_startup.approach_blocks(self._state, begin)
 
-    def _next_line(self) -> nodes.KlartextLine | None:
-        """The line that comes next, which is taken; None at the end."""
-        taken, self._taken = self._taken, None
-        line = taken if taken is not None else self._flow.next()
-        asked = self.stop_before
-        if line is None or line.node is None or asked is None or self._flow.called:
-            return line
-        if not asked(line.number):
-            return line
-        self._taken, self.stopped_before = line, True
-        return None
+    def _can_stop(self, line: nodes.KlartextLine) -> bool:
+        return line.node is not None and not self._flow.outside
+
+    def _never_ends(self, line: nodes.KlartextLine) -> None:
+        self._stop_endless(line.number, "Reduce the repeat counts.")
 
     def blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
         """The elementary blocks, made as they are asked for. To be called once."""
-        flow = self._flow
-        left, idle, made = MOST_LINES, 0, 0
         yield from self._approach
-        while (line := self._next_line()) is not None:
-            left -= 1
-            idle, made = (idle + 1, made) if self._state.blocks == made else (0, self._state.blocks)
-            if left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or self._state.blocks >= MOST_BLOCKS:
-                self._stop_endless(line.number, "Reduce the repeat counts.")
-                return
+        self._made = self._state.blocks
+        for line in self._lines(self._flow.next):
             for block in self._guarded(line):
                 if not self._stopped:
                     yield block
+            self._made = self._state.blocks
             if self._stopped and (to_first_error or self._log.full):
                 return
-        if not (self._stopped or self.stopped_before or flow.ended_by_code):
+        if not (self._stopped or self.stopped_before or self._flow.ended_by_code):
             yield from self._end_of_program()
 
     def _end_of_program(self) -> Iterator[Block]:
@@ -178,8 +167,8 @@ class Interpreter(Interpretation):
                 self._path.pole(node)
             case nodes.Label() | nodes.Call() | nodes.Jump():
                 go_on(state, self._flow, line.number, node)
-                if isinstance(node, nodes.Jump):
-                    self._jumps.look(state, self._flow, line.number, node)
+                if isinstance(node, nodes.Jump) and self._watch is not None:
+                    refuse_endless(state, self._flow, self._watch, line.number, node)
             case _ if isinstance(node, Reckoned):
                 reckon(state, node)
             case (

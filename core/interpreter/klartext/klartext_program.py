@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from core.geometry.rotation_frames import Vector
+from core.interpreter.control_flow import ControlFlow, Frame
 from core.interpreter.diagnostic_log import MOST_OF_A_KIND
 from core.interpreter.klartext.consequent_faults import told_once
 from core.interpreter.units import MM_PER_INCH
@@ -243,51 +244,38 @@ DEEPEST_CALL = 19
 
 
 @dataclass(slots=True)
-class _Level:
-    """One subprogram under way: where to go on, and the repeats still to do by the line of their call."""
-
-    back: int
-    left: dict[int, int] = field(default_factory=dict)
+class _Level(Frame[Program]):
+    section: bool = False  # a subprogram of the program that is being executed, ended by LBL 0
 
 
-@dataclass(slots=True)
-class _Running:
-    """A program under way: ``at`` is the index of its next line, ``place`` the line of its call."""
-
-    program: Program
-    at: int = 0
-    place: int = 0
-    levels: list[_Level] = field(default_factory=list)
-
-
-class Flow:
+class Flow(ControlFlow[_Level]):
     """Where a program goes on: labels, jumps, repeats, and the programs that it calls."""
 
     def __init__(self, program: Program) -> None:
-        self._running = [_Running(program, levels=[_Level(back=program.end)])]
+        super().__init__(_Level(program, 0, program.end))
+        self._main = program
         self.ended_by_code = False
 
     @property
     def program(self) -> Program:
         """The program whose line was taken last."""
-        return self._running[-1].program
+        return self.here.routine
 
     @property
-    def called(self) -> bool:
-        """Whether the line that was taken last is one of another file."""
-        return len(self._running) > 1
+    def _begun(self) -> int:
+        """The place among the frames at which the program under way has begun."""
+        return max(at for at, each in enumerate(self.frames) if not each.section)
 
     def next(self) -> KlartextLine | None:
         """The next line; None where the main program is at its END PGM."""
-        while self._running:
-            running = self._running[-1]
-            if running.at < running.program.end:
-                running.at += 1
-                return running.program.lines[running.at - 1]
-            if len(self._running) == 1:
+        while self.at >= self.end:
+            begun = self._begun
+            if not begun:
                 return None
-            self._running.pop()
-        return None
+            del self.frames[begun:]
+            self._go_on()
+        self.at += 1
+        return self.here.routine.lines[self.at - 1]
 
     def through_subprogram(self, label: int | str) -> Flow | None:
         """A way through one subprogram of the program under way; None where it has none of this name."""
@@ -296,13 +284,13 @@ class Flow:
         if at is None or program.subprogram_end(at) is None:
             return None
         own = Flow(program)
-        own._running[0].at = at + 1
-        own._running[0].levels.append(_Level(back=program.end))
+        own.at = program.end
+        own.enter(_Level(program, at + 1, program.end, section=True))
         return own
 
     def beside(self, name: str) -> Program | None:
         """A program that lies beside the main one."""
-        return self._running[0].program.called.get(file_name(name))
+        return self._main.called.get(file_name(name))
 
     def through_program(self, name: str) -> Flow | None:
         """A way through a program beside the main one; None where there is none of this name."""
@@ -311,43 +299,24 @@ class Flow:
 
     def next_node(self) -> Node | None:
         """What the next line with a block says, where the program goes straight on."""
-        running = self._running[-1]
-        lines = running.program.lines
-        rest = (lines[at].node for at in range(running.at, running.program.end))
+        lines = self.program.lines
+        rest = (lines[at].node for at in range(self.at, self.end))
         return next((node for node in rest if node is not None and not isinstance(node, Heading)), None)
 
     def end_all(self) -> None:
         """M2 or M30: nothing comes any more."""
+        super().end_all()
         self.ended_by_code = True
-        del self._running[1:]
-        self._running[0].at = self._running[0].program.end
-
-    def shown_line(self, number: int) -> int:
-        """The line of the main program that stands for line ``number`` of the program under way."""
-        return self._running[1].place if len(self._running) > 1 else number
-
-    def located(self, found: Diagnostic) -> Diagnostic:
-        """A finding in a called program: told at its call, with file and line in its text."""
-        if len(self._running) == 1:
-            return found
-        message = Message(
-            "{source} line {line}: {value}",
-            source=self.program.source.name,
-            line=found.line,
-            value=found.message,
-        )
-        return replace(found, line=self._running[1].place, column=0, message=message)
 
     def call(self, line: int, node: Call, times: int) -> None:
         """CALL LBL, or ``times`` repeats of its section. Raises ProgramError for calls nested too deep."""
-        running = self._running[-1]
-        target = running.program.labels.get(node.name)
+        target = self.here.routine.labels.get(node.name)
         if target is None:
             return  # told when the program was read
         if node.repeat is not None:
             self._repeat(line, target, times)
             return
-        if len(running.levels) > DEEPEST_CALL:
+        if len(self.frames) - self._begun > DEEPEST_CALL:
             text = Message(
                 "Calls are nested more than {deepest_call} levels deep at LBL {node}.",
                 deepest_call=DEEPEST_CALL,
@@ -355,65 +324,49 @@ class Flow:
             )
             hint = "A subprogram must not call itself."
             raise fault(line, node.column, NESTING, text, hint)
-        running.levels.append(_Level(back=running.at))
-        running.at = target + 1
+        self.enter(replace(self.here, at=target + 1, left={}, section=True))
 
     def label(self, node: Label) -> None:
         """LBL: 0 ends the subprogram under way, others mark a place."""
-        running = self._running[-1]
-        if node.name == 0 and len(running.levels) > 1:
-            running.at = running.levels.pop().back
+        if node.name == 0 and self.here.section:
+            self.leave()
 
     def jump(self, node: Jump) -> None:
         """On behind a label."""
-        running = self._running[-1]
-        target = running.program.labels.get(node.name)
+        target = self.here.routine.labels.get(node.name)
         if target is not None:  # else it was told when the program was read
-            running.at = target + 1
-
-    def jumped_back(self, line: int) -> bool:
-        """Whether the way goes on at or before this line of the program under way."""
-        return self._running[-1].at < line
-
-    def standing(self) -> tuple[object, ...]:
-        """Where it stands, in which programs and subprograms, and the repeats that are left: as values."""
-        return tuple(
-            (each.program.source.name, each.at, *((at.back, *sorted(at.left.items())) for at in each.levels))
-            for each in self._running
-        )
+            self.at = target + 1
 
     @property
     def reads_the_control(self) -> bool:
         """Whether FN 18 stands in the program or in one that lies beside it."""
-        main = self._running[0].program
-        programs = (main, *main.called.values())
+        programs = (self._main, *self._main.called.values())
         return any(isinstance(line.node, SystemRead) for each in programs for line in each.lines)
 
     def table(self, name: str) -> dict[int, Row] | None:
         """The rows of a table that lies beside the program; None where there is none of this name."""
-        return self._running[0].program.tables.get(file_name(name))
+        return self._main.tables.get(file_name(name))
 
     def call_program(self, name: str, line: int) -> Program | None:
         """On in another program; None where there is none of this name. Raises ProgramError too deep."""
         called = self.beside(name)
         if called is None:
             return None
-        if len(self._running) > DEEPEST_CALL:
+        if sum(not each.section for each in self.frames) > DEEPEST_CALL:
             text = Message(
                 "Program calls are nested more than {deepest_call} levels deep at {name}.",
                 deepest_call=DEEPEST_CALL,
                 name=name,
             )
             raise fault(line, 1, NESTING, text, "A program must not call itself.")
-        self._running.append(_Running(called, place=self.shown_line(line), levels=[_Level(back=called.end)]))
+        self.enter(_Level(called, 0, called.end, file=called.source.name, place=self.shown_line(line)))
         return called
 
     def _repeat(self, line: int, target: int, times: int) -> None:
-        running = self._running[-1]
-        left = running.levels[-1].left
+        left = self.here.left
         still = left.get(line, times)
         if still > 0:
             left[line] = still - 1
-            running.at = target + 1
+            self.at = target + 1
         else:
             left.pop(line, None)

@@ -1,22 +1,15 @@
-"""Q parameters while a program runs: what they hold, formulas, jumps, errors of the program."""
+"""Q parameters while a program runs: what they hold, and what formulas come to."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.interpreter.formula_values import NoValueError, worth
+from core.interpreter.formula_values import worth
 from core.interpreter.klartext.klartext_state import State
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Parameter
 from core.language.klartext.cycle_blocks import PREDEFINED
-from core.language.klartext.klartext_faults import (
-    ARITHMETIC,
-    CYCLE_MISSING,
-    INPUT_VALUE,
-    OWN_ERROR,
-    MissingValueError,
-)
-from core.language.klartext.klartext_nodes import Assign, ErrorMessage, GlobalDef, Jump
+from core.language.klartext.klartext_faults import ARITHMETIC, CYCLE_MISSING, INPUT_VALUE, MissingValueError
 from core.language.klartext.q_parameters import WHETHER
 from core.message import Message
 
@@ -34,22 +27,20 @@ OF_THE_CONTROL: dict[int, Callable[[State], float]] = {
 """Parameters that the control itself keeps up to date."""
 
 
+def held(state: State, kind: str, number: int) -> float | None:
+    """What a parameter holds; None where nothing has given it a value."""
+    if kind != "Q":
+        return state.q_beside.get((kind, number))
+    kept = OF_THE_CONTROL.get(number)
+    return state.q.get(number) if kept is None else kept(state)
+
+
 def content(state: State, kind: str, number: int, column: int) -> float:
     """What a parameter holds. Raises ProgramError where nothing has given it a value."""
-    if kind != "Q":
-        if (kind, number) in state.q_beside:
-            return state.q_beside[kind, number]
-    elif number in OF_THE_CONTROL:
-        return OF_THE_CONTROL[number](state)
-    elif number in state.q:
-        return state.q[number]
-    raise MissingValueError(state.line, column, (kind, number))
-
-
-def _has_value(state: State, kind: str, number: int) -> bool:
-    if kind != "Q":
-        return (kind, number) in state.q_beside
-    return number in OF_THE_CONTROL or number in state.q
+    found = held(state, kind, number)
+    if found is None:
+        raise MissingValueError(state.line, column, (kind, number))
+    return found
 
 
 def _predefined(state: State, number: int, column: int) -> float:
@@ -64,12 +55,6 @@ def _predefined(state: State, number: int, column: int) -> float:
     return state.q_global[number]
 
 
-def predefine(state: State, node: GlobalDef) -> None:
-    """GLOBAL DEF: what PREDEF means in the cycles behind it. Raises ProgramError."""
-    for each in node.values:
-        state.q_global[each.q] = value(state, each.formula)
-
-
 def value(state: State, formula: Formula) -> float:
     """What a formula comes to. Raises ProgramError where it has no value, or one out of range."""
 
@@ -78,16 +63,14 @@ def value(state: State, formula: Formula) -> float:
         if asked.letters == PREDEFINED:
             return _predefined(state, asked.number, asked.column)
         if asked.letters.endswith(WHETHER):
-            return float(_has_value(state, asked.letters.removesuffix(WHETHER), asked.number))
+            return float(held(state, asked.letters.removesuffix(WHETHER), asked.number) is not None)
         return content(state, asked.letters, asked.number, asked.column)
 
-    try:
-        found = worth(formula, parameter)
-    except NoValueError as problem:
-        error = state.refuse(
-            problem.column, ARITHMETIC, Message("{what}.", what=problem), "Correct the formula."
-        )
-        raise state.of_the_place(error) from None
+    def no_value(column: int, why: str) -> ProgramError:
+        text = Message("{what}.", what=why)
+        return state.of_the_place(state.refuse(column, ARITHMETIC, text, "Correct the formula."))
+
+    found = worth(formula, parameter, no_value)
     if abs(found) > MOST_Q:
         text = Message(
             "The result {value} exceeds the limit of {most_q}.", value=f"{found:g}", most_q=f"{MOST_Q:.15g}"
@@ -96,27 +79,9 @@ def value(state: State, formula: Formula) -> float:
     return 0.0 if abs(found) < SMALLEST else found
 
 
-def assign(state: State, node: Assign) -> None:
-    """``Q5 = …``. Raises ProgramError."""
-    keep(state, node.kind, node.q, value(state, node.formula))
-
-
 def keep(state: State, kind: str, number: int, found: float) -> None:
     """The parameter holds this from now on."""
     if kind == "Q":
         state.q[number] = found
     else:
         state.q_beside[kind, number] = found
-
-
-def jumps(state: State, node: Jump) -> bool:
-    """Whether the comparison of FN 9 to FN 12 holds."""
-    return value(state, node.condition) != 0.0
-
-
-def own_error(state: State, node: ErrorMessage) -> ProgramError:
-    """FN 14: the fault that the program itself tells, and stops at."""
-    text = Message("The program reports its own error {number} and stops.", number=node.number)
-    return state.refuse(
-        node.column, OWN_ERROR, text, "Check the conditions under which the program reaches this block."
-    )

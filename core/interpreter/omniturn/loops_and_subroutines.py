@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from copy import copy
+from dataclasses import replace
 from typing import NamedTuple
 
 from core.interpreter.checkpoint import FlowLevel, FlowPlace
+from core.interpreter.control_flow import ControlFlow, Frame
 from core.interpreter.interpretation import DEEPEST_CALL
 from core.interpreter.omniturn.code_table import FLOW_CODES
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE, Statement
@@ -246,33 +248,24 @@ def called_when(statement: Statement) -> bool:
     return statement.flow == "M95" or statement.value("C") == 1
 
 
-class Flow:
-    """The place in a program: ``at`` is the index of the line to execute next, ``end`` where it stops."""
+class Flow(ControlFlow[Frame[Structure]]):
+    """The place in a program, with the line before which it has to stop."""
 
     def __init__(self, structure: Structure) -> None:
-        self.at = 0
-        self.end = self._run_end = structure.main_end  # the latter of the subroutine under way, if any
+        super().__init__(Frame(structure, 0, structure.main_end))
         self._stop: int | None = None  # index of a line before which it stops, wherever it comes to it
-        self._structure = structure
-        self._loops: list[list[int]] = []  # index of LS, passes left
-        self._calls: list[tuple[int, int, list[list[int]]]] = []  # where to go on, end there, loops there
 
     def twin(self) -> Flow:
         """The same place, to go on from there by itself."""
         twin = copy(self)
-        twin._loops = [loop[:] for loop in self._loops]
-        twin._calls = [(at, end, [loop[:] for loop in loops]) for at, end, loops in self._calls]
+        twin.frames = [replace(each, left=dict(each.left)) for each in self.frames]
+        twin.here = twin.frames[-1]
         return twin
 
     def stop(self) -> None:
         """End the program here: no line is executed any more."""
         self._stop = None
         self.end = self.at
-
-    @property
-    def called(self) -> bool:
-        """Whether the place is in a subroutine."""
-        return bool(self._calls)
 
     def until(self, line: int) -> None:
         """Stop before this line, counted from 1, in whatever pass or call it comes next."""
@@ -286,67 +279,61 @@ class Flow:
 
     def pass_stop(self) -> None:
         """Execute the line of ``until`` this time, and stop when it comes again."""
-        self.end = self._run_end
+        self.end = self.here.end
 
     @property
     def place(self) -> FlowPlace:
         """The line, and the loops and calls under way, outermost first: equal where all to come is."""
-        runs = [
-            FlowLevel(back, end, tuple((start, left) for start, left in loops))
-            for back, end, loops in self._calls
-        ]
-        here = FlowLevel(self.at, self._run_end, tuple((start, left) for start, left in self._loops))
-        return (*runs, here)
+        self.here.at = self.at
+        return tuple(FlowLevel(each.at, each.end, tuple(each.left.items())) for each in self.frames)
 
     def resume(self, line: int, place: FlowPlace) -> None:
         """Be before this line, counted from 1, with these loops and calls under way."""
-        self.at = line - 1
         if place:
-            self._calls = [(run.back, run.end, [list(each) for each in run.loops]) for run in place[:-1]]
-            self._loops = [list(each) for each in place[-1].loops]
-            self.end = self._run_end = place[-1].end
+            structure = self.here.routine
+            self.frames = [Frame(structure, run.back, run.end, dict(run.loops)) for run in place]
+            self._go_on()
+        self.at = line - 1
 
     def _bound(self) -> None:
         """The run goes to its end, or to where it has to stop before."""
-        stop = self._stop
-        self.end = stop if stop is not None and self.at <= stop < self._run_end else self._run_end
+        stop, end = self._stop, self.here.end
+        self.end = stop if stop is not None and self.at <= stop < end else end
 
     def passes_left(self, start: int) -> int:
         """How often the inner loop will go back from its LF; 0 where its LS is not that of this index."""
-        return self._loops[-1][1] if self._loops and self._loops[-1][0] == start else 0
+        left = self.here.left
+        return left[start] if left and next(reversed(left)) == start else 0
 
-    def passed(self, times: int) -> None:
-        """The inner loop has been gone through so often, each time back to its first line."""
-        self._loops[-1][1] -= times
+    def passed(self, start: int, times: int) -> None:
+        """The loop with this LS has been gone through so often, each time back to its first line."""
+        self.here.left[start] -= times
 
     def steer(self, statement: Statement) -> None:
-        """Follow a line that steers. Raises ProgramError for calls nested too deep."""
-        flow = statement.flow
-        here = statement.line - 1
+        """Follow a line of LS, LF or M99."""
+        here, structure = statement.line - 1, self.here.routine
         self.at = here + 1
-        if flow == "LS" and here in self._structure.loop_ends:
-            self._loops.append([here, int(statement.value("LS") or 1) - 1])
-        elif flow == "LF":
-            self._loop_end(here)
-        elif flow == "M99":
-            self._return()
+        if statement.flow == "LS" and here in structure.loop_ends:
+            self.here.left[here] = int(statement.value("LS") or 1) - 1
+        elif statement.flow == "LF":
+            self._loop_end(structure.loop_starts.get(here))
+        elif statement.flow == "M99" and self.called:
+            self.leave()
         self._bound()
 
     def call(self, statement: Statement) -> None:
-        """Go to the subroutine that the line names."""
-        number = call_target(statement)
+        """Go to the subroutine that the line names. Raises ProgramError for calls nested too deep."""
+        number, structure = call_target(statement), self.here.routine
         self.at = statement.line
-        if number not in self._structure.subroutines:
+        if number not in structure.subroutines:
             return  # told when the program was read
-        if len(self._calls) >= DEEPEST_CALL:
+        if len(self.frames) > DEEPEST_CALL:
             text = Message(
                 "Subroutine calls are nested more than {deepest_call} levels deep.", deepest_call=DEEPEST_CALL
             )
             raise statement.refuse("P", "recursion", text, "A subroutine must not call itself.")
-        self._calls.append((statement.line, self._run_end, self._loops))
-        self._loops = []
-        self.at = self._structure.subroutines[number] + 1
-        self._run_end = self._structure.subroutine_ends.get(number, self.at - 1) + 1
+        start = structure.subroutines[number]
+        self.enter(Frame(structure, start + 1, structure.subroutine_ends.get(number, start) + 1))
         self._bound()
 
     def contour(self, statement: Statement) -> range | None:
@@ -354,27 +341,24 @@ class Flow:
 
         None where there are none; that has been told when the program was read.
         """
+        structure = self.here.routine
         if "P" not in statement.words:
-            end = self._structure.contours.get(statement.line - 1)
+            end = structure.contours.get(statement.line - 1)
             if end is None:
                 return None
             self.at = end + 1
             return range(statement.line, end)
         number = int(statement.value("P") or 0)
-        start = self._structure.subroutines.get(number)
-        return None if start is None else range(start + 1, self._structure.subroutine_ends.get(number, start))
+        start = structure.subroutines.get(number)
+        return None if start is None else range(start + 1, structure.subroutine_ends.get(number, start))
 
-    def _loop_end(self, here: int) -> None:
-        start = self._structure.loop_starts.get(here)
-        if start is None or not self._loops or self._loops[-1][0] != start:
+    def _loop_end(self, start: int | None) -> None:
+        """Back to the line behind LS, as often as it says; only from the LF of the inner loop."""
+        left = self.here.left
+        if start is None or next(reversed(left), None) != start:
             return
-        loop = self._loops[-1]
-        if loop[1] > 0:
-            loop[1] -= 1
+        if left[start] > 0:
+            left[start] -= 1
             self.at = start + 1
         else:
-            self._loops.pop()
-
-    def _return(self) -> None:
-        if self._calls:
-            self.at, self._run_end, self._loops = self._calls.pop()
+            del left[start]

@@ -150,7 +150,7 @@ class SeriesLookAhead:
         if not unchanged(self._state, body).all():
             return None
         index = np.tile(np.arange(length), times)
-        self._flow.passed(times)
+        self._flow.passed(at - 1, times)
         self._without = range(0)
         made = series(self._state, body.part(index), at + 1 + index, self._texts)
         return made, times * (length + 1)

@@ -21,7 +21,7 @@ from core.interpreter.job_setup import Setup
 from core.interpreter.restart.cut_record import CutRecord, record_cuts
 from core.interpreter.restart.restart_point import Interruption, LineVisit, NoRestart, RestartPoint
 from core.interpreter.restart.restart_retract import NEAR, Retract, ToolPlace
-from core.interpreter.restart.state_rebuild import found_on_lathe
+from core.interpreter.restart.state_rebuild import found_on_lathe, in_uncut_material
 from core.message import Message
 
 Watch = Callable[[float], None]
@@ -206,16 +206,7 @@ class ProgramSearch:
         skipped = here.left_out or (0, 0)
         first, last = min(skipped), max(skipped)  # a loop can end on an earlier line
         if here.left_out and not here.above(point):
-            which = (
-                Message("line {line}", line=first)
-                if first == last
-                else Message("lines {first} to {last}", first=first, last=last)
-            )
-            return Message(
-                "At the start of line {line}, the tool is in material that {which} should have cut.",
-                line=line,
-                which=which,
-            )
+            return in_uncut_material(line, first, last)
         clear = Retract(ToolPlace.CLEAR)
         return RestartPoint(line, point, clear, None, visit, left_out=(first, last), axes=at)
 

@@ -292,17 +292,7 @@ def found_on_lathe(
     if back.tool_place is ToolPlace.CLEAR or (back.known and point.blocks <= done):
         return RestartPoint(line, point, back, cut, visit, left_out=_left_out(cut, done, point.blocks))
     if point.blocks > done:
-        first, last = _left_out(cut, done, point.blocks)
-        which = (
-            Message("line {line}", line=first)
-            if first == last
-            else Message("lines {first} to {last}", first=first, last=last)
-        )
-        return Message(
-            "At the start of line {line}, the tool is in material that {which} should have cut.",
-            line=line,
-            which=which,
-        )
+        return in_uncut_material(line, *_left_out(cut, done, point.blocks))
     how = _HOW.get(back.tool_place, "")
     return Message(
         "At the start of line {line}, the tool is inside the part, and a safe path to that "
@@ -310,6 +300,20 @@ def found_on_lathe(
         line=line,
         method=how,
     ).strip()
+
+
+def in_uncut_material(line: int, first: int, last: int) -> Message:
+    """Return why a program cannot go on from a line behind cuts that were left out, from ``first`` on."""
+    which = (
+        Message("line {line}", line=first)
+        if first == last
+        else Message("lines {first} to {last}", first=first, last=last)
+    )
+    return Message(
+        "At the start of line {line}, the tool is in material that {which} should have cut.",
+        line=line,
+        which=which,
+    )
 
 
 def _complete_blocks(cut: CutRecord, broken: Interruption) -> int:

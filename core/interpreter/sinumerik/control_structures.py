@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from math import prod
-from typing import Protocol
 
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.variables import LARGEST_ARRAY, MOST_DIMENSIONS
-from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.program_jumps import Defined, Jump, Steering
-from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NESTING, NO_TARGET, NOT_DEFINED, fault
+from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NESTING, NO_TARGET, NOT_DEFINED
+from core.language.sinumerik.sinumerik_lexer import lex_line
 from core.language.sinumerik.sinumerik_words import Line
+from core.language.sinumerik.third_axis_name import OWN
+from core.language.source import Source
 from core.message import Message
 
 _ENDS = {
@@ -23,26 +25,66 @@ _ENDS = {
     Steering.UNTIL: Steering.REPEAT,
 }
 _BEGINS = frozenset(_ENDS.values())
+_ASKED = frozenset({Steering.IF, Steering.WHILE, Steering.UNTIL})
+_BACK = frozenset({Steering.END_WHILE, Steering.END_LOOP})
 _SAME = 1e-12  # numbers of CASE that differ by less are equal
 _GOTO = frozenset({Steering.GOTO, Steering.GOTO_BACK, Steering.GOTO_FORWARD, Steering.GOTO_START})
 
 
-class Lines(Protocol):
-    """The program in which a line stands."""
+@dataclass(slots=True)
+class Routine:
+    """One program of one file. ``shown`` names it in findings where it is of another file."""
 
+    source: Source
     lines: range
+    shown: str = ""
+    third_axis: str = OWN  # its name at this machine
+    repeats: bool = False  # lines of it may run many times, and are kept once they are read
+    _read: dict[int, Line] = field(default_factory=dict)
+    _labelled: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    _partners: dict[int, tuple[int, ...]] | None = None
+
+    def partners(self) -> dict[int, tuple[int, ...]]:
+        """The lines of each IF, WHILE, FOR, LOOP and REPEAT that belong together, by each of their indices.
+
+        Raises ProgramError where one has no end, or an end no beginning.
+        """
+        if self._partners is None:
+            self._partners = belonging(self.line(at) for at in self.lines)
+        return self._partners
 
     def line(self, at: int) -> Line:
         """The line with this index."""
-        ...
+        line = self._read.get(at)
+        if line is None:
+            line = lex_line(at + 1, self.source.lines[at], self.third_axis)
+            if self.repeats:
+                self._read[at] = line
+        return line
 
     def labelled(self, label: str) -> tuple[int, ...]:
-        """Indices, rising, of the lines with this label or block number."""
-        ...
+        """Indices, rising, of the lines with this label or block number; looked for once."""
+        if label not in self._labelled:
+            self._labelled[label] = tuple(at for at in self.lines if self._bears(at, label))
+        return self._labelled[label]
 
-    def partners(self) -> dict[int, tuple[int, ...]]:
-        """Lines that belong together, by the index of each."""
-        ...
+    def _bears(self, at: int, label: str) -> bool:
+        """Only a line that holds the letters of the label is worth being read for it."""
+        if label not in self.source.lines[at].upper():
+            return False
+        line = self.line(at)
+        return label in {line.label, line.block}
+
+    def heading(self) -> Jump | None:
+        """Its PROC, which stands before everything else; None without one."""
+        first = self.first()
+        jump = None if first is None else first.jump
+        return jump if jump is not None and jump.steering is Steering.PROCEDURE else None
+
+    def first(self) -> Line | None:
+        """Its first line that holds more than a comment."""
+        lines = (self.line(at) for at in self.lines)
+        return next((line for line in lines if line.executable), None)
 
 
 def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
@@ -61,47 +103,71 @@ def belonging(lines: Iterable[Line]) -> dict[int, tuple[int, ...]]:
         elif jump.steering is Steering.ELSE or jump.steering in _ENDS:
             if not opened or opened[-1][1].steering is not _ENDS.get(jump.steering):
                 text = Message("{steering} has no matching start.", steering=jump.steering)
-                raise _refused(line, jump, NESTING, text, "Check the start of the control structure.")
+                raise line.refuse(jump.column, NESTING, text, "Check the start of the control structure.")
             places = (*opened.pop()[2], at)
             found.update(dict.fromkeys(places, places))
     if opened:
         line, jump, _ = opened[-1]
-        raise _refused(
-            line,
-            jump,
-            NESTING,
-            Message("{steering} has no matching end.", steering=jump.steering),
-            "Add the matching end statement.",
-        )
+        text = Message("{steering} has no matching end.", steering=jump.steering)
+        raise line.refuse(jump.column, NESTING, text, "Add the matching end statement.")
     return found
 
 
-def follow(line: Line, jump: Jump, state: State, program: Lines, at: int) -> int | None:
+def follow(line: Line, jump: Jump, state: State, program: Routine, at: int) -> int | None:
     """Index of the line to go on with; None where it is the next one. Raises ProgramError."""
     steering = jump.steering
     if steering in _GOTO:
-        wanted = jump.condition is None or _holds(line, jump, state, jump.condition)
-        if not wanted and jump.other is not None:
-            return follow(line, jump.other, state, program, at)
-        return _target(line, jump, program, at) if wanted else None
+        if jump.condition is None or _worth(line, jump, state, jump.condition):
+            return _target(line, jump, program, at)
+        return None if jump.other is None else follow(line, jump.other, state, program, at)
     if steering is Steering.CASE:
         return _case(line, jump, state, program, at)
     if steering is Steering.DEFINE:
         _define(line, jump, state)
     elif steering is Steering.MESSAGE:
         state.adopt(state.modal._replace(comment=_message(line, jump, state)))
-    elif steering is Steering.ALARM and jump.condition is not None:
+    elif steering is Steering.ALARM:
         number = _worth(line, jump, state, jump.condition)
         text = Message("the program itself triggers alarm {number}.", number=f"{number:g}")
-        raise _refused(line, jump, "program-alarm", text, "Check the preceding blocks for the cause.")
-    elif (steering in _BEGINS or steering in _ENDS or steering is Steering.ELSE) and not jump.target:
-        return _STEPS[steering](line, jump, state, program.partners()[at], program)
+        raise line.refuse(jump.column, "program-alarm", text, "Check the preceding blocks for the cause.")
+    elif steering in _BEGINS or steering in _ENDS or steering is Steering.ELSE:
+        return _structure(line, jump, state, program, program.partners()[at])
     return None
 
 
-def _case(line: Line, jump: Jump, state: State, program: Lines, at: int) -> int | None:
+def _structure(line: Line, jump: Jump, state: State, program: Routine, places: tuple[int, ...]) -> int | None:
+    """Index of the line to go on with at a line of IF, WHILE, FOR, LOOP or REPEAT, which stand at ``places``.
+
+    None where it is the next one. Raises ProgramError.
+    """
+    first, last, steering = places[0], places[-1], jump.steering
+    if steering is Steering.END_FOR:
+        begin = program.line(first).jump
+        assert begin is not None
+        value = state.variables.number(begin.name) + 1.0
+        return first + 1 if _counts(line, jump, begin, state, value) else None
+    if steering is Steering.FOR:
+        value = _worth(line, jump, state, jump.first)
+        return None if _counts(line, jump, jump, state, value) else last + 1
+    if steering in _ASKED:
+        elsewhere = first if steering is Steering.UNTIL else places[1]
+        return None if _worth(line, jump, state, jump.condition) else elsewhere + 1
+    if steering is Steering.ELSE:
+        return last + 1
+    return first if steering in _BACK else None
+
+
+def _counts(line: Line, jump: Jump, begin: Jump, state: State, value: float) -> bool:
+    """Give the variable of FOR its value; whether that is not over the end. Raises ProgramError."""
+    if not state.variables.keep(begin.name, value):
+        text = Message("the name {jump} is not defined with DEF.", jump=begin.name)
+        hint = Message("Write DEF INT {jump} before this block.", jump=begin.name)
+        raise line.refuse(begin.column, NOT_DEFINED, text, hint)
+    return value <= _worth(line, jump, state, begin.last)
+
+
+def _case(line: Line, jump: Jump, state: State, program: Routine, at: int) -> int | None:
     """The jump of the first branch with the value of CASE, or of DEFAULT."""
-    assert jump.condition is not None
     value = _worth(line, jump, state, jump.condition)
     for formula, steering, target in jump.choices:
         if formula is None or abs(_worth(line, jump, state, formula) - value) <= _SAME:
@@ -125,7 +191,9 @@ def _define(line: Line, jump: Jump, state: State) -> None:
                 told = Message(
                     "array {item} needs {left} more elements for this list.", item=each.name, left=left
                 )
-                raise _refused(line, jump, "array-values", told, "Shorten the list, or enlarge the array.")
+                raise line.refuse(
+                    jump.column, "array-values", told, "Shorten the list, or enlarge the array."
+                )
 
 
 def _sizes(line: Line, jump: Jump, state: State, each: Defined) -> tuple[int, ...]:
@@ -138,16 +206,11 @@ def _sizes(line: Line, jump: Jump, state: State, each: Defined) -> tuple[int, ..
             sizes=list(sizes),
             largest_array=f"{LARGEST_ARRAY:,}",
         )
-        raise _refused(
-            line,
-            jump,
-            FIRST_INDEX,
-            told,
-            Message(
-                "Correct the array sizes; at most {most_dimensions} dimensions are allowed.",
-                most_dimensions=MOST_DIMENSIONS,
-            ),
+        hint = Message(
+            "Correct the array sizes; at most {most_dimensions} dimensions are allowed.",
+            most_dimensions=MOST_DIMENSIONS,
         )
+        raise line.refuse(jump.column, FIRST_INDEX, told, hint)
     return sizes
 
 
@@ -164,99 +227,12 @@ def _message(line: Line, jump: Jump, state: State) -> str:
     return "".join(shown)
 
 
-Places = tuple[int, ...]
-_Step = Callable[[Line, Jump, State, Places, Lines], int | None]
+def _worth(line: Line, jump: Jump, state: State, formula: Formula | None) -> float:
+    assert formula is not None
+    return state.worth(formula, lambda code, text, hint: line.refuse(jump.column, code, text, hint))
 
 
-def _if(line: Line, jump: Jump, state: State, places: Places, _: Lines) -> int | None:
-    """Behind ELSE, or ENDIF, where the condition does not hold."""
-    assert jump.condition is not None
-    return None if _holds(line, jump, state, jump.condition) else places[1] + 1
-
-
-def _to_the_end(_line: Line, _jump: Jump, _state: State, places: Places, _: Lines) -> int | None:
-    return places[-1] + 1
-
-
-def _again(_line: Line, _jump: Jump, _state: State, places: Places, _: Lines) -> int | None:
-    return places[0]
-
-
-def _on(_line: Line, _jump: Jump, _state: State, _places: Places, _: Lines) -> int | None:
-    return None
-
-
-def _while(line: Line, jump: Jump, state: State, places: Places, _: Lines) -> int | None:
-    assert jump.condition is not None
-    return None if _holds(line, jump, state, jump.condition) else places[-1] + 1
-
-
-def _until(line: Line, jump: Jump, state: State, places: Places, _: Lines) -> int | None:
-    assert jump.condition is not None
-    return None if _holds(line, jump, state, jump.condition) else places[0] + 1
-
-
-def _for(line: Line, jump: Jump, state: State, places: Places, _: Lines) -> int | None:
-    """The variable at its start; behind ENDFOR where the end lies below it."""
-    assert jump.first is not None
-    assert jump.last is not None
-    _set(line, jump, state, _worth(line, jump, state, jump.first))
-    done = _variable(jump, state) > _worth(line, jump, state, jump.last)
-    return places[-1] + 1 if done else None
-
-
-def _end_for(line: Line, jump: Jump, state: State, places: Places, program: Lines) -> int | None:
-    """The variable one further; on behind FOR until it is over the end."""
-    begin = program.line(places[0]).jump
-    assert begin is not None
-    assert begin.last is not None
-    _set(line, begin, state, _variable(begin, state) + 1.0)
-    return places[0] + 1 if _variable(begin, state) <= _worth(line, jump, state, begin.last) else None
-
-
-_STEPS: dict[Steering, _Step] = {
-    Steering.IF: _if,
-    Steering.ELSE: _to_the_end,
-    Steering.END_IF: _on,
-    Steering.WHILE: _while,
-    Steering.END_WHILE: _again,
-    Steering.LOOP: _on,
-    Steering.END_LOOP: _again,
-    Steering.REPEAT: _on,
-    Steering.UNTIL: _until,
-    Steering.FOR: _for,
-    Steering.END_FOR: _end_for,
-}
-
-
-def _set(line: Line, jump: Jump, state: State, value: float) -> None:
-    if not state.variables.keep(jump.name, value):
-        text = Message("the name {jump} is not defined with DEF.", jump=jump.name)
-        raise _refused(
-            line,
-            jump,
-            NOT_DEFINED,
-            text,
-            Message("Write DEF INT {jump} before this block.", jump=jump.name),
-        )
-
-
-def _variable(jump: Jump, state: State) -> float:
-    variables = state.variables
-    if jump.name in variables.scope.numbers:
-        return variables.scope.numbers[jump.name]
-    return variables.r[int(jump.name[1:])]
-
-
-def _holds(line: Line, jump: Jump, state: State, condition: Formula) -> bool:
-    return _worth(line, jump, state, condition) != 0.0
-
-
-def _worth(line: Line, jump: Jump, state: State, formula: Formula) -> float:
-    return state.worth(formula, lambda code, text, hint: _refused(line, jump, code, text, hint))
-
-
-def _target(line: Line, jump: Jump, program: Lines, at: int) -> int:
+def _target(line: Line, jump: Jump, program: Routine, at: int) -> int:
     """The index of the label: GOTOF behind the line, GOTOB before it, GOTO behind and then before."""
     if jump.steering is Steering.GOTO_START:
         return program.lines.start
@@ -267,11 +243,11 @@ def _target(line: Line, jump: Jump, program: Lines, at: int) -> int:
             target=jump.target,
             steering=jump.steering,
         )
-        raise _refused(line, jump, NO_TARGET, text, "Correct the label or the direction of the jump.")
+        raise line.refuse(jump.column, NO_TARGET, text, "Correct the label or the direction of the jump.")
     return place
 
 
-def find_label(steering: Steering, target: str, program: Lines, at: int) -> int | None:
+def find_label(steering: Steering, target: str, program: Routine, at: int) -> int | None:
     """Index of the line with this label or number, where the jump looks for it; None without one."""
     places = program.labelled(target)
     behind = next((place for place in places if place > at), None)
@@ -279,7 +255,3 @@ def find_label(steering: Steering, target: str, program: Lines, at: int) -> int 
     if steering is Steering.GOTO_BACK or (steering is Steering.GOTO and behind is None):
         return before
     return behind
-
-
-def _refused(line: Line, jump: Jump, code: int | str, text: str, hint: str) -> ProgramError:
-    return ProgramError(fault(line.number, jump.column, code, line.block, text, hint))

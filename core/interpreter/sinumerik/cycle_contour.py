@@ -10,13 +10,12 @@ from core.interpreter.adjusted_moves import element_of
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.chamfers_and_rounds import Corners, corner_of
-from core.interpreter.sinumerik.control_structures import find_label
+from core.interpreter.sinumerik.control_structures import Routine, find_label
 from core.interpreter.sinumerik.linear_moves import straight
 from core.interpreter.sinumerik.modes_and_offsets import modes
 from core.interpreter.sinumerik.sinumerik_arcs import arc
 from core.interpreter.sinumerik.sinumerik_state import ARCS, Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement, statement_of
-from core.interpreter.sinumerik.subprogram_flow import Routine
 from core.interpreter.sinumerik.variables import Scope
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.program_jumps import Steering

@@ -9,7 +9,6 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import Cycle
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.language.diagnostics import ProgramError
-from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_words import Line
 from core.message import Message
 
@@ -21,7 +20,7 @@ def no_cycle(line: Line) -> ProgramError:
     """A pattern without a cycle to drill with."""
     text = Message("{call} uses the cycle called with MCALL, but no MCALL is active.", call=line.call)
     hint = "Write MCALL CYCLE81( ) or another cycle before this block."
-    return ProgramError(fault(line.number, line.call_column, "pattern-cycle", line.block, text, hint))
+    return line.refuse(line.call_column, "pattern-cycle", text, hint)
 
 
 def places(state: State, line: Line) -> Iterator[Block]:

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
+from itertools import chain, repeat
 
 from core.interpreter.job_setup import ZeroOffset
 from core.interpreter.modal_state import Modal
 from core.interpreter.sinumerik.programmed_frame import ProgrammedFrame
 from core.interpreter.sinumerik.sinumerik_state import Motion, State
 from core.interpreter.sinumerik.variables import Scope, place_name
-from core.language.diagnostics import ProgramError
 from core.language.formulas import Parameter as Variable
 from core.language.sinumerik.call_arguments import Argument, Parameter
 from core.language.sinumerik.program_jumps import Jump
-from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_words import Line
 from core.message import Message
 
@@ -68,109 +68,86 @@ def handed_over(state: State, line: Line, heading: Jump | None) -> tuple[Scope, 
             arguments_count=len(arguments),
         )
         hint = "Correct the call, or the PROC line of the subprogram."
-        raise _refused(line, arguments[len(parameters)].column, TOO_MANY, text, hint)
-    scope, references = Scope(), list[tuple[str, str]]()
-    for place, parameter in enumerate(parameters):
-        argument = arguments[place] if place < len(arguments) else None
-        _hand_over(state, line, parameter, argument, scope, references)
-    return scope, references
+        raise line.refuse(arguments[len(parameters)].column, TOO_MANY, text, hint)
+    made = _HandOver(state, line)
+    left_out = Argument(None, None, line.call_column)
+    for parameter, argument in zip(parameters, chain(arguments, repeat(left_out)), strict=False):
+        (made.array if parameter.sizes else made.value)(parameter, argument)
+    return made.scope, made.references
 
 
-def _hand_over(
-    state: State,
-    line: Line,
-    parameter: Parameter,
-    argument: Argument | None,
-    scope: Scope,
-    references: list[tuple[str, str]],
-) -> None:
-    given = argument if argument is not None and argument.given else parameter.default
-    if parameter.sizes:
-        _hand_over_array(state, line, parameter, argument, scope, references)
-        return
-    if parameter.by_reference:
-        references.append((parameter.name, _place(state, line, parameter, argument)))
-    if given is None:  # what is left out is 0, and an empty text
-        _keep_nothing(parameter, scope)
-    elif given.text is not None:
-        scope.texts[parameter.name] = given.text
-    elif given.formula is not None:
-        scope.numbers[parameter.name] = _value(state, line, parameter, given)
+class _HandOver:
+    """What a call hands over, parameter by parameter."""
 
+    def __init__(self, state: State, line: Line) -> None:
+        self._state, self._line = state, line
+        self.scope = Scope()
+        self.references: list[tuple[str, str]] = []
 
-def _hand_over_array(
-    state: State,
-    line: Line,
-    parameter: Parameter,
-    argument: Argument | None,
-    scope: Scope,
-    references: list[tuple[str, str]],
-) -> None:
-    """An array of VAR: its elements go in, and come back element by element."""
-    outer, formula = state.variables.scope, None if argument is None else argument.formula
-    name = formula.letters if isinstance(formula, Variable) and formula.number is None else ""
-    sizes = outer.sizes.get(name, ())
-    column = line.call_column if argument is None else argument.column
-    if not sizes:
-        text = Message(
-            "{parameter} of {call} is a VAR array, so the call must pass an array.",
-            parameter=parameter.name,
-            call=line.call,
+    def value(self, parameter: Parameter, argument: Argument) -> None:
+        """A number or a text. What is left out is 0, and an empty text. Raises ProgramError."""
+        given = argument if argument.given else parameter.default
+        name = parameter.name
+        if parameter.by_reference:
+            self.references.append((name, self._place(parameter, argument)))
+        if given is None:
+            if parameter.kind in {"STRING", "AXIS"}:
+                self.scope.texts[name] = ""
+            else:
+                self.scope.numbers[name] = 0.0
+        elif given.text is not None:
+            self.scope.texts[name] = given.text
+        elif given.formula is not None:
+            value = self._state.worth(given.formula, partial(self._line.refuse, given.column))
+            whole = parameter.kind != "INT" or value.is_integer()
+            self.scope.numbers[name] = value if whole else float(round(value))
+
+    def array(self, parameter: Parameter, argument: Argument) -> None:
+        """An array of VAR: its elements go in, and come back element by element. Raises ProgramError."""
+        line, outer, formula = self._line, self._state.variables.scope, argument.formula
+        name = formula.letters if isinstance(formula, Variable) and formula.number is None else ""
+        sizes = outer.sizes.get(name, ())
+        if not sizes:
+            text = Message(
+                "{parameter} of {call} is a VAR array, so the call must pass an array.",
+                parameter=parameter.name,
+                call=line.call,
+            )
+            raise line.refuse(
+                argument.column, NO_VARIABLE, text, "Pass the name of an array without an index."
+            )
+        asked = tuple(
+            size if each is None else each for each, size in zip(parameter.sizes, sizes, strict=False)
         )
-        raise _refused(line, column, NO_VARIABLE, text, "Pass the name of an array without an index.")
-    asked = tuple(size if each is None else each for each, size in zip(parameter.sizes, sizes, strict=False))
-    if asked != sizes or len(parameter.sizes) != len(sizes):
-        text = Message(
-            "{name} has {text} elements, but this size does not match the dimensions of {parameter}.",
-            name=name,
-            text=" by ".join(map(str, sizes)),
-            parameter=parameter.name,
-        )
-        raise _refused(line, column, OTHER_SIZE, text, "Use the array sizes given in the PROC line.")
-    scope.define(parameter.name, 0.0, sizes)
-    for inside, outside in zip(scope.elements(parameter.name), outer.elements(name), strict=True):
-        scope.numbers[inside] = outer.numbers[outside]
-        references.append((inside, outside))
+        if asked != sizes or len(parameter.sizes) != len(sizes):
+            text = Message(
+                "{name} has {text} elements, but this size does not match the dimensions of {parameter}.",
+                name=name,
+                text=" by ".join(map(str, sizes)),
+                parameter=parameter.name,
+            )
+            hint = "Use the array sizes given in the PROC line."
+            raise line.refuse(argument.column, OTHER_SIZE, text, hint)
+        self.scope.define(parameter.name, 0.0, sizes)
+        for inside, outside in zip(self.scope.elements(parameter.name), outer.elements(name), strict=True):
+            self.scope.numbers[inside] = outer.numbers[outside]
+            self.references.append((inside, outside))
 
-
-def _keep_nothing(parameter: Parameter, scope: Scope) -> None:
-    if parameter.kind in {"STRING", "AXIS"}:
-        scope.texts[parameter.name] = ""
-    else:
-        scope.numbers[parameter.name] = 0.0
-
-
-def _value(state: State, line: Line, parameter: Parameter, given: Argument) -> float:
-    assert given.formula is not None
-    value = state.worth(given.formula, lambda c, t, h: _refused(line, given.column, c, t, h))
-    if parameter.kind == "INT" and value != round(value):
-        return float(round(value))
-    return value
-
-
-def _place(state: State, line: Line, parameter: Parameter, argument: Argument | None) -> str:
-    """The caller's variable that VAR writes back to."""
-    formula = None if argument is None else argument.formula
-    if not isinstance(formula, Variable):
-        text = Message(
-            "{parameter} of {call} is a VAR parameter, so the call must pass a variable.",
-            parameter=parameter.name,
-            call=line.call,
-        )
-        column = line.call_column if argument is None else argument.column
-        raise _refused(line, column, TOO_MANY, text, "Pass a variable or an R parameter.")
-
-    def refuse(code: int | str, text: str, hint: str) -> ProgramError:
-        return _refused(line, line.call_column, code, text, hint)
-
-    return place_name(formula.letters, formula.number, lambda index: state.worth(index, refuse), refuse)
+    def _place(self, parameter: Parameter, argument: Argument) -> str:
+        """The caller's variable that VAR writes back to. Raises ProgramError."""
+        state, line, formula = self._state, self._line, argument.formula
+        if not isinstance(formula, Variable):
+            text = Message(
+                "{parameter} of {call} is a VAR parameter, so the call must pass a variable.",
+                parameter=parameter.name,
+                call=line.call,
+            )
+            raise line.refuse(argument.column, TOO_MANY, text, "Pass a variable or an R parameter.")
+        refuse = partial(line.refuse, line.call_column)
+        return place_name(formula.letters, formula.number, lambda index: state.worth(index, refuse), refuse)
 
 
 def _count(count: int) -> str:
     if not count:
         return "no parameters"
     return Message("{count} parameter" if count == 1 else "{count} parameters", count=count)
-
-
-def _refused(line: Line, column: int, code: int | str, text: str, hint: str) -> ProgramError:
-    return ProgramError(fault(line.number, column, code, line.block, text, hint))

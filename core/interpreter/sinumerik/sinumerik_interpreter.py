@@ -5,16 +5,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 
 from core.interpreter.actions import Dwell, ProgramEnd, ProgramStop
 from core.interpreter.checkpoint import Begin, Checkpoint
+from core.interpreter.control_flow import ENDLESS
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.endless_loops import ENDLESS
-from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES, MOST_LINES_WITHOUT_BLOCK, Interpretation
+from core.interpreter.interpretation import MOST_BLOCKS, MOST_LINES
 from core.interpreter.job_setup import Setup
 from core.interpreter.lathe_approach import approach_blocks
+from core.interpreter.line_pass import LinePass
 from core.interpreter.modal_state import Modal
 from core.interpreter.sinumerik.block_search import Parts, checkpoint_of, take_up
 from core.interpreter.sinumerik.chamfers_and_rounds import Corner, Corners, corner_of
@@ -49,7 +50,7 @@ from core.interpreter.sinumerik.variables import place_name
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.sinumerik.control_differences import lacking
 from core.language.sinumerik.cycle_names import CYCLES, CYCLES_TAKEN, SWIVELS
-from core.language.sinumerik.sinumerik_alarms import NOT_DEFINED, fault
+from core.language.sinumerik.sinumerik_alarms import NOT_DEFINED
 from core.language.sinumerik.sinumerik_words import ARC, Line, Word
 from core.language.sinumerik.subprogram_files import HEADER
 from core.language.sinumerik.word_table import (
@@ -80,7 +81,7 @@ _BY_STATE = frozenset(
 )
 
 
-class Interpreter(Interpretation):
+class Interpreter(LinePass[Line]):
     """One pass through a SINUMERIK program and its subprograms."""
 
     def __init__(self, source: Source, setup: Setup) -> None:
@@ -90,10 +91,7 @@ class Interpreter(Interpretation):
         self._corners = Corners(self._state, self._log)
         self._compensation = Compensation(self._state, self._log)
         self._flow = Flow(source, self._state)
-        self._count = 0
         self._setup = setup
-        self._taken: Line | None = None  # a block at which block search has stopped
-        self._approach: Iterator[Block] = iter(())
         self._no_axis: set[str] = set()  # axes that this machine has not, as far as told
         if setup.begin is not None:
             self._go_on_from(setup.begin)
@@ -116,8 +114,8 @@ class Interpreter(Interpretation):
         yield from self._approach
         for block in self._pass():
             if not self._stopped:
-                self._count += 1
-                block.n = self._count
+                self._made += 1
+                block.n = self._made
                 yield block
             elif to_first_error:
                 return
@@ -128,7 +126,7 @@ class Interpreter(Interpretation):
     def checkpoint(self) -> Checkpoint:
         """What the block inherits that would be executed next."""
         parts = Parts(self._state, self._corners, self._flow, self._taken)
-        return checkpoint_of(parts, (self._setup, self._log, *self._flow.routines), self._count)
+        return checkpoint_of(parts, (self._setup, self._log, *self._flow.routines), self._made)
 
     @property
     def _transformed(self) -> Transformation | None:
@@ -161,43 +159,28 @@ class Interpreter(Interpretation):
         take_up(self._state, begin)
         if self._transformed is not None:
             self._transformed.stand()
-        self._count = 0 if begin.single else begin.checkpoint.blocks
+        self._made = 0 if begin.single else begin.checkpoint.blocks
         if begin.single:
             problem = needs_others(self._source, self._setup.limits.third_axis)
             if problem is not None:
                 self._log.add(problem)
-                self._flow.end()
+                self._flow.end_all()
         state = self._state
         self._approach = approach_blocks(begin, state.modal, state.setup.start, state.rpm_at)
 
-    def _next_line(self) -> Line | None:
-        """The line that comes next, which is taken; None at the end."""
-        taken, self._taken = self._taken, None
-        line = taken if taken is not None else self._flow.next()
-        asked = self.stop_before
-        if line is None or not line.executable or asked is None or self._flow.outside or self._deleted(line):
-            return line
-        if not asked(line.number):
-            return line
-        self._taken, self.stopped_before = line, True
-        return None
+    def _can_stop(self, line: Line) -> bool:
+        return line.executable and not self._flow.outside and not self._deleted(line)
 
     def _deleted(self, line: Line) -> bool:
         return line.skip is not None and self._state.setup.block_delete
 
     def _pass(self) -> Iterator[Block]:
-        left, idle, made = MOST_LINES, 0, 0
-        while not self._log.full and (line := self._next_line()) is not None:
-            left -= 1
-            idle, made = (idle + 1, made) if self._count == made else (0, self._count)
-            if self._stopped and (left := min(left, _BEHIND_ERROR)) < 0:
-                return  # a loop whose condition has no value ends nowhere, which says nothing new
-            if left < 0 or idle > MOST_LINES_WITHOUT_BLOCK or self._count >= MOST_BLOCKS:
-                self._never_ends(line)
-                return
+        for line in self._lines(self._flow.next):
             if line.executable and not self._deleted(line):
                 yield from self._line(line)
-        if not self.stopped_before:
+            if self._log.full:
+                break
+        if not self.stopped_before and self._left >= 0:
             yield from self._ended()
 
     def _line(self, line: Line) -> Iterator[Block]:
@@ -226,7 +209,7 @@ class Interpreter(Interpretation):
                 self._refuse(problem.diagnostic)
             ends = False
             if problem.diagnostic.code in {"recursion", ENDLESS}:
-                self._flow.end()
+                self._flow.end_all()
         self._steer(line, ends=ends)
 
     def _check_control(self, line: Line) -> None:
@@ -240,7 +223,7 @@ class Interpreter(Interpretation):
                 control=control.upper(),
             )
             hint = 'Use a different function, or correct "control" under [machine] in the machine file.'
-            raise ProgramError(fault(line.number, column, "not-in-control", line.block, text, hint))
+            raise line.refuse(column, "not-in-control", text, hint)
 
     def _call(self, line: Line, *, modal: bool = False) -> Iterator[Block]:
         """A subprogram, or a cycle; MCALL keeps it for the moves that come. Raises ProgramError."""
@@ -264,20 +247,11 @@ class Interpreter(Interpretation):
         """A cycle that changes nothing here; said once. Raises ProgramError where it asks for more."""
         if line.call == SWIVELS and any(each.given for each in line.arguments or ()):
             text = "CYCLE800: this lathe has no swivel head."
-            raise ProgramError(
-                fault(
-                    line.number,
-                    line.call_column,
-                    "not-in-subset",
-                    line.block,
-                    text,
-                    "Remove this text from the program.",
-                )
-            )
+            raise line.refuse(line.call_column, "not-in-subset", text, "Remove this text from the program.")
         if line.call not in self._state.told:
             self._state.told.add(line.call)
             why = Message("{name} has no effect because {why}.", name=line.call, why=CYCLES_TAKEN[line.call])
-            found = fault(line.number, line.call_column, "no-effect", line.block, why, "")
+            found = line.refuse(line.call_column, "no-effect", why, "").diagnostic
             self._log.add(replace(found, severity=Severity.NOTE))
 
     def _pattern(self, line: Line) -> Iterator[Block]:
@@ -297,7 +271,7 @@ class Interpreter(Interpretation):
     def _steer(self, line: Line, *, ends: bool) -> None:
         """M2, M17 and M30, behind everything else of their block."""
         if ends:
-            self._flow.end()
+            self._flow.end_all()
         elif self._flow.called and any(word.name == "M" and word.value in _ENDS for word in line.words):
             self._flow.back()
 
@@ -438,6 +412,7 @@ class Interpreter(Interpretation):
         if not (self._stopped and follows) and not self._axis_is_told(found):
             self._log.add(self._flow.located(found))
         self._stopped = True
+        self._left = min(self._left, _BEHIND_ERROR + 1)
         self._corners.drop()
         self._compensation.drop()
         if self._transformed is not None:
@@ -457,13 +432,15 @@ class Interpreter(Interpretation):
         return told
 
     def _never_ends(self, line: Line) -> None:
+        if self._stopped and self._left < 0:
+            return  # a loop whose condition has no value ends nowhere, which says nothing new
         text = Message(
             "the program exceeds the limit of {most_blocks} blocks or {most_lines} executed lines.",
             most_blocks=f"{MOST_BLOCKS:,}",
             most_lines=f"{MOST_LINES:,}",
         )
         hint = "Check the loops, and reduce the repeat counts of the calls."
-        self._refuse(fault(line.number, 0, "too-many-blocks", line.block, text, hint))
+        self._refuse(line.refuse(0, "too-many-blocks", text, hint).diagnostic)
 
 
 def _set_parameters(state: State, statement: Statement) -> None:
@@ -493,10 +470,8 @@ def _fill(state: State, statement: Statement, word: Word, name: str) -> None:
     if name not in state.variables.scope.numbers and letters != "R":
         raise _no_place(state, statement, word, name)
 
-    def refuse(code: int | str, text: str, hint: str) -> ProgramError:
-        return statement.refuse(word, code, text, hint)
-
     assert word.values is not None
+    refuse = partial(statement.refuse, word)
     left = state.variables.fill(letters, name, word.values, lambda asked: state.worth(asked, refuse))
     if left:
         text = Message(
@@ -509,9 +484,6 @@ def _place(state: State, statement: Statement, word: Word) -> str:
     """What the word sets: R7, LENGTH, or an element of an array."""
     if word.element is None:
         return word.name
-
-    def refuse(code: int | str, text: str, hint: str) -> ProgramError:
-        return statement.refuse(word, code, text, hint)
-
+    refuse = partial(statement.refuse, word)
     letters = "R" if word.name == "R0" else word.name
     return place_name(letters, word.element, lambda index: state.worth(index, refuse), refuse)

@@ -8,7 +8,7 @@ from enum import IntEnum
 from core.interpreter.actions import Action, Dwell, ProgramStop
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.formula_values import NoValueError, worth
+from core.interpreter.formula_values import worth
 from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
 from core.interpreter.modal_state import Modal
 from core.interpreter.sinumerik.plane_in_force import PlaneInForce
@@ -92,7 +92,7 @@ class State:
         self.behind_stop = self.place_assumed = False  # a place was read behind a stop, where a hand may move
         self.told: set[str] = set()  # functions without effect that have been told
         self.variables = Variables()
-        self.variables.r.update(setup.r)
+        self.variables.r.update((f"R{number}", value) for number, value in setup.r.items())
         self.modal_call: Line | None = None  # of MCALL
         self.transformation: PlaneInForce | None = None  # TRANSMIT or TRACYL
         self.master = 1  # SETMS: 2 is the live tool, whose S, M3 and G95 are meant then
@@ -145,20 +145,18 @@ class State:
                     self.place_assumed = self.place_assumed or bool(axis and self.behind_stop)
                     return read
             try:
-                return self.variables.value(asked, lambda index: worth(index, parameter), refuse)
+                return self.variables.value(asked, lambda index: worth(index, parameter, no_value), refuse)
             except ProgramError as problem:
                 if problem.diagnostic.code != UNSET:
                     raise
                 self._tell_unset(problem.diagnostic)
                 return 0.0
 
-        try:
-            return worth(formula, parameter)
-        except NoValueError as problem:
-            error = refuse("arithmetic", Message("{what}.", what=problem), "Correct the formula.")
-            if self.place_assumed:
-                error = ProgramError(resting_on(error.diagnostic, AT_THE_STOP))
-            raise error from None
+        def no_value(_column: int, why: str) -> ProgramError:
+            error = refuse("arithmetic", Message("{what}.", what=why), "Correct the formula.")
+            return ProgramError(resting_on(error.diagnostic, AT_THE_STOP)) if self.place_assumed else error
+
+        return worth(formula, parameter, no_value)
 
     def _tell_unset(self, found: Diagnostic) -> None:
         """Say once of each R parameter that it counts as 0."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 from core.geometry.virtual_mill import Face, Side
 from core.interpreter.actions import SpindleLock
@@ -94,12 +95,8 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
 
 def _frame(state: State, statement: Statement, word: Word) -> Face | Side:
     """The frame that the word asks for, where the tool stands: on which side of the axis."""
-    values = [
-        0.0 if each.formula is None else state.worth(
-            each.formula, lambda code, text, hint: statement.refuse(word, code, text, hint)
-        )
-        for each in word.arguments
-    ]  # fmt: skip
+    refuse = partial(statement.refuse, word)
+    values = [0.0 if each.formula is None else state.worth(each.formula, refuse) for each in word.arguments]
     sets = values[1:] if word.name == "TRACYL" else values
     if any(value not in {0.0, 1.0} for value in sets[:1]) or any(sets[1:]):
         text: str = Message(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from itertools import product
 
 from core.language.diagnostics import ProgramError
-from core.language.formulas import INDICES, Formula, Operation, Parameter
+from core.language.formulas import Formula, Parameter, indices_of
 from core.language.sinumerik.array_values import Values
 from core.language.sinumerik.sinumerik_alarms import FIRST_INDEX, NOT_DEFINED, OTHER_INDEX
 from core.language.sinumerik.sinumerik_words import MOST_R
@@ -47,7 +47,7 @@ class Variables:
     """All variables that a line can see."""
 
     def __init__(self) -> None:
-        self.r: dict[int, float] = {}
+        self.r: dict[str, float] = {}
         self.scope = Scope()
 
     def value(self, asked: Parameter, worth: Callable[[Formula], float], refuse: Refuse) -> float:
@@ -58,10 +58,7 @@ class Variables:
             )
             raise refuse("system-variable", text, "Write the value, or an R parameter that contains it.")
         name = place_name(asked.letters, asked.number, worth, refuse)
-        if asked.letters == "R" and name[1:].isdigit():
-            found = self.r.get(int(name[1:]))
-        else:
-            found = self.scope.numbers.get(name)
+        found = (self.r if asked.letters == "R" else self.scope.numbers).get(name)
         if found is None:
             raise refuse(*self.missing(asked.letters, name))
         return found
@@ -82,12 +79,18 @@ class Variables:
     def keep(self, name: str, value: float) -> bool:
         """This place holds a value from now on; False where no DEF has named it."""
         if name[0] == "R" and name[1:].isdigit():
-            self.r[int(name[1:])] = value
+            self.r[f"R{int(name[1:])}"] = value
         elif name in self.scope.numbers:
             self.scope.numbers[name] = value
         else:
             return False
         return True
+
+    def number(self, name: str) -> float:
+        """What this place holds; 0 where it holds nothing."""
+        if name[0] == "R" and name[1:].isdigit():
+            return self.r.get(f"R{int(name[1:])}", 0.0)
+        return self.scope.numbers.get(name, 0.0)
 
     def missing(self, letters: str, name: str) -> tuple[int | str, str, str]:
         """Why there is no number at this place: code, text and hint."""
@@ -136,7 +139,7 @@ def place_name(
     """The name of a place: R7, LENGTH, TABLE[2]. Raises the error for an index that is no whole number."""
     if number is None or isinstance(number, int):
         return f"{letters}{'' if number is None else number}"
-    indices = [worth(each) for each in _several(number)]
+    indices = [worth(each) for each in indices_of(number)]
     for place, index in enumerate(indices):
         if abs(index - round(index)) > 1e-9 or index < 0 or (letters == "R" and place):
             code = OTHER_INDEX if place else FIRST_INDEX
@@ -148,10 +151,6 @@ def place_name(
             raise refuse(code, text, "Use a whole number of 0 or more as the index.")
     written = ",".join(str(round(each)) for each in indices)
     return f"R{written}" if letters == "R" else f"{letters}[{written}]"
-
-
-def _several(index: Formula) -> tuple[Formula, ...]:
-    return index.operands if isinstance(index, Operation) and index.name == INDICES else (index,)
 
 
 def _r_places() -> list[str]:

@@ -154,8 +154,7 @@ def corner(cursor: Cursor, form: str, column: int) -> Corner:
     cursor.take(_SIZE)
     size = cursor.value(form)
     speed = feed(cursor)
-    if not cursor.done:
-        raise cursor.expected(Message("{form} accepts only a radius or length, and a feed rate", form=form))
+    cursor.demand_end(Message("{form} accepts only a radius or length, and a feed rate", form=form))
     return Corner(form, size, speed, column)
 
 

@@ -174,8 +174,7 @@ def _arithmetic(cursor: Cursor, number: int, column: int) -> Assign:
             word, name = ("ANG", "angle") if number == _ANGLE else _TWO[number]
             _demand(cursor, word, number)
             made = Operation(name, (made, _operand(cursor, q)), column)
-    if not cursor.done:
-        raise cursor.expected(Message("Unexpected word in FN {number}", number=number))
+    cursor.demand_end(Message("Unexpected word in FN {number}", number=number))
     return Assign(q, made, column, kind)
 
 

@@ -6,10 +6,9 @@ import re
 from typing import NamedTuple
 
 from core.language.formulas import Formula, FormulaError
-from core.language.sinumerik.sinumerik_formulas import formula_at, list_at
+from core.language.sinumerik.block_reader import NEXT, BlockReader
 
 _LIST = re.compile(r"\s*(SET|REP)?\s*\(")
-_LEFT_OUT = re.compile(r"\s*[,)]")
 
 
 class Values(NamedTuple):
@@ -23,30 +22,24 @@ class Values(NamedTuple):
     times: Formula | None = None
 
 
-def read_values(text: str, at: int, *, bare: bool) -> tuple[Values, int] | None:
-    """The list that begins at ``at`` and the index behind it; None where none does. Raises FormulaError.
+def read_values(reader: BlockReader, *, bare: bool) -> Values | None:
+    """The list that begins here; None where none does. Raises FormulaError.
 
-    ``text`` is in capitals. ``bare`` takes brackets without SET before them, which elsewhere begin a formula.
+    ``bare`` takes brackets without SET before them, which elsewhere begin a formula.
     """
-    match = _LIST.match(text, at)
+    match = _LIST.match(reader.upper, reader.at)
     if match is None or not (match[1] or bare):
         return None
-    found, end = list_at(text, match.end(), lambda at: _element(text, at), _unclosed)
+    reader.at = match.end()
+    found = reader.items(
+        lambda: None if NEXT.match(reader.upper, reader.at) else reader.formula(),
+        "The closing parenthesis of the list of values is missing",
+        "Write ) after the last value.",
+    )
     if match[1] != "REP":
-        return Values(tuple(found)), end
+        return Values(tuple(found))
     if found[0] is None or len(found) > 2:
         raise FormulaError(
             match.end(), "REP accepts only a value and a number of elements", "Write, for example, REP(0)."
         )
-    return Values((found[0],), repeated=True, times=found[1] if found[1:] else None), end
-
-
-def _element(text: str, at: int) -> tuple[Formula | None, int]:
-    """Return a formula, or None before the next comma, and the index behind it."""
-    return (None, at) if _LEFT_OUT.match(text, at) else formula_at(text, at)
-
-
-def _unclosed(at: int) -> FormulaError:
-    return FormulaError(
-        at, "The closing parenthesis of the list of values is missing", "Write ) after the last value."
-    )
+    return Values((found[0],), repeated=True, times=found[1] if found[1:] else None)

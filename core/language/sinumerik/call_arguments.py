@@ -6,8 +6,7 @@ import re
 from typing import NamedTuple
 
 from core.language.formulas import Formula, FormulaError
-from core.language.line_reading import after_blanks
-from core.language.sinumerik.sinumerik_formulas import formula_at, list_at
+from core.language.sinumerik.block_reader import NEXT, BlockReader
 
 _QUOTED = re.compile(r'\s*"([^"]*)"\s*(?=[,)])')
 _AXIS = re.compile(r"\s*([A-CU-Z][0-9]?)\s*(?=[,)])")
@@ -31,7 +30,7 @@ class Argument(NamedTuple):
     @property
     def given(self) -> bool:
         """Whether anything stands there."""
-        return self.formula is not None or self.text is not None
+        return self.formula is not None or self.upper is not None
 
 
 class Parameter(NamedTuple):
@@ -47,63 +46,57 @@ class Parameter(NamedTuple):
     sizes: tuple[int | None, ...] = ()
 
 
-def read_arguments(text: str, written: str, at: int) -> tuple[tuple[Argument, ...], int]:
-    """The arguments in the brackets that open at ``at``, and the index behind them. Raises FormulaError.
-
-    ``text`` is in capitals, ``written`` the same in its own case.
-    """
-    found, end = list_at(
-        text,
-        at + 1,
-        lambda place: _argument(text, written, after_blanks(text, place)),
-        lambda place: _no_argument(text, at, place),
-    )
-    return (() if len(found) == 1 and not found[0].given else tuple(found)), end
-
-
-def _no_argument(text: str, start: int, at: int) -> FormulaError:
-    hint = "Write ( , , )."
-    if at >= len(text):
-        return FormulaError(start, "The argument list has no closing parenthesis", hint)
-    return FormulaError(at, "The argument list contains text that is not an argument", hint)
+def read_arguments(reader: BlockReader) -> tuple[Argument, ...]:
+    """The arguments in the brackets that open here. Raises FormulaError."""
+    found: list[Argument] = []
+    start = reader.at
+    reader.at += 1
+    while True:
+        reader.blanks()
+        found.append(_argument(reader))
+        match = reader.take(NEXT)
+        if match is None:
+            hint = "Write ( , , )."
+            if not reader.upper[reader.at :]:
+                raise FormulaError(start, "The argument list has no closing parenthesis", hint)
+            raise FormulaError(reader.at, "The argument list contains text that is not an argument", hint)
+        if match[1] == ")":
+            return () if len(found) == 1 and not found[0].given else tuple(found)
 
 
-def _argument(text: str, written: str, at: int) -> tuple[Argument, int]:
-    column = at + 1
-    if text[at : at + 1] in {",", ")"}:
-        return Argument(None, None, column), at
-    if quoted := _QUOTED.match(written, at):
-        return Argument(None, quoted[1].strip(), column), quoted.end()
-    if axis := _AXIS.match(text, at):
-        return Argument(None, axis[1], column), axis.end()
-    formula, end = formula_at(text, at)
-    return Argument(formula, None, column), end
+def _argument(reader: BlockReader) -> Argument:
+    column = reader.at + 1
+    if reader.upper[reader.at : reader.at + 1] in {",", ")"}:
+        return Argument(None, None, column)
+    if quoted := reader.take(_QUOTED, written=True):
+        return Argument(None, quoted[1].strip(), column)
+    if axis := reader.take(_AXIS):
+        return Argument(None, axis[1], column)
+    return Argument(reader.formula(), None, column)
 
 
-def read_parameters(text: str, written: str, at: int) -> tuple[tuple[Parameter, ...], int]:
-    """The parameters in the brackets that open at ``at``, and the index behind them. Raises FormulaError."""
-    at = after_blanks(text, at + 1)
-    if text[at : at + 1] == ")":
-        return (), at + 1
-    found, end = list_at(text, at, lambda place: _parameter(text, written, place), _unclosed)
-    return tuple(found), end
-
-
-def _parameter(text: str, written: str, at: int) -> tuple[Parameter, int]:
-    match = _PARAMETER.match(text, at)
-    if match is None:
-        raise FormulaError(
-            at, "A parameter needs a type and a name", "Write, for example, PROC NAME(REAL LENGTH)."
+def read_parameters(reader: BlockReader) -> tuple[Parameter, ...]:
+    """The parameters in the brackets that open here. Raises FormulaError."""
+    reader.at += 1
+    reader.blanks()
+    if reader.upper[reader.at : reader.at + 1] == ")":
+        reader.at += 1
+        return ()
+    return tuple(
+        reader.items(
+            lambda: _parameter(reader),
+            "The closing parenthesis of the parameter list is missing",
+            "Write ) after the last parameter.",
         )
-    sizes = _sizes(match)
-    default, end = _argument(text, written, match.end()) if match[5] else (None, match.end())
-    return Parameter(match[3] or "", match[2], match[1] is not None, default, sizes), end
-
-
-def _unclosed(at: int) -> FormulaError:
-    return FormulaError(
-        at, "The closing parenthesis of the parameter list is missing", "Write ) after the last parameter."
     )
+
+
+def _parameter(reader: BlockReader) -> Parameter:
+    match = reader.demand(
+        _PARAMETER, "A parameter needs a type and a name", "Write, for example, PROC NAME(REAL LENGTH)."
+    )
+    default = _argument(reader) if match[5] else None
+    return Parameter(match[3] or "", match[2], match[1] is not None, default, _sizes(match))
 
 
 def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:

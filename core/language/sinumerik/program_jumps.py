@@ -6,11 +6,10 @@ import re
 from enum import StrEnum
 from typing import NamedTuple
 
-from core.language.formulas import INDICES, Formula, FormulaError, FormulaReader, Operation
-from core.language.line_reading import LineReader
+from core.language.formulas import Formula, FormulaError, indices_of
 from core.language.sinumerik.array_values import Values, read_values
+from core.language.sinumerik.block_reader import BlockReader
 from core.language.sinumerik.call_arguments import Parameter, read_parameters
-from core.language.sinumerik.sinumerik_formulas import GRAMMAR, formula_at
 from core.message import Message
 
 
@@ -135,11 +134,10 @@ def read_jump(text: str, written: str, at: int, steering: Steering) -> Jump:
     return jump
 
 
-class _Reader(LineReader):
+class _Reader(BlockReader):
     def __init__(self, text: str, written: str, at: int, steering: Steering) -> None:
-        super().__init__(text, at + len(steering))
-        self._written, self._steering = written, steering
-        self._column = at + 1
+        super().__init__(text, written, at + len(steering))
+        self._steering, self._column = steering, at + 1
 
     def jump(self) -> Jump:
         read = {
@@ -170,41 +168,38 @@ class _Reader(LineReader):
         return Jump(self._steering, self._column, target=self._target())
 
     def _conditional(self) -> Jump:
-        return Jump(self._steering, self._column, self._formula())
+        return Jump(self._steering, self._column, self.formula())
 
     def _define(self) -> Jump:
         return Jump(self._steering, self._column, defined=tuple(self._definitions()))
 
     def demand_end(self) -> None:
-        if not self.done:
-            self.blanks()
-            raise FormulaError(
-                self.at,
-                Message("Unexpected text after {steering}", steering=self._steering),
-                "Put the extra text in a separate block.",
-            )
+        self.blanks()
+        if self.rest:
+            text = Message("Unexpected text after {steering}", steering=self._steering)
+            raise FormulaError(self.at, text, "Put the extra text in a separate block.")
 
     def _if(self) -> Jump:
         """With a jump behind the condition the whole branch; without one the beginning of IF … ENDIF."""
-        condition = self._formula()
+        condition = self.formula()
         match = self.take(_GOTO)
         if match is None:
             return Jump(Steering.IF, self._column, condition)
         steering = Steering(match.group(1))
         target = "" if steering is Steering.GOTO_START else self._target()
         jump = Jump(steering, self._column, condition, target)
-        if another := self.take(_NEXT_IF):
-            self._column = another.end() - 1
+        if self.take(_NEXT_IF):
+            self._column = self.at - 1
             jump = jump._replace(other=self._if())
         return jump
 
     def _case(self) -> Jump:
         """CASE R1 OF 1 GOTOF A 2 GOTOF B DEFAULT GOTOF C."""
-        condition, choices = self._formula(), list[Choice]()
-        self._demand(_OF, "CASE needs OF", "Write, for example, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.")
-        while not self.done:
-            formula = None if self.take(_DEFAULT) else self._formula()
-            jump = self._demand(_GOTO, "A CASE branch needs a jump", "Write, for example, 1 GOTOF LABEL.")
+        condition, choices = self.formula(), list[Choice]()
+        self.demand(_OF, "CASE needs OF", "Write, for example, CASE R1 OF 1 GOTOF A DEFAULT GOTOF B.")
+        while self.rest:
+            formula = None if self.take(_DEFAULT) else self.formula()
+            jump = self.demand(_GOTO, "A CASE branch needs a jump", "Write, for example, 1 GOTOF LABEL.")
             choices.append(Choice(formula, Steering(jump.group(1)), self._target()))
         if not choices:
             raise FormulaError(self.at, "CASE has no branch", "Write, for example, CASE R1 OF 1 GOTOF A.")
@@ -212,10 +207,10 @@ class _Reader(LineReader):
 
     def _for(self) -> Jump:
         hint = "Write, for example, FOR R1 = 1 TO 5."
-        name = self._demand(_NAME, "FOR needs a variable and =", hint).group(1)
-        first = self._formula()
-        self._demand(_TO, "FOR needs TO", hint)
-        return Jump(Steering.FOR, self._column, name=name, first=first, last=self._formula())
+        name = self.demand(_NAME, "FOR needs a variable and =", hint).group(1)
+        first = self.formula()
+        self.demand(_TO, "FOR needs TO", hint)
+        return Jump(Steering.FOR, self._column, name=name, first=first, last=self.formula())
 
     def _repeat(self) -> Jump:
         """REPEAT alone begins REPEAT … UNTIL; with a label or two it runs a part of the program again."""
@@ -224,28 +219,28 @@ class _Reader(LineReader):
             labels.append(match.group(1))
         if not labels:
             return Jump(self._steering, self._column)
-        passes = self._formula() if self.take(_PASSES) else None
-        return Jump(self._steering, self._column, target=labels[0], until=labels[-1] if labels[1:] else "",
-                    passes=passes)  # fmt: skip
+        passes = self.formula() if self.take(_PASSES) else None
+        until = labels[-1] if labels[1:] else ""
+        return Jump(self._steering, self._column, target=labels[0], until=until, passes=passes)
 
     def _definitions(self) -> list[Defined]:
-        at, hint = self.at, "Write, for example, DEF REAL NAME = 0."
-        kind = self._demand(_TYPE, "DEF needs REAL, INT, BOOL or STRING", hint)[1]
-        if kind not in _NUMBERS | {"STRING"}:
-            text = Message("Variables of type {name} are not supported", name=kind)
-            raise FormulaError(at, text, "Use REAL, INT, BOOL or STRING.")
-        found = [self._defined(kind)]
-        while not self.done:
-            found.append(self._defined(kind))
+        hint = "Write, for example, DEF REAL NAME = 0."
+        kind = self.demand(_TYPE, "DEF needs REAL, INT, BOOL or STRING", hint)
+        if kind[1] not in _NUMBERS | {"STRING"}:
+            text = Message("Variables of type {name} are not supported", name=kind[1])
+            raise FormulaError(kind.start(), text, "Use REAL, INT, BOOL or STRING.")
+        found = [self._defined(kind[1])]
+        while self.rest:
+            found.append(self._defined(kind[1]))
         return found
 
     def _defined(self, kind: str) -> Defined:
         hint = "Write, for example, DEF REAL NAME = 0."
-        variable = self._demand(_VARIABLE, "DEF needs a variable name", hint)
-        made, after = Defined(variable.group(1), None, kind), variable.group(2)
+        name, after = self.demand(_VARIABLE, "DEF needs a variable name", hint).groups()
+        made = Defined(name, None, kind)
         if after == "[":
             self.at -= 1
-            made = made._replace(sizes=self._sizes())
+            made = made._replace(sizes=indices_of(self.index()))
             after = self._sign()
         if after == "=":
             made = self._first_value(made)
@@ -254,21 +249,12 @@ class _Reader(LineReader):
 
     def _first_value(self, made: Defined) -> Defined:
         """What stands behind the = of DEF: a text, a list for an array, a formula."""
-        quoted = _JOINED.match(self._written, self.at)
+        quoted = _JOINED.match(self.written, self.at)
         if made.kind == "STRING" and quoted and quoted[1] is not None:
             self.at = quoted.end()
             return made._replace(text=quoted[1])
-        listed = read_values(self.upper, self.at, bare=True) if made.sizes else None
-        if listed is None:
-            return made._replace(formula=self._formula())
-        self.at = listed[1]
-        return made._replace(values=listed[0])
-
-    def _sizes(self) -> tuple[Formula, ...]:
-        reader = FormulaReader(GRAMMAR, self.upper, self.at)
-        size = reader.index()
-        self.at = reader.at
-        return size.operands if isinstance(size, Operation) and size.name == INDICES else (size,)
+        values = read_values(self, bare=True) if made.sizes else None
+        return made._replace(formula=self.formula()) if values is None else made._replace(values=values)
 
     def _sign(self) -> str:
         """A comma or = that stands here."""
@@ -276,54 +262,44 @@ class _Reader(LineReader):
         return "" if match is None else match[1]
 
     def _procedure(self) -> Jump:
-        name, parameters = self._heading()
+        jump = self._extern()
         saves = False
         while match := self.take(_ATTRIBUTE):
             saves = saves or match[1] == "SAVE"
-        return Jump(self._steering, self._column, name=name, parameters=parameters, saves=saves)
+        return jump._replace(saves=saves)
 
     def _extern(self) -> Jump:
-        name, parameters = self._heading()
-        return Jump(self._steering, self._column, name=name, parameters=parameters)
-
-    def _heading(self) -> tuple[str, tuple[Parameter, ...]]:
-        problem = Message("{steering} needs a subprogram name", steering=self._steering)
-        match = self._demand(_PROCEDURE, problem, "Write, for example, PROC NAME(REAL LENGTH).")
-        parameters = tuple[Parameter, ...]()
-        if self.upper.startswith("(", self.at):
-            parameters, self.at = read_parameters(self.upper, self._written, self.at)
-        return match[1], parameters
+        text = Message("{steering} needs a subprogram name", steering=self._steering)
+        match = self.demand(_PROCEDURE, text, "Write, for example, PROC NAME(REAL LENGTH).")
+        parameters = read_parameters(self) if self.rest.startswith("(") else ()
+        return Jump(self._steering, self._column, name=match[1], parameters=parameters)
 
     def _message(self) -> Jump:
         """MSG("TEXT"<<R1): texts and formulas, joined by <<."""
         closing = self.upper.rstrip()
         if not closing.endswith(")"):
             raise FormulaError(self.at, *_NO_TEXT)
-        self._demand(_OPEN, *_NO_TEXT)
+        self.demand(_OPEN, *_NO_TEXT)
         end = len(closing) - 1
         pieces: list[str | Formula] = []
         while self.upper[self.at : end].strip():
-            if match := _JOINED.match(self._written, self.at, end):
+            if match := _JOINED.match(self.written, self.at, end):
                 self.at = match.end()
                 pieces += [] if match[1] is None else [match[1]]
             elif self.upper[self.at : end].lstrip().startswith(","):
                 break  # what stands behind the text says only how it is shown
             else:
-                pieces.append(self._formula())
+                pieces.append(self.formula())
         self.at = len(self.upper)
         return Jump(self._steering, self._column, pieces=tuple(pieces))
 
     def _alarm(self) -> Jump:
-        self._demand(_OPEN, "SETAL needs a number in parentheses", "Write, for example, SETAL(65000).")
-        number = self._formula()
+        self.demand(_OPEN, "SETAL needs a number in parentheses", "Write, for example, SETAL(65000).")
+        number = self.formula()
         self.at = len(self.upper)
         return Jump(self._steering, self._column, number)
 
     def _target(self) -> str:
         self.blanks()
-        hint = "Write a label, or N with a block number."
-        return self._demand(_TARGET, "A jump needs a label", hint).group().strip()
-
-    def _formula(self) -> Formula:
-        made, self.at = formula_at(self.upper, self.at)
-        return made
+        match = self.demand(_TARGET, "A jump needs a label", "Write a label, or N with a block number.")
+        return match.group().strip()

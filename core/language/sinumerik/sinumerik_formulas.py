@@ -1,12 +1,10 @@
-"""Formulas of SINUMERIK: R parameters, variables, operators and functions; lists in parentheses."""
+"""Formulas of SINUMERIK: R parameters, variables, operators and functions."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from typing import TypeVar
 
-from core.language.formulas import FUNCTIONS, Formula, FormulaError, FormulaReader, Grammar
+from core.language.formulas import FUNCTIONS, Formula, FormulaReader, Grammar
 from core.language.line_reading import UNSIGNED
 
 GRAMMAR = Grammar(
@@ -47,31 +45,8 @@ GRAMMAR = Grammar(
 )
 """Formulas behind ``=``, in brackets of a target, and of conditions. Comparisons bind weakest of all."""
 
-_Item = TypeVar("_Item")
-_NEXT = re.compile(r"\s*([,)])")
-
 
 def formula_at(text: str, at: int) -> tuple[Formula, int]:
     """Return the formula that begins at ``at``, and the index behind it. Raises FormulaError."""
     reader = FormulaReader(GRAMMAR, text, at)
     return reader.formula(), reader.at
-
-
-def list_at(
-    text: str, at: int, read: Callable[[int], tuple[_Item, int]], unclosed: Callable[[int], FormulaError]
-) -> tuple[list[_Item], int]:
-    """Return the items up to the closing parenthesis, and the index behind it.
-
-    ``read`` returns the item at an index and the index behind it. Raises the error of ``unclosed`` where an
-    item is not followed by a comma or the parenthesis.
-    """
-    found: list[_Item] = []
-    while True:
-        item, at = read(at)
-        found.append(item)
-        sign = _NEXT.match(text, at)
-        if sign is None:
-            raise unclosed(at)
-        at = sign.end()
-        if sign[1] == ")":
-            return found, at

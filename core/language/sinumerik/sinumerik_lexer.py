@@ -5,16 +5,16 @@ from __future__ import annotations
 import re
 
 from core.language.diagnostics import Diagnostic
-from core.language.formulas import FormulaError, FormulaReader
+from core.language.formulas import FormulaError
 from core.language.line_reading import SIGNED, after_blanks, comment_start
 from core.language.sinumerik import sinumerik_words as known
 from core.language.sinumerik.array_values import read_values
+from core.language.sinumerik.block_reader import BlockReader
 from core.language.sinumerik.call_arguments import Argument, read_arguments
 from core.language.sinumerik.cycle_names import CYCLES, CYCLES_OUTSIDE, CYCLES_TAKEN
 from core.language.sinumerik.iso_words import iso_habit
 from core.language.sinumerik.program_jumps import Jump, Steering, read_jump, steering_word
 from core.language.sinumerik.sinumerik_alarms import SYNTAX, fault
-from core.language.sinumerik.sinumerik_formulas import GRAMMAR
 from core.language.sinumerik.sinumerik_words import LONGEST_LINE, Form, Line, Word
 from core.language.sinumerik.third_axis_name import OWN, words_as_c
 from core.language.sinumerik.word_values import PARAMETER, Value, beyond, demand_parameters, value_at
@@ -267,7 +267,8 @@ class _Scanner:
     def _arguments(self, name: str, bracket: re.Match[str]) -> tuple[tuple[Argument, ...] | None, int]:
         """Return the arguments in this bracket, None if they cannot be read; and the index behind them."""
         try:
-            return read_arguments(self._text, self._written, bracket.end() - 1)
+            reader = BlockReader(self._text, self._written, bracket.end() - 1)
+            return read_arguments(reader), reader.at
         except FormulaError as problem:
             what = Message("{name}: {problem}", name=name, problem=problem)
             self.refuse(problem.at + 1, what, problem.hint)
@@ -326,7 +327,7 @@ class _Scanner:
         if name in known.WITHOUT_EQUALS:
             return self._without_equals(name, at)
         try:
-            reader = FormulaReader(GRAMMAR, self._text, self._text.index("[", at))
+            reader = BlockReader(self._text, self._written, self._text.index("[", at))
             place = reader.index()
             demand_parameters(place, at)
             sign = _SET.match(self._text, reader.at)
@@ -336,8 +337,8 @@ class _Scanner:
                     Message("{name}[ ] needs = and a value", name=name),
                     Message("Write {name}[1]=…", name=name),
                 )
-            listed = read_values(self._text, sign.end(), bare=False)
-            value = value_at(self._text, sign.end()) if listed is None else Value(0.0, None, listed[1])
+            listed = read_values(reader, bare=False)
+            value = value_at(self._text, reader.at) if listed is None else Value(0.0, None, reader.at)
         except FormulaError as problem:
             return self._skip(
                 at, Message("{name}[ ]= has no value: {problem}", name=name, problem=problem), problem.hint
@@ -345,7 +346,7 @@ class _Scanner:
         written = "".join(self._text[at : value.end].split())
         named = "R0" if name == "R" else name
         word = Word(named, value.number, at + 1, written, Form.PLAIN, value.formula, element=place)
-        return self._keep(word if listed is None else word._replace(values=listed[0]), value.end)
+        return self._keep(word._replace(values=listed), value.end)
 
     def _assigned(self, match: re.Match[str]) -> int:
         """A word with =."""

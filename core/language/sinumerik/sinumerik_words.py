@@ -5,12 +5,13 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import NamedTuple
 
-from core.language.diagnostics import Diagnostic
+from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.formulas import Formula
 from core.language.sinumerik.array_values import Values
 from core.language.sinumerik.call_arguments import Argument
 from core.language.sinumerik.outside_words import OUTSIDE
 from core.language.sinumerik.program_jumps import Jump
+from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.word_table import FUNCTIONS, WORDS
 
 LONGEST_LINE = 512
@@ -76,6 +77,10 @@ class Line(NamedTuple):
     def executable(self) -> bool:
         """Whether there is anything to do in it."""
         return bool(self.words or self.call or self.errors or self.jump or self.modal_call)
+
+    def refuse(self, column: int, code: int | str, text: str, hint: str) -> ProgramError:
+        """An error at this column, to be raised: an alarm of the control by its number, or one of ours."""
+        return ProgramError(fault(self.number, column, code, self.block, text, hint))
 
 
 # --- vocabulary: what this control knows, and what it knows of but does not execute
