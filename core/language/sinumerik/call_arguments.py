@@ -30,7 +30,7 @@ class Argument(NamedTuple):
     @property
     def given(self) -> bool:
         """Whether anything stands there."""
-        return self.formula is not None or self.upper is not None
+        return self.formula is not None or self.text is not None
 
 
 class Parameter(NamedTuple):

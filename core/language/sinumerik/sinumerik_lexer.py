@@ -330,8 +330,7 @@ class _Scanner:
             reader = BlockReader(self._text, self._written, self._text.index("[", at))
             place = reader.index()
             demand_parameters(place, at)
-            sign = _SET.match(self._text, reader.at)
-            if sign is None:
+            if reader.take(_SET) is None:
                 return self._skip(
                     at,
                     Message("{name}[ ] needs = and a value", name=name),
