@@ -22,9 +22,9 @@ from core.executor.program_run import ProgramRun
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, log_alarm, log_line
 from core.executor.read_ahead import ProgramPass
 from core.executor.safe_stop import SafeStop
+from core.executor.safety.supervision import OutputsWatch, Supervisor
 from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, LINES, STOPPED, Event, State, demand_allowed
 from core.executor.start_conditions import SPINDLE, Announcement, Starting
-from core.executor.supervision import OutputsWatch, Supervisor
 from core.executor.touch_off import TouchOff
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal

@@ -18084,42 +18084,42 @@
       <translation>SEÑAL DE OVERRIDE INESTABLE</translation>
     </message>
     <message>
-      <location filename="core/executor/supervision.py" />
+      <location filename="core/executor/safety/supervision.py" />
       <source>DRIVER HOST STOPPED SPINDLE/OUTPUTS</source>
       <translation>EL PROCESO DE DRIVERS APAGÓ EL HUSILLO O SALIDAS</translation>
     </message>
     <message>
-      <location filename="core/executor/supervision.py" />
+      <location filename="core/executor/safety/supervision.py" />
       <source>NO SIGNAL FROM CONTROL FOR {away} S, SWITCHED OFF: {off}</source>
       <translation>SIN SEÑAL DEL CONTROL DURANTE {away} S, SE APAGÓ: {off}</translation>
     </message>
     <message>
-      <location filename="core/executor/supervision.py" />
+      <location filename="core/executor/safety/supervision.py" />
       <source>NO SIGNAL FROM MACHINE FOR {away} S, OUTPUTS FOUND ON AND SWITCHED OFF: {off}</source>
       <translation>SIN SEÑAL DE LA MÁQUINA DURANTE {away} S, SALIDAS HALLADAS ENCENDIDAS Y APAGADAS: {off}</translation>
     </message>
     <message>
-      <location filename="core/executor/supervision.py" />
+      <location filename="core/executor/safety/supervision.py" />
       <source>no data from the axes</source>
       <translation>no llegan datos de los ejes</translation>
     </message>
     <message>
-      <location filename="core/executor/supervision.py" />
+      <location filename="core/executor/safety/supervision.py" />
       <source>{axis}: the drive reports a position that is not a number</source>
       <translation>{axis}: el servo da una posición que no es un número</translation>
     </message>
     <message>
-      <location filename="core/executor/supervision.py" />
+      <location filename="core/executor/safety/supervision.py" />
       <source>{item} MOVED WITHOUT A COMMAND</source>
       <translation>{item} SE MOVIÓ SIN ORDEN</translation>
     </message>
     <message>
-      <location filename="core/executor/supervision.py" />
+      <location filename="core/executor/safety/supervision.py" />
       <source>{output} TURNS OFF</source>
       <translation>SE APAGA {output}</translation>
     </message>
     <message>
-      <location filename="core/executor/supervision.py" />
+      <location filename="core/executor/safety/supervision.py" />
       <source>{output} TURNS ON</source>
       <translation>SE ENCIENDE {output}</translation>
     </message>
