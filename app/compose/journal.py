@@ -15,8 +15,7 @@ from app.offsets.offset_book import OffsetBook, OffsetRows, rows_of_store
 from app.programs.run_history import note_cut_off_runs
 from app.quality.cycle_recorder import CycleRecorder
 from app.quality.parts_book import PartsBook
-from core.executor.interrupted_job import InterruptedJob, of_plain, plain
-from core.executor.snapshot import Event
+from core.executor.snapshot import Event, InterruptedJob, of_plain, plain
 from core.language.source import Source
 from core.message import Message
 from core.store import backup, database, people

@@ -18,7 +18,7 @@ from app.desk import formats
 from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.scope.axis_response import SHARES, Moved, Units, moved, step_rows, stretches, window_rows
-from core.executor.drive_test_path import PAUSE, DriveTestPath, Shape
+from core.executor.hand_motion.drive_test import PAUSE, DriveTestPath, Shape
 from core.machine.machine_model import Axis
 from core.message import Message
 from core.records.record import Record

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.executor.attempt import Attempt
+from core.executor.raised_alarm import Attempt
 from core.executor.snapshot import Event, Snapshot, State, Tick
 from core.machine.machine_model import Machine
 from core.message import Message

@@ -17049,16 +17049,6 @@
       <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/executor/changed_offsets.py" />
-      <source>another program is running; changed offsets apply only to the program for which they were entered</source>
-      <translation>hay otro programa en marcha; los correctores cambiados sólo valen para el programa para el que se introdujeron</translation>
-    </message>
-    <message>
-      <location filename="core/executor/changed_offsets.py" />
-      <source>the changed offsets are in effect</source>
-      <translation>los correctores cambiados están en vigor</translation>
-    </message>
-    <message>
       <location filename="core/executor/command_handler.py" />
       <source>a program is running; press feed hold, then Reset to stop the spindle</source>
       <translation>hay un programa en marcha; pulse retención de avance y luego Reset para parar el husillo</translation>
@@ -17209,104 +17199,24 @@
       <translation>{output} encendida a mano</translation>
     </message>
     <message>
-      <location filename="core/executor/commanded_outputs.py" />
-      <source>{name} TURNED OFF</source>
-      <translation>SE APAGÓ {name}</translation>
+      <location filename="core/executor/control_status.py" />
+      <source>NO COUNT is on</source>
+      <translation>SIN CONT está puesto</translation>
     </message>
     <message>
-      <location filename="core/executor/commanded_outputs.py" />
-      <source>{name} TURNED ON</source>
-      <translation>SE ENCENDIÓ {name}</translation>
+      <location filename="core/executor/control_status.py" />
+      <source>a restart skipped part of the program</source>
+      <translation>un rearranque omitió parte del programa</translation>
     </message>
     <message>
-      <location filename="core/executor/controller_motion.py" />
-      <source>line {line} has no feed rate</source>
-      <translation>la línea {line} no tiene avance</translation>
+      <location filename="core/executor/control_status.py" />
+      <source>part {parts} completed in {seconds} s</source>
+      <translation>pieza {parts} terminada en {seconds} s</translation>
     </message>
     <message>
-      <location filename="core/executor/controller_motion.py" />
-      <source>this controller can move only X and Z</source>
-      <translation>este controlador sólo puede mover X y Z</translation>
-    </message>
-    <message>
-      <location filename="core/executor/cycle.py" />
-      <source>CONTROLLER IN FEED HOLD</source>
-      <translation>CONTROLADOR EN RETENCIÓN DE AVANCE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/cycle.py" />
-      <source>SPINDLE BELOW HALF COMMANDED SPEED</source>
-      <translation>HUSILLO POR DEBAJO DE LA MITAD DE LA VELOCIDAD ORDENADA</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>a drive test needs a watchdog time greater than 0</source>
-      <translation>una prueba de accionamiento necesita un tiempo de vigilancia mayor que 0</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>drive tests are not available because the controller plans its own motion and does not accept setpoints</source>
-      <translation>las pruebas de accionamiento no están disponibles porque el controlador planifica su propio movimiento y no admite consignas</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>feed hold is pressed</source>
-      <translation>la retención de avance está pulsada</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>the guard is open</source>
-      <translation>la guarda está abierta</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>the spindle is turning; stop it first</source>
-      <translation>el husillo gira; párelo antes</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>{axis} is a rotary axis; drive tests are only for linear axes</source>
-      <translation>{axis} es un eje rotativo; las pruebas de accionamiento son sólo para ejes lineales</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>{axis} is still moving</source>
-      <translation>{axis} todavía se mueve</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>{axis} must move {distance} mm in the {end} direction for the test, but its travel ends before that point</source>
-      <translation>{axis} debe moverse {distance} mm en la dirección {end} para la prueba, pero su recorrido acaba antes de ese punto</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>{name} is not homed, so TurnDesk cannot check whether there is enough travel for the test</source>
-      <translation>{name} no está referenciado, así que TurnDesk no puede comprobar si hay recorrido suficiente para la prueba</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test_path.py" />
-      <source>a travel of {size} mm is too short to reach a constant speed of {speed} mm/s</source>
-      <translation>un recorrido de {size} mm es demasiado corto para llegar a una velocidad constante de {speed} mm/s</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test_path.py" />
-      <source>the sine frequency must be from 0.5 to 200 Hz</source>
-      <translation>la frecuencia de la senoide debe ser de 0.5 a 200 Hz</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test_path.py" />
-      <source>the speed of a ramp must be above 0 and at most {top} mm/s, the limit for manual moves</source>
-      <translation>la velocidad de una rampa debe ser mayor que 0 y como máximo {top} mm/s, el límite al mover a mano</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test_path.py" />
-      <source>the travel of this test must be greater than 0 and at most {longest} mm</source>
-      <translation>el recorrido de esta prueba debe ser mayor que 0 y como máximo {longest} mm</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test_path.py" />
-      <source>this driver reports {rate} samples per second, which is not enough for a {fastest} Hz sine</source>
-      <translation>este driver da {rate} muestras por segundo, que no bastan para un seno de {fastest} Hz</translation>
+      <location filename="core/executor/control_status.py" />
+      <source>the cycle was disturbed ({disturbed}); measure the part and, if it is good, add it to the part count on page F10</source>
+      <translation>el ciclo fue perturbado ({disturbed}); mida la pieza y, si es buena, súmela a la cuenta de piezas en la página F10</translation>
     </message>
     <message>
       <location filename="core/executor/executor.py" />
@@ -17339,129 +17249,339 @@
       <translation>la orden {name} llegó demasiado tarde y se ignoró</translation>
     </message>
     <message>
-      <location filename="core/executor/feed_hold.py" />
-      <source>SPINDLE DID NOT RETURN TO SPEED</source>
-      <translation>EL HUSILLO NO VOLVIÓ A SU VELOCIDAD</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>a drive test needs a watchdog time greater than 0</source>
+      <translation>una prueba de accionamiento necesita un tiempo de vigilancia mayor que 0</translation>
     </message>
     <message>
-      <location filename="core/executor/following_error.py" />
-      <source>{angle} degrees</source>
-      <translation>{angle} grados</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>a travel of {size} mm is too short to reach a constant speed of {speed} mm/s</source>
+      <translation>un recorrido de {size} mm es demasiado corto para llegar a una velocidad constante de {speed} mm/s</translation>
     </message>
     <message>
-      <location filename="core/executor/following_error.py" />
-      <source>{axis} has moved by {off} without a command</source>
-      <translation>{axis} se movió {off} sin una orden</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>drive tests are not available because the controller plans its own motion and does not accept setpoints</source>
+      <translation>las pruebas de accionamiento no están disponibles porque el controlador planifica su propio movimiento y no admite consignas</translation>
     </message>
     <message>
-      <location filename="core/executor/following_error.py" />
-      <source>{axis} is {error} off its setpoint</source>
-      <translation>{axis} está a {error} de su consigna</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>feed hold is pressed</source>
+      <translation>la retención de avance está pulsada</translation>
     </message>
     <message>
-      <location filename="core/executor/following_error.py" />
-      <source>{axis} remains {error} off its setpoint</source>
-      <translation>{axis} sigue a {error} de su consigna</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>the guard is open</source>
+      <translation>la guarda está abierta</translation>
     </message>
     <message>
-      <location filename="core/executor/following_error.py" />
-      <source>{axis} was commanded to move {sent}, but its encoder does not count</source>
-      <translation>{axis} recibió orden de moverse {sent}, pero su encoder no cuenta</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>the sine frequency must be from 0.5 to 200 Hz</source>
+      <translation>la frecuencia de la senoide debe ser de 0.5 a 200 Hz</translation>
     </message>
     <message>
-      <location filename="core/executor/geared_thread_pass.py" />
-      <source>the thread moves could not be queued in time</source>
-      <translation>los movimientos de la rosca no se pudieron encolar a tiempo</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>the speed of a ramp must be above 0 and at most {top} mm/s, the limit for manual moves</source>
+      <translation>la velocidad de una rampa debe ser mayor que 0 y como máximo {top} mm/s, el límite al mover a mano</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>the spindle is turning; stop it first</source>
+      <translation>el husillo gira; párelo antes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>the travel of this test must be greater than 0 and at most {longest} mm</source>
+      <translation>el recorrido de esta prueba debe ser mayor que 0 y como máximo {longest} mm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>this driver reports {rate} samples per second, which is not enough for a {fastest} Hz sine</source>
+      <translation>este driver da {rate} muestras por segundo, que no bastan para un seno de {fastest} Hz</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>{axis} is a rotary axis; drive tests are only for linear axes</source>
+      <translation>{axis} es un eje rotativo; las pruebas de accionamiento son sólo para ejes lineales</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>{axis} is still moving</source>
+      <translation>{axis} todavía se mueve</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>{axis} must move {distance} mm in the {end} direction for the test, but its travel ends before that point</source>
+      <translation>{axis} debe moverse {distance} mm en la dirección {end} para la prueba, pero su recorrido acaba antes de ese punto</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>{name} is not homed, so TurnDesk cannot check whether there is enough travel for the test</source>
+      <translation>{name} no está referenciado, así que TurnDesk no puede comprobar si hay recorrido suficiente para la prueba</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>a handwheel step must be above 0 and at most {longest}, not {step}</source>
       <translation>un paso del volante debe ser mayor que 0 y como máximo {longest}, no {step}</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>a key and the handwheel cannot be used at the same time</source>
       <translation>una tecla y el volante no se pueden usar a la vez</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>a key or the screen was pressed while the handwheel was turning</source>
       <translation>se pulsó una tecla o la pantalla mientras giraba el volante</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>handwheel: {what}</source>
       <translation>volante: {what}</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the axis selector switch is not set to {axis}</source>
       <translation>el selector de eje no está en {axis}</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the handwheel count jumps; check the handwheel cable</source>
       <translation>la cuenta del volante salta; revise el cable del volante</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the handwheel is being turned faster than {axis} can move, so clicks are lost</source>
       <translation>el volante se gira más deprisa de lo que {axis} puede moverse, así que se pierden clics</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the handwheel needs a watchdog time greater than 0</source>
       <translation>el volante necesita un tiempo de vigilancia mayor que 0</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the handwheel was turned while a key or the screen was pressed</source>
       <translation>se giró el volante mientras se pulsaba una tecla o la pantalla</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the handwheel's enabling switch is not pressed</source>
       <translation>el botón de habilitación del volante no está pulsado</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the page that uses the handwheel stopped responding</source>
       <translation>la página que usa el volante dejó de responder</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>this machine has no handwheel</source>
       <translation>esta máquina no tiene volante</translation>
     </message>
     <message>
-      <location filename="core/executor/homing_order.py" />
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>a jog needs a velocity and a watchdog time greater than 0</source>
+      <translation>un movimiento manual necesita una velocidad y un tiempo de vigilancia mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>a jog step must be above 0 and at most {longest_step}, not {distance}</source>
+      <translation>un paso debe ser mayor que 0 y como máximo {longest_step}, no {distance}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>a jog step needs a speed above 0</source>
+      <translation>un paso necesita una velocidad mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>home all axes before jogging in a tilted plane</source>
+      <translation>referencie todos los ejes antes de mover a mano en un plano inclinado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>jogging in a tilted plane needs the axes X, Y and Z and a direction vector of length 1</source>
+      <translation>mover a mano en un plano inclinado necesita los ejes X, Y y Z y un vector de dirección de longitud 1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the C axis is the spindle, and the spindle is turning; stop the spindle first</source>
+      <translation>el eje C es el husillo, y el husillo está girando; párelo primero</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the controller is still moving the axes</source>
+      <translation>el controlador aún mueve los ejes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the drive test of {axis} is still running</source>
+      <translation>la prueba de accionamiento de {axis} todavía está en marcha</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the drive test of {axis} was stopped before it was finished</source>
+      <translation>la prueba de accionamiento de {axis} se paró antes de terminar</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the jog step of {axis} is not finished</source>
+      <translation>el paso de {axis} no ha terminado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the jog step of {axis} was stopped before it was finished</source>
+      <translation>el paso de {axis} se paró antes de terminar</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the spindle drive is switching to C-axis mode; release the key or button and jog again in 2 s</source>
+      <translation>el variador del husillo está conmutando al modo de eje C; suelte la tecla o el botón y mueva a mano otra vez dentro de 2 s</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>this machine has no axis {name} to jog</source>
+      <translation>esta máquina no tiene eje {name} que mover a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>{axis} drive test</source>
+      <translation>prueba de accionamiento de {axis}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>{axis} is still being jogged</source>
+      <translation>{axis} todavía se mueve a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>{axis} is still moving; wait until its jog step is finished</source>
+      <translation>{axis} todavía se mueve; espere a que termine su paso</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>{name} is at the end of its travel in the {ending} direction</source>
+      <translation>{name} está al final de su recorrido en la dirección {ending}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>{name}: the controller can jog only its own axes</source>
+      <translation>{name}: el controlador sólo puede mover a mano sus propios ejes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>a tool cannot be touched off along {axis}</source>
+      <translation>una herramienta no se puede tocar a lo largo de {axis}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>a touch was detected on the return move; check the tool setter</source>
+      <translation>se detectó un toque en el movimiento de regreso; revise el palpador</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
       <source>all axes homed</source>
       <translation>todos los ejes referenciados</translation>
     </message>
     <message>
-      <location filename="core/executor/homing_order.py" />
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>another touch-off direction was selected</source>
+      <translation>se eligió otra dirección de toque</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>button {button} was released</source>
+      <translation>se soltó el botón {button}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>no axis</source>
+      <translation>ningún eje</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>no second touch detected; check whether the tool or the tool setter is loose</source>
+      <translation>no se detectó el segundo toque; vea si está floja la herramienta o el palpador</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>no touch detected within {search}</source>
+      <translation>no se detectó toque en {search}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the axis moved {distance} past the touch point, which is more than the overtravel setting; check the tool setter</source>
+      <translation>el eje pasó {distance} del punto de toque, más que el valor de overtravel; revise el palpador</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the guard is open: close it</source>
+      <translation>la guarda está abierta: ciérrela</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the handwheel is selected; deselect it first</source>
+      <translation>el volante está elegido; desactívelo antes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the key or button was released</source>
+      <translation>se soltó la tecla o el botón</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the machine is in state {state}</source>
+      <translation>la máquina está en el estado {state}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the probe input is already on; check whether the tool setter is touched or its cable is damaged</source>
+      <translation>la entrada probe ya está activa; vea si el palpador está tocado o su cable está dañado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the probe input is not being read; check its terminal</source>
+      <translation>la entrada probe no se lee; revise su borne</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the probe input is still on after the tool has backed off {distance} from the touch point; check the stylus and the cable</source>
+      <translation>la entrada probe sigue activa después de retroceder {distance} desde el punto de toque; revise la punta y el cable</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the search for the touch point would exceed the travel of {axis} by {distance}; jog the axis back first</source>
+      <translation>la búsqueda del punto de toque saldría del recorrido de {axis} en {distance}; retroceda antes el eje a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the spindle is turning: stop it first</source>
+      <translation>el husillo gira: párelo antes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
       <source>this machine has no axis {name} to home</source>
       <translation>esta máquina no tiene eje {name} que referenciar</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted_job.py" />
-      <source>CANCELED BY RESET</source>
-      <translation>CANCELADO POR RESET</translation>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>this machine has no tool setter; add [setter] and the input probe to the machine file</source>
+      <translation>esta máquina no tiene palpador de herramientas; agregue [setter] y la entrada probe al archivo de máquina</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted_job.py" />
-      <source>THE CONTROL LOST POWER OR ITS PROCESS WAS KILLED</source>
-      <translation>EL CONTROL PERDIÓ LA CORRIENTE O SU PROCESO FUE TERMINADO A LA FUERZA</translation>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>touch-off: {why}</source>
+      <translation>toque: {why}</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted_job.py" />
-      <source>TURNDESK WAS CLOSED</source>
-      <translation>TURNDESK SE CERRÓ</translation>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>{axis} is not homed, so its position is not valid</source>
+      <translation>{axis} no está referenciado, así que su posición no es válida</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted_job.py" />
-      <source>{program}, line {line}, {tool}, part {part}: {why}</source>
-      <translation>{program}, línea {line}, {tool}, pieza {part}: {why}</translation>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>{mm} in</source>
+      <translation>{mm} pulg</translation>
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
@@ -17490,6 +17610,21 @@
     </message>
     <message>
       <location filename="core/executor/job.py" />
+      <source>line {line} moves C while the spindle is turning</source>
+      <translation>la línea {line} mueve C mientras gira el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/job.py" />
+      <source>line {line} moves {axis} beyond its travel, to {distance} {unit} from home</source>
+      <translation>la línea {line} lleva {axis} más allá de su recorrido, a {distance} {unit} de la referencia</translation>
+    </message>
+    <message>
+      <location filename="core/executor/job.py" />
+      <source>line {line} uses feed per revolution</source>
+      <translation>la línea {line} usa avance por vuelta</translation>
+    </message>
+    <message>
+      <location filename="core/executor/job.py" />
       <source>the active unit is now inches</source>
       <translation>la unidad activa es ahora pulgadas</translation>
     </message>
@@ -17502,96 +17637,6 @@
       <location filename="core/executor/job.py" />
       <source>the rapid rate has changed</source>
       <translation>la velocidad de rápido ha cambiado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>a jog needs a velocity and a watchdog time greater than 0</source>
-      <translation>un movimiento manual necesita una velocidad y un tiempo de vigilancia mayor que 0</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>a jog step must be above 0 and at most {longest_step}, not {distance}</source>
-      <translation>un paso debe ser mayor que 0 y como máximo {longest_step}, no {distance}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>a jog step needs a speed above 0</source>
-      <translation>un paso necesita una velocidad mayor que 0</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>home all axes before jogging in a tilted plane</source>
-      <translation>referencie todos los ejes antes de mover a mano en un plano inclinado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>jogging in a tilted plane needs the axes X, Y and Z and a direction vector of length 1</source>
-      <translation>mover a mano en un plano inclinado necesita los ejes X, Y y Z y un vector de dirección de longitud 1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the C axis is the spindle, and the spindle is turning; stop the spindle first</source>
-      <translation>el eje C es el husillo, y el husillo está girando; párelo primero</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the controller is still moving the axes</source>
-      <translation>el controlador aún mueve los ejes</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the drive test of {axis} is still running</source>
-      <translation>la prueba de accionamiento de {axis} todavía está en marcha</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the drive test of {axis} was stopped before it was finished</source>
-      <translation>la prueba de accionamiento de {axis} se paró antes de terminar</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the jog step of {axis} is not finished</source>
-      <translation>el paso de {axis} no ha terminado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the jog step of {axis} was stopped before it was finished</source>
-      <translation>el paso de {axis} se paró antes de terminar</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the spindle drive is switching to C-axis mode; release the key or button and jog again in 2 s</source>
-      <translation>el variador del husillo está conmutando al modo de eje C; suelte la tecla o el botón y mueva a mano otra vez dentro de 2 s</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>this machine has no axis {name} to jog</source>
-      <translation>esta máquina no tiene eje {name} que mover a mano</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>{axis} drive test</source>
-      <translation>prueba de accionamiento de {axis}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>{axis} is still being jogged</source>
-      <translation>{axis} todavía se mueve a mano</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>{axis} is still moving; wait until its jog step is finished</source>
-      <translation>{axis} todavía se mueve; espere a que termine su paso</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>{name} is at the end of its travel in the {ending} direction</source>
-      <translation>{name} está al final de su recorrido en la dirección {ending}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>{name}: the controller can jog only its own axes</source>
-      <translation>{name}: el controlador sólo puede mover a mano sus propios ejes</translation>
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
@@ -17630,11 +17675,6 @@
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
-      <source>the key or button was released</source>
-      <translation>se soltó la tecla o el botón</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
       <source>the palm buttons were pressed too soon after the confirmation: release both buttons, read the prompt, then press both buttons again</source>
       <translation>los pulsadores se pulsaron demasiado pronto tras la confirmación: suelte los dos, lea el aviso, luego púlselos otra vez</translation>
     </message>
@@ -17659,49 +17699,114 @@
       <translation>{source} se canceló</translation>
     </message>
     <message>
-      <location filename="core/executor/parts_made.py" />
-      <source>NO COUNT is on</source>
-      <translation>SIN CONT está puesto</translation>
+      <location filename="core/executor/program_motion/controller_motion.py" />
+      <source>line {line} has no feed rate</source>
+      <translation>la línea {line} no tiene avance</translation>
     </message>
     <message>
-      <location filename="core/executor/parts_made.py" />
-      <source>a restart skipped part of the program</source>
-      <translation>un rearranque omitió parte del programa</translation>
+      <location filename="core/executor/program_motion/controller_motion.py" />
+      <source>this controller can move only X and Z</source>
+      <translation>este controlador sólo puede mover X y Z</translation>
     </message>
     <message>
-      <location filename="core/executor/parts_made.py" />
-      <source>part {parts} completed in {seconds} s</source>
-      <translation>pieza {parts} terminada en {seconds} s</translation>
+      <location filename="core/executor/program_motion/cycle.py" />
+      <source>CONTROLLER IN FEED HOLD</source>
+      <translation>CONTROLADOR EN RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
-      <location filename="core/executor/parts_made.py" />
-      <source>the cycle was disturbed ({disturbed}); measure the part and, if it is good, add it to the part count on page F10</source>
-      <translation>el ciclo fue perturbado ({disturbed}); mida la pieza y, si es buena, súmela a la cuenta de piezas en la página F10</translation>
+      <location filename="core/executor/program_motion/cycle.py" />
+      <source>SPINDLE BELOW HALF COMMANDED SPEED</source>
+      <translation>HUSILLO POR DEBAJO DE LA MITAD DE LA VELOCIDAD ORDENADA</translation>
     </message>
     <message>
-      <location filename="core/executor/path_section.py" />
+      <location filename="core/executor/program_motion/cycle.py" />
+      <source>SPINDLE DID NOT RETURN TO SPEED</source>
+      <translation>EL HUSILLO NO VOLVIÓ A SU VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/path_section.py" />
       <source>no move is active, or all moves of the path are finished</source>
       <translation>no hay ningún movimiento activo, o terminaron todos los movimientos de la trayectoria</translation>
     </message>
     <message>
-      <location filename="core/executor/path_section.py" />
+      <location filename="core/executor/program_motion/path_section.py" />
       <source>the axes are stopped at the end of a block by Single Block</source>
       <translation>los ejes están parados al final de un bloque por bloque a bloque</translation>
     </message>
     <message>
-      <location filename="core/executor/path_section.py" />
+      <location filename="core/executor/program_motion/path_section.py" />
       <source>the axes are stopped because the override is 0</source>
       <translation>los ejes están parados porque el override está en 0</translation>
     </message>
     <message>
-      <location filename="core/executor/path_section.py" />
+      <location filename="core/executor/program_motion/path_section.py" />
       <source>the axes are stopped by an external hold</source>
       <translation>los ejes están parados por una retención externa</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/setpoint_motion.py" />
+      <source>the spindle speed changed faster than the axes could follow; check the thread</source>
+      <translation>la velocidad del husillo cambió más rápido de lo que los ejes podían seguir; revise la rosca</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/standstill.py" />
+      <source>Cycle Repeat switched off by M31</source>
+      <translation>repetir ciclo apagado por M31</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/standstill.py" />
+      <source>SPINDLE ORIENT</source>
+      <translation>ORIENTAR HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/standstill.py" />
+      <source>SPOS or M19 cannot turn the spindle to {angle} degrees while the collet is open</source>
+      <translation>SPOS o M19 no puede girar el husillo a {angle} grados con la pinza abierta</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/standstill.py" />
+      <source>the spindle turns at {measured} rpm</source>
+      <translation>el husillo gira a {measured} rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_pass.py" />
+      <source>the thread moves could not be queued in time</source>
+      <translation>los movimientos de la rosca no se pudieron encolar a tiempo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_path.py" />
+      <source>the spindle speed dropped to {measured} rpm (commanded: {command} rpm)</source>
+      <translation>la velocidad del husillo cayó a {measured} rpm (ordenada: {command} rpm)</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_path.py" />
+      <source>the spindle turned in the wrong direction at {measured} rpm</source>
+      <translation>el husillo giró en la dirección equivocada a {measured} rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_path.py" />
+      <source>the thread has a length or lead of zero</source>
+      <translation>la rosca tiene largo o paso cero</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_path.py" />
+      <source>{why} during the pull-out: the thread is cut, but the thread runout is shorter than programmed</source>
+      <translation>{why} durante la salida: la rosca está cortada, pero la salida de rosca es más corta que la programada</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_path.py" />
+      <source>{why}: the tool retracted from the thread at Z{position}, and the rest of this thread pass is not cut</source>
+      <translation>{why}: la herramienta se retiró de la rosca en Z{position}, y el resto de esta pasada de roscado no se cortó</translation>
     </message>
     <message>
       <location filename="core/executor/program_run.py" />
       <source>PROVING WITH THE CHANGED OFFSETS</source>
       <translation>COMPROBANDO CON LOS CORRECTORES CAMBIADOS</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_run.py" />
+      <source>another program is running; changed offsets apply only to the program for which they were entered</source>
+      <translation>hay otro programa en marcha; los correctores cambiados sólo valen para el programa para el que se introdujeron</translation>
     </message>
     <message>
       <location filename="core/executor/program_run.py" />
@@ -17717,6 +17822,11 @@
       <location filename="core/executor/program_run.py" />
       <source>the MDI line was canceled by reset</source>
       <translation>la línea de MDI se canceló por reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_run.py" />
+      <source>the changed offsets are in effect</source>
+      <translation>los correctores cambiados están en vigor</translation>
     </message>
     <message>
       <location filename="core/executor/program_run.py" />
@@ -17742,21 +17852,6 @@
       <location filename="core/executor/raised_alarm.py" />
       <source>feed hold requested by {name}</source>
       <translation>retención de avance pedida por {name}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/read_ahead.py" />
-      <source>line {line} moves C while the spindle is turning</source>
-      <translation>la línea {line} mueve C mientras gira el husillo</translation>
-    </message>
-    <message>
-      <location filename="core/executor/read_ahead.py" />
-      <source>line {line} moves {axis} beyond its travel, to {distance} {unit} from home</source>
-      <translation>la línea {line} lleva {axis} más allá de su recorrido, a {distance} {unit} de la referencia</translation>
-    </message>
-    <message>
-      <location filename="core/executor/read_ahead.py" />
-      <source>line {line} uses feed per revolution</source>
-      <translation>la línea {line} usa avance por vuelta</translation>
     </message>
     <message>
       <location filename="core/executor/recorder.py" />
@@ -17789,34 +17884,134 @@
       <translation>{folder}: los registros de alarma antiguos no se pueden borrar: {cause}</translation>
     </message>
     <message>
-      <location filename="core/executor/safe_stop.py" />
+      <location filename="core/executor/safety/safe_stop.py" />
       <source>fault while stopping {name}: {error}</source>
       <translation>falla al parar {name}: {error}</translation>
     </message>
     <message>
-      <location filename="core/executor/safe_stop.py" />
+      <location filename="core/executor/safety/safe_stop.py" />
       <source>the axes</source>
       <translation>los ejes</translation>
     </message>
     <message>
-      <location filename="core/executor/safe_stop.py" />
+      <location filename="core/executor/safety/safe_stop.py" />
       <source>the drives</source>
       <translation>los servos</translation>
     </message>
     <message>
-      <location filename="core/executor/safe_stop.py" />
+      <location filename="core/executor/safety/safe_stop.py" />
       <source>the outputs</source>
       <translation>las salidas</translation>
     </message>
     <message>
-      <location filename="core/executor/setpoint_motion.py" />
-      <source>the spindle speed changed faster than the axes could follow; check the thread</source>
-      <translation>la velocidad del husillo cambió más rápido de lo que los ejes podían seguir; revise la rosca</translation>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>DRIVER HOST STOPPED SPINDLE/OUTPUTS</source>
+      <translation>EL PROCESO DE DRIVERS APAGÓ EL HUSILLO O SALIDAS</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>NO SIGNAL FROM CONTROL FOR {away} S, SWITCHED OFF: {off}</source>
+      <translation>SIN SEÑAL DEL CONTROL DURANTE {away} S, SE APAGÓ: {off}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>NO SIGNAL FROM MACHINE FOR {away} S, OUTPUTS FOUND ON AND SWITCHED OFF: {off}</source>
+      <translation>SIN SEÑAL DE LA MÁQUINA DURANTE {away} S, SALIDAS HALLADAS ENCENDIDAS Y APAGADAS: {off}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>no data from the axes</source>
+      <translation>no llegan datos de los ejes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>output {name}</source>
+      <translation>la salida {name}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{angle} degrees</source>
+      <translation>{angle} grados</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{axis} has moved by {off} without a command</source>
+      <translation>{axis} se movió {off} sin una orden</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{axis} is {error} off its setpoint</source>
+      <translation>{axis} está a {error} de su consigna</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{axis} remains {error} off its setpoint</source>
+      <translation>{axis} sigue a {error} de su consigna</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{axis} was commanded to move {sent}, but its encoder does not count</source>
+      <translation>{axis} recibió orden de moverse {sent}, pero su encoder no cuenta</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{axis}: the drive reports a position that is not a number</source>
+      <translation>{axis}: el servo da una posición que no es un número</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{item} MOVED WITHOUT A COMMAND</source>
+      <translation>{item} SE MOVIÓ SIN ORDEN</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{output} TURNS OFF</source>
+      <translation>SE APAGA {output}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{output} TURNS ON</source>
+      <translation>SE ENCIENDE {output}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/watchdog.py" />
+      <source>the software thread of the control has ended</source>
+      <translation>el hilo de software del control terminó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/watchdog.py" />
+      <source>the software thread of the control is stuck</source>
+      <translation>el hilo de software del control está atorado</translation>
     </message>
     <message>
       <location filename="core/executor/signal_lamps.py" />
       <source>{name} CANNOT BE SWITCHED: {error}</source>
       <translation>{name} NO SE PUEDE CONMUTAR: {error}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/signals.py" />
+      <source>NO RESPONSE FROM OPERATOR STATION</source>
+      <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/signals.py" />
+      <source>OVERRIDE SIGNAL UNSTABLE</source>
+      <translation>SEÑAL DE OVERRIDE INESTABLE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/signals.py" />
+      <source>{name} TURNED OFF</source>
+      <translation>SE APAGÓ {name}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/signals.py" />
+      <source>{name} TURNED ON</source>
+      <translation>SE ENCENDIÓ {name}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>CANCELED BY RESET</source>
+      <translation>CANCELADO POR RESET</translation>
     </message>
     <message>
       <location filename="core/executor/snapshot.py" />
@@ -17830,6 +18025,16 @@
     </message>
     <message>
       <location filename="core/executor/snapshot.py" />
+      <source>THE CONTROL LOST POWER OR ITS PROCESS WAS KILLED</source>
+      <translation>EL CONTROL PERDIÓ LA CORRIENTE O SU PROCESO FUE TERMINADO A LA FUERZA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>TURNDESK WAS CLOSED</source>
+      <translation>TURNDESK SE CERRÓ</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
       <source>back off</source>
       <translation>retroceda</translation>
     </message>
@@ -17837,6 +18042,11 @@
       <location filename="core/executor/snapshot.py" />
       <source>the machine state cannot change from {old} to {new}</source>
       <translation>el estado de la máquina no puede cambiar de {old} a {new}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>{program}, line {line}, {tool}, part {part}: {why}</source>
+      <translation>{program}, línea {line}, {tool}, pieza {part}: {why}</translation>
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
@@ -17882,26 +18092,6 @@
       <location filename="core/executor/spindle_orientation.py" />
       <source>this machine cannot orient the spindle to an angle</source>
       <translation>esta máquina no puede orientar el husillo a un ángulo</translation>
-    </message>
-    <message>
-      <location filename="core/executor/standstill.py" />
-      <source>Cycle Repeat switched off by M31</source>
-      <translation>repetir ciclo apagado por M31</translation>
-    </message>
-    <message>
-      <location filename="core/executor/standstill.py" />
-      <source>SPINDLE ORIENT</source>
-      <translation>ORIENTAR HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="core/executor/standstill.py" />
-      <source>SPOS or M19 cannot turn the spindle to {angle} degrees while the collet is open</source>
-      <translation>SPOS o M19 no puede girar el husillo a {angle} grados con la pinza abierta</translation>
-    </message>
-    <message>
-      <location filename="core/executor/standstill.py" />
-      <source>the spindle turns at {measured} rpm</source>
-      <translation>el husillo gira a {measured} rpm</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -17955,11 +18145,6 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
-      <source>output {name}</source>
-      <translation>la salida {name}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
       <source>read this message first: {item}; then start again</source>
       <translation>lea primero este mensaje: {item}; después inicie otra vez</translation>
     </message>
@@ -17997,11 +18182,6 @@
       <location filename="core/executor/start_conditions.py" />
       <source>the first move is being checked against the part: start again in a moment</source>
       <translation>se está comprobando el primer movimiento con la pieza: vuelva a arrancar en un momento</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the guard is open: close it</source>
-      <translation>la guarda está abierta: ciérrela</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -18072,186 +18252,6 @@
       <location filename="core/executor/start_conditions.py" />
       <source>{old}, but the program does not specify this setting; load the program again</source>
       <translation>{old}, pero el programa no especifica este ajuste; cargue el programa otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/executor/station_signals.py" />
-      <source>NO RESPONSE FROM OPERATOR STATION</source>
-      <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/station_signals.py" />
-      <source>OVERRIDE SIGNAL UNSTABLE</source>
-      <translation>SEÑAL DE OVERRIDE INESTABLE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/safety/supervision.py" />
-      <source>DRIVER HOST STOPPED SPINDLE/OUTPUTS</source>
-      <translation>EL PROCESO DE DRIVERS APAGÓ EL HUSILLO O SALIDAS</translation>
-    </message>
-    <message>
-      <location filename="core/executor/safety/supervision.py" />
-      <source>NO SIGNAL FROM CONTROL FOR {away} S, SWITCHED OFF: {off}</source>
-      <translation>SIN SEÑAL DEL CONTROL DURANTE {away} S, SE APAGÓ: {off}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/safety/supervision.py" />
-      <source>NO SIGNAL FROM MACHINE FOR {away} S, OUTPUTS FOUND ON AND SWITCHED OFF: {off}</source>
-      <translation>SIN SEÑAL DE LA MÁQUINA DURANTE {away} S, SALIDAS HALLADAS ENCENDIDAS Y APAGADAS: {off}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/safety/supervision.py" />
-      <source>no data from the axes</source>
-      <translation>no llegan datos de los ejes</translation>
-    </message>
-    <message>
-      <location filename="core/executor/safety/supervision.py" />
-      <source>{axis}: the drive reports a position that is not a number</source>
-      <translation>{axis}: el servo da una posición que no es un número</translation>
-    </message>
-    <message>
-      <location filename="core/executor/safety/supervision.py" />
-      <source>{item} MOVED WITHOUT A COMMAND</source>
-      <translation>{item} SE MOVIÓ SIN ORDEN</translation>
-    </message>
-    <message>
-      <location filename="core/executor/safety/supervision.py" />
-      <source>{output} TURNS OFF</source>
-      <translation>SE APAGA {output}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/safety/supervision.py" />
-      <source>{output} TURNS ON</source>
-      <translation>SE ENCIENDE {output}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/thread_path.py" />
-      <source>the spindle speed dropped to {measured} rpm (commanded: {command} rpm)</source>
-      <translation>la velocidad del husillo cayó a {measured} rpm (ordenada: {command} rpm)</translation>
-    </message>
-    <message>
-      <location filename="core/executor/thread_path.py" />
-      <source>the spindle turned in the wrong direction at {measured} rpm</source>
-      <translation>el husillo giró en la dirección equivocada a {measured} rpm</translation>
-    </message>
-    <message>
-      <location filename="core/executor/thread_path.py" />
-      <source>the thread has a length or lead of zero</source>
-      <translation>la rosca tiene largo o paso cero</translation>
-    </message>
-    <message>
-      <location filename="core/executor/thread_path.py" />
-      <source>{why} during the pull-out: the thread is cut, but the thread runout is shorter than programmed</source>
-      <translation>{why} durante la salida: la rosca está cortada, pero la salida de rosca es más corta que la programada</translation>
-    </message>
-    <message>
-      <location filename="core/executor/thread_path.py" />
-      <source>{why}: the tool retracted from the thread at Z{position}, and the rest of this thread pass is not cut</source>
-      <translation>{why}: la herramienta se retiró de la rosca en Z{position}, y el resto de esta pasada de roscado no se cortó</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>a tool cannot be touched off along {axis}</source>
-      <translation>una herramienta no se puede tocar a lo largo de {axis}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>a touch was detected on the return move; check the tool setter</source>
-      <translation>se detectó un toque en el movimiento de regreso; revise el palpador</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>another touch-off direction was selected</source>
-      <translation>se eligió otra dirección de toque</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>button {button} was released</source>
-      <translation>se soltó el botón {button}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>no axis</source>
-      <translation>ningún eje</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>no second touch detected; check whether the tool or the tool setter is loose</source>
-      <translation>no se detectó el segundo toque; vea si está floja la herramienta o el palpador</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>no touch detected within {search}</source>
-      <translation>no se detectó toque en {search}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the axis moved {distance} past the touch point, which is more than the overtravel setting; check the tool setter</source>
-      <translation>el eje pasó {distance} del punto de toque, más que el valor de overtravel; revise el palpador</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the handwheel is selected; deselect it first</source>
-      <translation>el volante está elegido; desactívelo antes</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the machine is in state {state}</source>
-      <translation>la máquina está en el estado {state}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the probe input is already on; check whether the tool setter is touched or its cable is damaged</source>
-      <translation>la entrada probe ya está activa; vea si el palpador está tocado o su cable está dañado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the probe input is not being read; check its terminal</source>
-      <translation>la entrada probe no se lee; revise su borne</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the probe input is still on after the tool has backed off {distance} from the touch point; check the stylus and the cable</source>
-      <translation>la entrada probe sigue activa después de retroceder {distance} desde el punto de toque; revise la punta y el cable</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the search for the touch point would exceed the travel of {axis} by {distance}; jog the axis back first</source>
-      <translation>la búsqueda del punto de toque saldría del recorrido de {axis} en {distance}; retroceda antes el eje a mano</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the spindle is turning: stop it first</source>
-      <translation>el husillo gira: párelo antes</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>this machine has no tool setter; add [setter] and the input probe to the machine file</source>
-      <translation>esta máquina no tiene palpador de herramientas; agregue [setter] y la entrada probe al archivo de máquina</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>touch-off: {why}</source>
-      <translation>toque: {why}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>{axis} is not homed, so its position is not valid</source>
-      <translation>{axis} no está referenciado, así que su posición no es válida</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>{mm} in</source>
-      <translation>{mm} pulg</translation>
-    </message>
-    <message>
-      <location filename="core/executor/watchdog.py" />
-      <source>the software thread of the control has ended</source>
-      <translation>el hilo de software del control terminó</translation>
-    </message>
-    <message>
-      <location filename="core/executor/watchdog.py" />
-      <source>the software thread of the control is stuck</source>
-      <translation>el hilo de software del control está atorado</translation>
     </message>
     <message>
       <location filename="core/geometry/area_clearing.py" />

@@ -19,7 +19,7 @@ from app.scope.drive_test_figures import (
     shown_words,
     words_of,
 )
-from core.executor.drive_test_path import DriveTestPath, Limits, Shape
+from core.executor.hand_motion.drive_test import DriveTestPath, Limits, Shape
 from core.records.record import Record
 from core.records.record_errors import AnalysisError
 from core.records.step_response import bandwidth, narrowest_window, sine_response, speed_of_window

@@ -12,8 +12,8 @@ import logging
 import threading
 from collections.abc import Callable, Iterable
 
-from core.executor.attempt import Attempt, ReportedAttempt
 from core.executor.executor import TICK, Executor
+from core.executor.raised_alarm import Attempt, ReportedAttempt
 from core.ports import Clock
 
 _log = logging.getLogger(__name__)

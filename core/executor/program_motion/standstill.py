@@ -11,9 +11,9 @@ from enum import Enum, auto
 
 from core.alarms import Code
 from core.executor import start_conditions
+from core.executor.job import ReadAhead
 from core.executor.machine_context import MachineContext
 from core.executor.raised_alarm import AlarmError
-from core.executor.read_ahead import ReadAhead
 from core.executor.spindle_control import SpindleDemand
 from core.interpreter.actions import (
     Collet,

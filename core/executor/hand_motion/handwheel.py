@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import math
 
-from core.executor import jogging
 from core.executor.commands import Wheel
-from core.executor.jog_line import LIMIT_MARGIN, Ramp
-from core.executor.jogging import LONGEST_LEASE, Jogger, at_the_end
+from core.executor.hand_motion import jogging
+from core.executor.hand_motion.jog_line import LIMIT_MARGIN, Ramp
+from core.executor.hand_motion.jogging import LONGEST_LEASE, Jogger, at_the_end
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import State
 from core.machine.machine_model import Axis

@@ -10,13 +10,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from core.executor.geared_thread_pass import GearedThreadPass
+from core.executor.job import ReadAhead
 from core.executor.machine_context import MachineContext
-from core.executor.path_section import Overrides, PathSection, Progress
-from core.executor.plan_queue import PlanQueue, Track
-from core.executor.read_ahead import ReadAhead
-from core.executor.thread_pass import ThreadPass
-from core.executor.thread_path import ThreadRetract
+from core.executor.program_motion.path_section import Overrides, PathSection, Progress
+from core.executor.program_motion.plan_queue import PlanQueue, Track
+from core.executor.program_motion.thread_pass import GearedThreadPass, ThreadPass
+from core.executor.program_motion.thread_path import ThreadRetract
 from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_path import Path

@@ -1,4 +1,4 @@
-"""Touch-off: a tool goes against a tool setter or probe, back, and slowly again, while a key is held.
+"""Homing of the axes in their order, and touch-off of a tool against a tool setter or probe.
 
 Whatever ends the holding stops the slide, as in a jog. The place of the second touch is what is told, with
 how much it may be off; nothing is changed by it here.
@@ -7,14 +7,14 @@ how much it may be off; nothing is changed by it here.
 from __future__ import annotations
 
 from core.executor.commands import Touch
-from core.executor.jogging import LONGEST_LEASE, Jogger
+from core.executor.hand_motion.jogging import LONGEST_LEASE, Jogger
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import State, Touched, TouchPhase
 from core.executor.start_conditions import guard_open
 from core.key_declaration import INCH
 from core.machine.setter_table import SetterModel
 from core.message import Message
-from core.ports import PROBE, Latch, Unknown
+from core.ports import PROBE, Latch, Stop, Unknown
 
 _SETTLED = 0.1  # s at rest until the input is believed to be off
 _RENEWED = 0.03  # s between two renewals of the way
@@ -291,3 +291,53 @@ class TouchOff:
         self.touched = Touched(count + 1, command.axis, command.sign, place, error, why)
         if why:
             self._context.log("refused", Message("touch-off: {why}", why=why))
+
+
+_SETTLES = 1.0  # s that the slides may take to stand before the next axis looks for home
+
+
+class Homing:
+    """The homing that is under way, if any."""
+
+    def __init__(self, context: MachineContext) -> None:
+        self._context = context
+        self._left: list[str] = []
+        self._now = ""
+        self._found_at = 0.0  # when the last one was found, s
+
+    def begin(self, name: str) -> str:
+        """Start with one axis, or with all; returns why not, empty when it has begun."""
+        axes = self._context.machine.axes
+        if name and name not in {axis.name for axis in axes}:
+            return Message("this machine has no axis {name} to home", name=name)
+        lost = [
+            axis
+            for axis, homed in zip(axes, self._context.sample.homed, strict=True)
+            if not homed and name in {"", axis.name}
+        ]
+        if not lost:
+            return "all axes homed"
+        self._left = [axis.name for axis in sorted(lost, key=lambda axis: axis.home_order)]
+        self._now = ""
+        return ""
+
+    def stop(self) -> None:
+        """Give the homing up; the drives brake on their own and hold."""
+        self._left, self._now = [], ""
+        self._context.ports.axes.stop(Stop.RAMP_HOLD)
+
+    def step(self) -> bool:
+        """Every tick: home the next axis when one is done; returns whether all are. Raises DriverError."""
+        context = self._context
+        homed = dict(zip(context.ports.axes.axes, context.sample.homed, strict=True))
+        if self._now and not homed[self._now]:
+            self._found_at = context.now
+            return False
+        if self._left:
+            if self._now and context.sample.moving and context.now < self._found_at + _SETTLES:
+                return False
+            self._now = self._left.pop(0)
+            context.ports.axes.home(self._now)
+            return False
+        self._now = ""
+        return not context.sample.moving

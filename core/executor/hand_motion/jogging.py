@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.executor.jog_line import (
+from core.executor.hand_motion.jog_line import (
     LIMIT_MARGIN,
     Direction,
     FloatArray,

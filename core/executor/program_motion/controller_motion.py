@@ -11,11 +11,11 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
+from core.executor.job import ReadAhead, nominal_seconds
 from core.executor.machine_context import MachineContext
-from core.executor.path_section import Overrides, Progress
+from core.executor.program_motion.path_section import Overrides, Progress
+from core.executor.program_motion.standstill import Wait, at_speed
 from core.executor.raised_alarm import AlarmError
-from core.executor.read_ahead import ReadAhead, nominal_seconds
-from core.executor.standstill import Wait, at_speed
 from core.geometry.lines_and_arcs import arc_sweep
 from core.geometry.surface_speed import surface_rpm
 from core.interpreter.elementary_blocks import Block, Kind

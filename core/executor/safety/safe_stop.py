@@ -10,8 +10,8 @@ from collections.abc import Callable
 from functools import partial
 
 from core.alarms import Reaction
-from core.executor.attempt import Attempt
 from core.executor.machine_context import MachineContext
+from core.executor.raised_alarm import Attempt
 from core.message import Message
 from core.ports import DriverError, Stop
 
