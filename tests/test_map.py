@@ -20,7 +20,7 @@ FEW = 4  # files that one looks into
 SENTENCES = (
     # what somebody wants to know; the words that he searches for; the file
     ("Wear counts from the next part", "wear", "core/executor/program_run.py"),
-    ("Block delete is proved with the switch on and off", "block delete", "core/proving/block_delete.py"),
+    ("Block delete is proved with the switch on and off", "block delete", "core/proving/prove_program.py"),
     ("The retract of a tapered thread", "threading", "core/interpreter/omniturn/threading_cycles.py"),
     (
         "A pass follows the spindle's measured angle",
@@ -67,7 +67,7 @@ SENTENCES = (
     ("Tools are touched off", "touch off", "app/jog/jog_touch_off.py"),
     ("Back into the part after a stop", "restart", "core/interpreter/restart/restart_approach.py"),
     ("What a G54 is set to", "zero offsets", "app/offsets/zero_offsets.py"),
-    ("No move beyond the travel is proved", "soft limits", "core/proving/machine_checks.py"),
+    ("No move beyond the travel is proved", "soft limits", "core/proving/checks/machine_checks.py"),
     ("How long a part takes", "cycle time", "core/proving/program_timeline.py"),
     ("PLANE POINTS on a table", "plane", "core/interpreter/klartext/plane_functions.py"),
     ("C with the third axis", "third axis", "core/interpreter/sinumerik/third_axis.py"),

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from core.part.stock import Stock
     from core.part.stock_spec import StockSpec
     from core.part.tool_shape import ToolShape
-    from core.proving.part_setting import PartSetting
+    from core.proving.program_tools import PartSetting
 
 
 _LONGEST = 1016.0  # mm

@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from app.cli.report_file import ReportFile
     from core.interpreter.job_setup import Setup
     from core.language.source import Source
-    from core.proving.part_report import PartReport
-    from core.proving.proof_report import Report
+    from core.proving.proof_report import PartReport, Report
 
 
 def add_parser(subparsers: SubParsers) -> None:

@@ -53,7 +53,7 @@ def read_machine_file(text: str, source: str) -> Machine:
 
 
 def _known_checks(silenced: tuple[str, ...], source: str) -> None:
-    from core.proving.part_checks import CHECKS
+    from core.proving.checks.part_checks import CHECKS
 
     wrong = [name for name in silenced if name not in CHECKS]
     if wrong:

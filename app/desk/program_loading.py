@@ -19,7 +19,7 @@ from core.language.source import Source
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
-    from core.proving.part_report import PartReport
+    from core.proving.proof_report import PartReport
 
 
 class Phase(StrEnum):

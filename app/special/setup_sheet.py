@@ -20,7 +20,7 @@ from core.part.stock import Stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Piece
 from core.proving.part_proof import prove_with_part
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 from core.proving.prove_program import Progress
 
 _MM_PER_INCH = 25.4

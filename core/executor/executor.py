@@ -49,6 +49,16 @@ _SHOWN = 0.045  # s between two snapshots then: five ticks, whose length is neve
 RESTS = (
     0.095  # s between two ticks of a machine at rest: a feeder sends its SYNC, ten a second, with the look
 )
+_log = logging.getLogger(__name__)
+TICK = 0.01  # s from the end of one to the beginning of the next
+_OFF_BY_ESTOP = frozenset({"power-lost", "spindle-off"})  # of what its chain switches off by itself
+_STALL = 0.2  # s between two ticks that tell of a stalled host
+_STALE = 0.5  # s after which nobody expects a press to move the machine any more
+_STARTS = (CycleStart, DriveTest, EnableDrives, Home, Jog, JogStep, Touch, Wheel)
+_WAITED_FOR = (EnableDrives, Home, Reset)  # a driver answers them when its drives have obeyed
+_WORTH_AN_ENTRY = 0.1  # change of the feed override that is worth an entry in the log
+_COMMANDS = 100  # looked at in one tick
+_POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 
 
 class Rest:
@@ -120,18 +130,6 @@ class Rest:
         lamps = context.machine.lamps
         safe = all(name in lamps or model.safe in {None, outputs.get(name)} for name, model in models.items())
         return safe and not context.spindle.command and not context.spindle.measured
-
-
-_log = logging.getLogger(__name__)
-TICK = 0.01  # s from the end of one to the beginning of the next
-_OFF_BY_ESTOP = frozenset({"power-lost", "spindle-off"})  # of what its chain switches off by itself
-_STALL = 0.2  # s between two ticks that tell of a stalled host
-_STALE = 0.5  # s after which nobody expects a press to move the machine any more
-_STARTS = (CycleStart, DriveTest, EnableDrives, Home, Jog, JogStep, Touch, Wheel)
-_WAITED_FOR = (EnableDrives, Home, Reset)  # a driver answers them when its drives have obeyed
-_WORTH_AN_ENTRY = 0.1  # change of the feed override that is worth an entry in the log
-_COMMANDS = 100  # looked at in one tick
-_POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
 
 
 def _discard(_what: InterruptedJob | None) -> None:

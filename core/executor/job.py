@@ -27,6 +27,8 @@ from core.language.source import Source
 from core.machine.machine_model import Machine
 from core.message import Message
 
+WARNING = "WARNING: "
+
 
 class ProgramPass(NamedTuple):
     """One pass through a program: its blocks as they come, and what the interpreter has to say so far.
@@ -190,7 +192,6 @@ class Job:
     part_of: str = ""  # digest of the program's job, when this one begins in the middle of it
 
 
-WARNING = "WARNING: "
 """What an announcement of something that a proof has warned of begins with."""
 
 

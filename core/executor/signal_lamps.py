@@ -17,6 +17,8 @@ from core.message import Message
 from core.ports import DigitalIO, Unknown
 
 _NO_PARTS = frozenset({State.ESTOP, State.FAULT, State.DISABLED})
+_AGAIN = 1.0  # s until a lamp that is not as it was switched is switched again
+_REFUSED = 5.0  # s until one that the driver refused is
 
 
 @dataclass(slots=True)
@@ -46,10 +48,6 @@ def _of_state(state: State) -> str:
     if state in STOPPED:
         return "stop"
     return "runs" if state in ACTIVE else ""
-
-
-_AGAIN = 1.0  # s until a lamp that is not as it was switched is switched again
-_REFUSED = 5.0  # s until one that the driver refused is
 
 
 @dataclass(slots=True)

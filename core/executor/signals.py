@@ -18,6 +18,7 @@ _STAND = 0.3  # s that a risen pot must stand before it is believed
 _NOISY = 3  # jumps within a second that make a pot unbelievable
 _DEBOUNCE = 0.3  # s in which a second start is the same press
 _AWAY = 0.3  # s between two looks: what was pressed or turned in a longer one is old, and starts nothing
+_TELLS = 0.5  # s in which an output that was written may still be told as it was before
 
 
 class StationSignals(NamedTuple):
@@ -127,9 +128,6 @@ class StationWatch:
         if fresh:
             self._last_start = now
         return fresh
-
-
-_TELLS = 0.5  # s in which an output that was written may still be told as it was before
 
 
 class Differing(NamedTuple):

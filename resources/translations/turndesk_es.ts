@@ -28259,56 +28259,6 @@
       <translation>{whole}: {text} no es una longitud; escriba 1.25 (pulgadas) o 30mm</translation>
     </message>
     <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>A drill feeds into an existing hole.</source>
-      <translation>Una broca avanza en un agujero ya existente.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>After this rapid alongside the part, the tool retracts without cutting.</source>
-      <translation>Después de este rápido junto a la pieza, la herramienta se retira sin cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>Feed moves between two rapids cut only air.</source>
-      <translation>Los movimientos de avance entre dos rápidos sólo cortan aire.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>This move and the next move feed away from the part and cut nothing.</source>
-      <translation>Este movimiento y el movimiento siguiente avanzan alejándose de la pieza y no cortan nada.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>This move feeds along Z out of the part and past its face, inside the stock diameter.</source>
-      <translation>Este movimiento avanza a lo largo de Z, sale de la pieza y pasa de su cara, dentro del diámetro del material.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>This move feeds backward out of the part, through material.</source>
-      <translation>Este movimiento avanza hacia atrás y sale de la pieza a través del material.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>This move feeds through air for {seconds} s.</source>
-      <translation>Este movimiento avanza en el aire durante {seconds} s.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>This move turns a diameter larger than the stock.</source>
-      <translation>Este movimiento tornea un diámetro mayor que el del material en bruto.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>Threading moves between two rapids cut only air.</source>
-      <translation>Los movimientos de roscado entre dos rápidos sólo cortan aire.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>Tools have fed through air for {long_air} s up to this move.</source>
-      <translation>Las herramientas han avanzado en el aire durante {long_air} s hasta este movimiento.</translation>
-    </message>
-    <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>, {width} wide</source>
       <translation>, {width} de ancho</translation>
@@ -28399,1179 +28349,1294 @@
       <translation>{words}, ancho supuesto {width}</translation>
     </message>
     <message>
-      <location filename="core/proving/block_delete.py" />
-      <source>With block delete {switch}: {item}</source>
-      <translation>Con salto de bloque {switch}: {item}</translation>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>A drill feeds into an existing hole.</source>
+      <translation>Una broca avanza en un agujero ya existente.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>After this rapid alongside the part, the tool retracts without cutting.</source>
+      <translation>Después de este rápido junto a la pieza, la herramienta se retira sin cortar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>Feed moves between two rapids cut only air.</source>
+      <translation>Los movimientos de avance entre dos rápidos sólo cortan aire.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>This move and the next move feed away from the part and cut nothing.</source>
+      <translation>Este movimiento y el movimiento siguiente avanzan alejándose de la pieza y no cortan nada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>This move feeds along Z out of the part and past its face, inside the stock diameter.</source>
+      <translation>Este movimiento avanza a lo largo de Z, sale de la pieza y pasa de su cara, dentro del diámetro del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>This move feeds backward out of the part, through material.</source>
+      <translation>Este movimiento avanza hacia atrás y sale de la pieza a través del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>This move feeds through air for {seconds} s.</source>
+      <translation>Este movimiento avanza en el aire durante {seconds} s.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>This move turns a diameter larger than the stock.</source>
+      <translation>Este movimiento tornea un diámetro mayor que el del material en bruto.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>Threading moves between two rapids cut only air.</source>
+      <translation>Los movimientos de roscado entre dos rápidos sólo cortan aire.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>Tools have fed through air for {long_air} s up to this move.</source>
+      <translation>Las herramientas han avanzado en el aire durante {long_air} s hasta este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{name} feeds at {value}, which is too high for a cutting edge {width} wide.</source>
       <translation>{name} avanza a {value}, demasiado para un filo de {width} de ancho.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{name} feeds at {value}, which is too high for a diameter of {diameter}.</source>
       <translation>{name} avanza a {value}, demasiado para un diámetro de {diameter}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{name} feeds at {value}, which is too high for a nose radius of {nose_radius}.</source>
       <translation>{name} avanza a {value}, demasiado para un radio de punta de {nose_radius}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{tool} cuts {depth} deep in one pass, but its maximum depth of cut is {largest}.</source>
       <translation>{tool} corta {depth} de profundidad en una pasada, pero su profundidad de corte máxima es {largest}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{tool} cuts {depth} deep in one pass; the usual maximum is {usual}.</source>
       <translation>{tool} corta {depth} de profundidad en una pasada; el máximo usual es {usual}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{tool} cuts {depth} deep, but its cutting edge is only {height} long.</source>
       <translation>{tool} corta {depth} de profundidad, pero su filo mide sólo {height}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{tool} turns {depth} deep along Z; this type of blade allows at most {limit}.</source>
       <translation>{tool} cilindra {depth} de profundidad a lo largo de Z; este tipo de cuchilla admite como máximo {limit}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Close the collet with M12 before this move.</source>
-      <translation>Cierre la pinza con M12 antes de este movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Correct S, or write G97 if S is in rpm.</source>
-      <translation>Corrija S, o escriba G97 si S está en rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Correct the number, or define the input under [io.in] in the machine file.</source>
-      <translation>Corrija el número, o defina la entrada en [io.in] del archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm in this move.</source>
-      <translation>G96 no tiene límite de velocidad, así que el husillo alcanza en este movimiento su máximo de {maximum} rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>S sets a speed, but nothing starts the spindle before this cut.</source>
-      <translation>S fija una velocidad, pero nada arranca el husillo antes de este corte.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Start the spindle with M03 or M04 before this cut.</source>
-      <translation>Arranque el husillo con M03 o M04 antes de este corte.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Start the spindle with M3 or M4 before this cut.</source>
-      <translation>Arranque el husillo con M3 o M4 antes de este corte.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Start with a move to X and Z under G90.</source>
-      <translation>Empiece con un movimiento a X y Z en G90.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>The first move is incremental: it starts from the current axis position, but was proved from home.</source>
-      <translation>El primer movimiento es incremental: empieza en la posición actual de los ejes, pero se comprobó desde la referencia.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>The program ends with the collet open, and the next cycle cuts on line {line} before any M12.</source>
-      <translation>El programa termina con la pinza abierta, y el ciclo siguiente corta en la línea {line} antes de un M12.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>The surface speed requires {slowest} rpm in this move, but the spindle maximum is {maximum} rpm.</source>
-      <translation>La velocidad de corte requiere {slowest} rpm en este movimiento, pero el máximo del husillo es {maximum} rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This cutting move follows {after}, so its coordinates are relative to machine home.</source>
-      <translation>Este movimiento de corte sigue a {after}, así que sus coordenadas son relativas a la referencia de la máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This machine has no input {terminal}, so the wait would never end.</source>
-      <translation>Esta máquina no tiene la entrada {terminal}, así que la espera no acabaría nunca.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This machine has no input {terminal}.</source>
-      <translation>Esta máquina no tiene la entrada {terminal}.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts with no tool active, so its coordinates are relative to machine home.</source>
-      <translation>Este movimiento corta sin herramienta activa, así que sus coordenadas son relativas a la referencia de la máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts with no tool active, so no tool length or radius applies.</source>
-      <translation>Este movimiento corta sin herramienta activa, así que no se aplica ninguna longitud ni ningún radio de herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts with the collet open, so the part is not clamped.</source>
-      <translation>Este movimiento corta con la pinza abierta, así que la pieza no está sujeta.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts with the spindle locked as the C axis and no live tool running.</source>
-      <translation>Este movimiento corta con el husillo bloqueado como eje C y sin herramienta motorizada en marcha.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts with the spindle stopped and no live tool running.</source>
-      <translation>Este movimiento corta con el husillo parado y sin herramienta motorizada en marcha.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move feeds with the collet open, but not in a straight line away from the spindle, as a bar pull does.</source>
-      <translation>Este movimiento avanza con la pinza abierta, pero no se aleja del husillo en línea recta, como al jalar la barra.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move mills with no live tool running.</source>
-      <translation>Este movimiento fresa sin herramienta motorizada en marcha.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Turn on the live tool with {code} before this move.</source>
-      <translation>Encienda la herramienta motorizada con {code} antes de este movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Write G77Sn, where n is the maximum rpm for this chuck and bar.</source>
-      <translation>Escriba G77Sn, donde n son las rpm máximas para este plato y esta barra.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Write LIMS= with the maximum speed for this chuck and bar.</source>
-      <translation>Escriba LIMS= con la velocidad máxima para este plato y esta barra.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Write M12 at the end or the start of the program.</source>
-      <translation>Escriba M12 al final o al inicio del programa.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Write T and the tool number before this move.</source>
-      <translation>Escriba T y el número de la herramienta antes de este movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Write TOOL CALL before this move.</source>
-      <translation>Escriba TOOL CALL antes de este movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>the tool cancel (T0) on line {tool_off}</source>
-      <translation>la anulación de herramienta (T0) de la línea {tool_off}</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts a concave arc of radius {radius} into the edge of the face.</source>
       <translation>{tool} corta un arco cóncavo de radio {radius} en el canto de la cara.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts an arc at Z {front}, but the part ends at Z {parted_at}.</source>
       <translation>{tool} corta un arco en Z {front}, pero la pieza termina en Z {parted_at}.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts at Z {z}, but the part ends at Z {parted_at}.</source>
       <translation>{tool} corta en Z {z}, pero la pieza termina en Z {parted_at}.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts into the part at {steep}°, but the trailing edge of its insert clears only {clears}°.</source>
       <translation>{tool} entra cortando en la pieza a {steep}°, pero el filo posterior de su plaquita libra sólo {clears}°.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts on the spindle centerline under G96, so the spindle runs at its maximum speed.</source>
       <translation>{tool} corta en la línea de centro del husillo bajo G96, así que el husillo gira a su velocidad máxima.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts with the spindle turning in the opposite direction to its earlier cuts.</source>
       <translation>{tool} corta con el husillo girando en sentido contrario al de sus cortes anteriores.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts {depth} deep with the trailing edge of its insert.</source>
       <translation>{tool} corta a {depth} de profundidad con el filo posterior de su plaquita.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts {depth} past the spindle centerline, on the side opposite to where the tool is mounted.</source>
       <translation>{tool} corta {depth} más allá de la línea de centro del husillo, en el lado opuesto a donde está montada la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} feeds through the part along an arc of {around}.</source>
       <translation>{tool} avanza a través de la pieza por un arco de {around}.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} feeds to Z {z}, but the stock ends at Z {back}.</source>
       <translation>{tool} avanza hasta Z {z}, pero el material en bruto termina en Z {back}.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} feeds {solid} along Z into solid material.</source>
       <translation>{tool} avanza {solid} a lo largo de Z en material macizo.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} goes {depth} deep, but its cutting length is only {length}.</source>
       <translation>{tool} entra {depth} de profundidad, pero su longitud de corte es sólo {length}.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} is {off} off the spindle centerline when it cuts.</source>
       <translation>{tool} está a {off} de la línea de centro del husillo cuando corta.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool}, a {hand}-hand tool, cuts while the spindle turns forward.</source>
       <translation>{tool}, una herramienta de mano {hand}, corta mientras el husillo gira hacia delante.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool}, a {hand}-hand tool, cuts while the spindle turns in reverse.</source>
       <translation>{tool}, una herramienta de mano {hand}, corta mientras el husillo gira en sentido inverso.</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>C moves while the spindle turns, but on this machine C is the spindle itself</source>
       <translation>C se mueve mientras gira el husillo, pero en esta máquina C es el propio husillo</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Close the collet with M12 before this move.</source>
+      <translation>Cierre la pinza con M12 antes de este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Correct S, or write G97 if S is in rpm.</source>
+      <translation>Corrija S, o escriba G97 si S está en rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Correct the number, or define the input under [io.in] in the machine file.</source>
+      <translation>Corrija el número, o defina la entrada en [io.in] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm in this move.</source>
+      <translation>G96 no tiene límite de velocidad, así que el husillo alcanza en este movimiento su máximo de {maximum} rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>S sets a speed, but nothing starts the spindle before this cut.</source>
+      <translation>S fija una velocidad, pero nada arranca el husillo antes de este corte.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Start the spindle with M03 or M04 before this cut.</source>
+      <translation>Arranque el husillo con M03 o M04 antes de este corte.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Start the spindle with M3 or M4 before this cut.</source>
+      <translation>Arranque el husillo con M3 o M4 antes de este corte.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Start with a move to X and Z under G90.</source>
+      <translation>Empiece con un movimiento a X y Z en G90.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>The first move is incremental: it starts from the current axis position, but was proved from home.</source>
+      <translation>El primer movimiento es incremental: empieza en la posición actual de los ejes, pero se comprobó desde la referencia.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>The program ends with the collet open, and the next cycle cuts on line {line} before any M12.</source>
+      <translation>El programa termina con la pinza abierta, y el ciclo siguiente corta en la línea {line} antes de un M12.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>The surface speed requires {slowest} rpm in this move, but the spindle maximum is {maximum} rpm.</source>
+      <translation>La velocidad de corte requiere {slowest} rpm en este movimiento, pero el máximo del husillo es {maximum} rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This cutting move follows {after}, so its coordinates are relative to machine home.</source>
+      <translation>Este movimiento de corte sigue a {after}, así que sus coordenadas son relativas a la referencia de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This machine has no input {terminal}, so the wait would never end.</source>
+      <translation>Esta máquina no tiene la entrada {terminal}, así que la espera no acabaría nunca.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This machine has no input {terminal}.</source>
+      <translation>Esta máquina no tiene la entrada {terminal}.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move cuts with no tool active, so its coordinates are relative to machine home.</source>
+      <translation>Este movimiento corta sin herramienta activa, así que sus coordenadas son relativas a la referencia de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move cuts with no tool active, so no tool length or radius applies.</source>
+      <translation>Este movimiento corta sin herramienta activa, así que no se aplica ninguna longitud ni ningún radio de herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move cuts with the collet open, so the part is not clamped.</source>
+      <translation>Este movimiento corta con la pinza abierta, así que la pieza no está sujeta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move cuts with the spindle locked as the C axis and no live tool running.</source>
+      <translation>Este movimiento corta con el husillo bloqueado como eje C y sin herramienta motorizada en marcha.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move cuts with the spindle stopped and no live tool running.</source>
+      <translation>Este movimiento corta con el husillo parado y sin herramienta motorizada en marcha.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move feeds with the collet open, but not in a straight line away from the spindle, as a bar pull does.</source>
+      <translation>Este movimiento avanza con la pinza abierta, pero no se aleja del husillo en línea recta, como al jalar la barra.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move mills with no live tool running.</source>
+      <translation>Este movimiento fresa sin herramienta motorizada en marcha.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Turn on the live tool with {code} before this move.</source>
+      <translation>Encienda la herramienta motorizada con {code} antes de este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Write G77Sn, where n is the maximum rpm for this chuck and bar.</source>
+      <translation>Escriba G77Sn, donde n son las rpm máximas para este plato y esta barra.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Write LIMS= with the maximum speed for this chuck and bar.</source>
+      <translation>Escriba LIMS= con la velocidad máxima para este plato y esta barra.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Write M12 at the end or the start of the program.</source>
+      <translation>Escriba M12 al final o al inicio del programa.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Write T and the tool number before this move.</source>
+      <translation>Escriba T y el número de la herramienta antes de este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Write TOOL CALL before this move.</source>
+      <translation>Escriba TOOL CALL antes de este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>check the {axis} word and all active shifts</source>
       <translation>compruebe la palabra {axis} y todos los desplazamientos activos</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>check the {axis} word and the offset of {tool}</source>
       <translation>compruebe la palabra {axis} y el corrector de {tool}</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>stop the spindle with M5 first, or use a lathe with a separate C drive (sinumerik-modulo)</source>
       <translation>pare primero el husillo con M5, o use un torno con accionamiento C propio (sinumerik-modulo)</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>the tool cancel (T0) on line {tool_off}</source>
+      <translation>la anulación de herramienta (T0) de la línea {tool_off}</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>{axis} would move to {position} {unit} from home (X as a radius), {excess} {unit} beyond the travel limit of {limit}</source>
       <translation>{axis} se movería a {position} {unit} de la referencia (X como radio), {excess} {unit} más allá del límite de carrera de {limit}</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>{axis} would move to {position} {unit} from home, {excess} {unit} beyond the travel limit of {limit}</source>
       <translation>{axis} se movería a {position} {unit} de la referencia, {excess} {unit} más allá del límite de carrera de {limit}</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>{place}; also check G54 to G59 and TRANS</source>
       <translation>{place}; compruebe también G54 a G59 y TRANS</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>{place}; also check every G10 and G92</source>
       <translation>{place}; compruebe también cada G10 y G92</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A boring tool enters solid material.</source>
       <translation>Una herramienta de mandrinar entra en material macizo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cut ends more than .1 in (for a drill, .1 in plus its diameter) beyond the end of the specified stock.</source>
       <translation>Un corte termina más de .1 in (con una broca, .1 in más su diámetro) más allá del extremo del material en bruto especificado.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cut under G96 without G77 requires more than the maximum spindle speed, for example at the spindle centerline.</source>
       <translation>Un corte con G96 y sin G77 requiere más que la velocidad máxima del husillo, por ejemplo en el centro del husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move feeds away from the part, so the cut that was probably intended is not made.</source>
       <translation>Un movimiento de corte avanza alejándose de la pieza, así que no se hace el corte que probablemente se quería.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move for milling the face or milling around the part is programmed with no live tool running. If the spindle is locked as the C axis, a cutting move with no live tool running is only a warning.</source>
       <translation>Se programa un movimiento de corte de fresado frontal, o de fresado alrededor de la pieza, sin ninguna herramienta motorizada en marcha. Un movimiento de corte con el husillo bloqueado como eje C y sin herramienta motorizada en marcha es solo un aviso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move is programmed after M13. This is only a warning if the move is a feed move in any direction other than straight out from the spindle (as in a bar pull), or if the next cycle would start with the collet open.</source>
       <translation>Se programa un movimiento de corte tras M13. Es solo un aviso si el movimiento es un avance en una dirección que no sale en línea recta del husillo (como al jalar la barra), o si el ciclo siguiente empezaría con la pinza abierta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move is programmed before the first T or after T0. This is only a warning if the program never calls a tool.</source>
       <translation>Se programa un movimiento de corte antes de la primera T o tras T0. Es solo un aviso si el programa no llama ninguna herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move is programmed with no tool active.</source>
       <translation>Se programa un movimiento de corte sin herramienta activa.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move is programmed with the collet open.</source>
       <translation>Se programa un movimiento de corte con la pinza abierta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move is programmed with the spindle stopped.</source>
       <translation>Se programa un movimiento de corte con el husillo parado.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A drill cuts on the spindle centerline with constant surface speed active.</source>
       <translation>Una broca corta en la línea de centro del husillo con velocidad de corte constante activa.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A drill goes deeper than its flute length.</source>
       <translation>Una broca entra más que su largo de hélice.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A drill, center drill, reamer or tap cuts at a distance of more than .004 in from the spindle centerline while the spindle turns.</source>
       <translation>Una broca, una broca de centrar, un escariador o un macho corta a una distancia de más de .004 in de la línea de centro del husillo mientras el husillo gira.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A drill, center drill, reamer or tap cuts under G96 without an active speed limit, so the spindle runs at its maximum speed.</source>
       <translation>Una broca, una broca de centrar, un escariador o un macho corta bajo G96 sin límite de velocidad activo, así que el husillo gira a su velocidad máxima.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A drill, reamer or tap is not on the spindle centerline when it cuts.</source>
       <translation>Una broca, un escariador o un macho no está en la línea de centro del husillo cuando corta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A feed move along Z ends on the bar side of the part-off position nearest the chuck, past this position by more than .5 in and by more than the part length.</source>
       <translation>Un avance a lo largo de Z termina del lado de la barra de la posición de tronzado más cercana al plato, más allá de esta posición por más de .5 in y por más del largo de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A feed move of .1 in or more along Z, next to the stock, stays at least .08 in outside the stock.</source>
       <translation>Un avance de .1 in o más a lo largo de Z, junto al material en bruto, queda al menos .08 in por fuera del material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A feed move runs the holder, shank or boring bar into material.</source>
       <translation>Un avance lleva el portaherramientas, el mango o la barra de mandrinar contra el material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A feed move stays more than .08 in away from all material for 5 s and .2 in of travel, or several consecutive feed moves do so for 20 s.</source>
       <translation>Un avance queda a más de .08 in de todo material durante 5 s y .2 in de recorrido, o varios avances consecutivos lo hacen durante 20 s.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A holder, shank or boring bar collides with material during a rapid.</source>
       <translation>Un portaherramientas, un mango o una barra de mandrinar choca con el material en rápido.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A milling move is programmed while the live tool is off.</source>
       <translation>Se programa un movimiento de fresado con la herramienta motorizada apagada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A move in feed per minute is programmed after M05 with no live tool running. With feed per revolution, G33 or G96, this is an error.</source>
       <translation>Se programa un movimiento con avance por minuto tras M05 sin herramienta motorizada en marcha. Con avance por vuelta, G33 o G96, esto es un error.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A parting or grooving blade turns along Z.</source>
       <translation>Una cuchilla de tronzar o ranurar cilindra a lo largo de Z.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A parting tool stops just short of the spindle centerline.</source>
       <translation>Una herramienta de tronzar se detiene justo antes de la línea de centro del husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A rapid directly after a cut removes material at a smaller radius than the cut.</source>
       <translation>Un rápido justo después de un corte arranca material a un radio menor que el corte.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A rapid, or a feed of 100 in/min or more, removes material.</source>
       <translation>Un rápido, o un avance de 100 in/min o más, arranca material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tap is pulled out of its thread instead of being backed out.</source>
       <translation>Un macho se saca de su rosca tirando en lugar de desenroscarlo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tap removes more material than its thread, because the tap hole is missing or the tap goes past the bottom of the hole.</source>
       <translation>Un macho arranca más material que el de su rosca, porque falta el agujero o porque el macho pasa del fondo del agujero.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A thread is too deep for its lead.</source>
       <translation>Una rosca es demasiado profunda para su paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A thread pass does not touch the part.</source>
       <translation>Una pasada de rosca no toca la pieza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A thread starts before the Z axis has reached the speed required for the lead, or ends while the axis decelerates.</source>
       <translation>Una rosca empieza antes de que el eje Z alcance la velocidad que requiere el paso, o termina mientras el eje frena.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool feeds into the part while neither the tool nor the spindle turns.</source>
       <translation>Una herramienta avanza en la pieza mientras no giran ni la herramienta ni el husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool feeds past the far end of the stock.</source>
       <translation>Una herramienta avanza más allá del extremo del material en bruto.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool feeds through air without cutting.</source>
       <translation>Una herramienta avanza en el aire sin cortar.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool or its holder collides with the chuck, jaws or collet.</source>
       <translation>Una herramienta o su portaherramientas choca con el plato, las garras o la pinza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool or its holder collides with the tailstock center or quill.</source>
       <translation>Una herramienta o su portaherramientas choca con el punto o la caña del contrapunto.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool or its holder nearly touches the chuck, jaws or collet.</source>
       <translation>Una herramienta o su portaherramientas casi toca el plato, las garras o la pinza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool outline overlaps the contour that the machine file defines under [clamping], or comes within .001 in of that contour.</source>
       <translation>El perfil de una herramienta se solapa con el contorno que el archivo de máquina define en [clamping], o se acerca a menos de .001 in de ese contorno.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool with a cutting insert is fed through the part along a large arc.</source>
       <translation>Una herramienta con plaquita atraviesa la pieza en avance a lo largo de un arco grande.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A turning tool with a defined shape returns in rapid along Z, by .1 in or more, at the radius that it has just turned.</source>
       <translation>Una herramienta de tornear con forma definida vuelve en rápido a lo largo de Z, .1 in o más, en el radio que acaba de tornear.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An arc cuts a concave shape into the front edge of the part, where the edge is usually rounded.</source>
       <translation>Un arco corta una forma cóncava en el canto delantero de la pieza, donde el canto suele redondearse.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An arc of 90° with a radius of up to .118 in starts in the Z direction at the part face and ends in the X direction, away from the spindle centerline.</source>
       <translation>Un arco de 90° de radio hasta .118 in empieza en dirección Z en la cara de la pieza y termina en dirección X, alejándose del centro del husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An arc of more than 200° cuts material. Not checked for a round insert.</source>
       <translation>Un arco de más de 200° corta material. No se comprueba con una plaquita redonda.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An arc of the contour is missing from the finished part.</source>
       <translation>Falta un arco del contorno en la pieza terminada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An external tool cuts past the spindle centerline.</source>
       <translation>Una herramienta exterior corta más allá de la línea de centro del husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An insert cuts an arc more than .008 in past the part-off position nearest the chuck, on the bar side.</source>
       <translation>Una plaquita corta un arco a más de .008 in de la posición de tronzado más cercana al plato, del lado de la barra.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An insert cuts with its trailing edge.</source>
       <translation>Una plaquita corta con su filo posterior.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An internal tool feeds .04 in or more into material that has no bore yet.</source>
       <translation>Una herramienta de interiores avanza .04 in o más en material que aún no tiene agujero.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Another tool on the gang plate collides with the stock.</source>
       <translation>Otra herramienta de la placa choca con el material en bruto.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Between the face and the chuck, the tool cuts more than .06 in past the spindle centerline (.004 in when cutting along Z), on the side opposite to where the tool is mounted.</source>
       <translation>Entre la cara y el plato, la herramienta corta más de .06 in más allá de la línea de centro del husillo (.004 in al cortar a lo largo de Z), en el lado opuesto a donde está montada la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check K and the insert. For a partial-profile insert, leave the pitch out of the tool shape.</source>
       <translation>Compruebe K y la plaquita. Para una plaquita de perfil parcial, no ponga el paso en la forma de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check K, the X of the last pass and the X where the thread starts.</source>
       <translation>Compruebe K, la X de la última pasada y la X donde empieza la rosca.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check X and Z of the thread, and check whether X is a diameter.</source>
       <translation>Compruebe X y Z de la rosca, y compruebe si X es un diámetro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check Z, the length of the stock and how far it sticks out of the chuck.</source>
       <translation>Compruebe Z, la longitud del material y cuánto sobresale del plato.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the Z position of the part-off; everything past this position would be missing from the part.</source>
       <translation>Compruebe la posición Z del tronzado; a la pieza le faltaría todo lo que queda más allá de esa posición.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the call, or prove the program again with the inputs that lead to the lines not reached.</source>
       <translation>Revise la llamada, o compruebe de nuevo el programa con las entradas que llevan a las líneas no alcanzadas.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the direction of the arc and the signs of its center coordinates.</source>
       <translation>Compruebe el sentido del arco y los signos de las coordenadas de su centro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the direction of the arc; the opposite direction rounds the edge.</source>
       <translation>Compruebe el sentido del arco; el contrario redondea el canto.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the sign of X, and look for a missing decimal point (X-03 for X-.03).</source>
       <translation>Compruebe el signo de X, y busque un punto decimal que falta (X-03 en vez de X-.03).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the stock size, and check whether X is a radius or a diameter.</source>
       <translation>Compruebe la medida del material en bruto, y compruebe si X es un radio o un diámetro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the tool number; widen a groove with adjacent plunges.</source>
       <translation>Compruebe el número de herramienta; ensanche una ranura con penetraciones contiguas.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Close the collet with M12.</source>
       <translation>Cierre la pinza con M12.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Constant surface speed has no speed limit.</source>
       <translation>La velocidad de corte constante no tiene límite de velocidad.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Correct the number, or define the input under [io.in].</source>
       <translation>Corrija el número, o defina la entrada en [io.in].</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Drill the bore first, or check the bore of the stock.</source>
       <translation>Taladre antes el agujero o compruebe el agujero del material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Drill the tap hole, deep enough for the chamfer of the tap.</source>
       <translation>Taladre el agujero para el macho, con profundidad suficiente para el chaflán del macho.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>During a feed move, the non-cutting part of a tool outline overlaps material by more than .001 in.</source>
       <translation>Durante un avance, la parte no cortante del perfil de una herramienta solapa el material en más de .001 in.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Feed to X0 or slightly past it; look for a missing minus sign.</source>
       <translation>Avance hasta X0 o un poco más; busque un signo menos que falta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>G91 is programmed before any absolute move, so the first move starts from the current axis position.</source>
       <translation>G91 está programado antes de cualquier movimiento absoluto, así que el primer movimiento empieza en la posición actual de los ejes.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>If the stock is specified and the spindle is running, the mean depth of cut is more than 2/3 of the cutting edge length of a specified C or S insert, half of the edge length of a W, T or D insert, a quarter of the edge length of a V insert, .4 of a round insert, or half the diameter of a boring bar.</source>
       <translation>Con un material en bruto especificado y el husillo girando, la profundidad media de corte es más de 2/3 del filo de una plaquita C o S especificada, la mitad del filo de una plaquita W, T o D, un cuarto del filo de una plaquita V, .4 de una plaquita redonda, o la mitad del diámetro de una barra de mandrinar.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>If the stock is specified, none of the passes with the same lead and the same Z range cuts any material.</source>
       <translation>Con un material en bruto especificado, ninguna de las pasadas del mismo paso y del mismo tramo de Z corta material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>If the stock is specified, the mean depth of cut is more than .5 of the cutting edge length of a C or S insert, .4 for a W insert, .3 for a T or D insert, or .2 for a V insert (Widia's limits for medium geometries, without the nose radius; CNMG432 if no insert is specified). TurnDesk does not know the stock material; a soft material may allow more.</source>
       <translation>Con un material en bruto especificado, la profundidad media de corte es más de .5 del filo de una plaquita C o S, .4 en una plaquita W, .3 en una T o D, o .2 en una V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 si no se especifica la plaquita). TurnDesk no conoce el material de la pieza; un material blando puede admitir más.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>If the stock is specified, three or more passes stay outside the material.</source>
       <translation>Con material en bruto especificado, tres o más pasadas quedan fuera del material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Increase the part stick-out, or stop the move earlier.</source>
       <translation>Aumente el voladizo de la pieza, o pare antes el movimiento.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Look for a missing decimal point (Z-3 for Z-.3).</source>
       <translation>Busque un punto decimal que falta (Z-3 en vez de Z-.3).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Look for a missing minus sign (Z.5 for Z-.5) or a missing decimal point (X4 for X.4).</source>
       <translation>Busque un signo menos que falta (Z.5 en vez de Z-.5) o un punto decimal que falta (X4 en vez de X.4).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Look for a missing minus sign or decimal point; use a rapid to move through air.</source>
       <translation>Busque un signo menos o un punto decimal que falta; use un rápido para moverse por el aire.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Lower F, or look for a missing decimal point (F.03 for F.003).</source>
       <translation>Baje F, o busque un punto decimal que falta (F.03 en vez de F.003).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Lower F; look for a missing decimal point, or for millimeters in an inch program.</source>
       <translation>Baje F; busque un punto decimal que falta, o milímetros en un programa en pulgadas.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Lower S, limit the speed under G96, reduce the overhang of the part, or support it.</source>
       <translation>Baje S, limite la velocidad bajo G96, reduzca el voladizo de la pieza o apóyela.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Lower S, or limit the speed under G96.</source>
       <translation>Baje S, o limite la velocidad bajo G96.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>M04 is used with a right-hand drill, reamer or tap, or M03 with a left-hand drill, reamer or tap; M04 is used with a turning or boring tool mounted upright in front of the spindle centerline; or the same cutting edge is used in both spindle directions.</source>
       <translation>Se usa M04 con una broca, un escariador o un macho a derechas, o M03 con uno a izquierdas; se usa M04 con una herramienta de tornear o mandrinar montada derecha delante del centro del husillo; o el mismo filo se usa en ambos sentidos de giro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>M91 to M97 use an input that the machine file does not define.</source>
       <translation>M91 a M97 usan una entrada que el archivo de máquina no define.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Move X away from the part before you move Z.</source>
       <translation>Aparte X de la pieza antes de mover Z.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Move to X0 before drilling, and check the X offset of the tool.</source>
       <translation>Vaya a X0 antes de taladrar y compruebe el corrector X de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>One of these cases applies: a feed move goes away from the part or out past the part face; none of the feed moves between two rapids, or of a live tool, comes near material; the tool moves in and out alongside the part in rapid without a cut; a tool that reaches the part makes no feed moves; a drill feeds into an existing hole.</source>
       <translation>Un avance se aleja de la pieza o sale más allá de su cara; o ningún avance entre dos rápidos, o ningún avance de una herramienta motorizada, se acerca al material; o la herramienta entra y sale en rápido junto a la pieza sin ningún corte; o una herramienta que llega a la pieza no hace ningún avance; o una broca avanza en un agujero ya existente.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>One pass is deeper than the insert or the boring bar can cut.</source>
       <translation>Una pasada es más profunda de lo que puede cortar la plaquita o la barra de mandrinar.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>One pass is deeper than usual for the insert.</source>
       <translation>Una pasada es más profunda de lo habitual para la plaquita.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Program the pitch as F. The pitch is 1 divided by the number of threads per inch.</source>
       <translation>Escriba como F el paso, que es 1 dividido por los hilos por pulgada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Program the speed of a drill in rpm.</source>
       <translation>Programe la velocidad de una broca en rpm.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Remove the offset of the tool that is not mounted.</source>
       <translation>Borre el corrector de la herramienta que no está montada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Retract along X before you move Z; in a bore, retract along Z before you move X.</source>
       <translation>Retírese por X antes de mover Z; en un agujero, retírese por Z antes de mover X.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Reverse the spindle at the bottom of the hole, and feed out at the pitch.</source>
       <translation>Invierta el husillo en el fondo del agujero, y salga avanzando según el paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Reverse the spindle, or correct the hand in the tool shape.</source>
       <translation>Invierta el giro del husillo, o corrija la mano en la forma de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>S is an rpm value where a surface speed is expected.</source>
       <translation>S es un valor en rpm donde se espera una velocidad de corte.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>S under G96 is over 1000 m/min (3280 ft/min) and requires more than twice the maximum spindle speed.</source>
       <translation>S con G96 supera 1000 m/min (3280 ft/min) y requiere más del doble de la velocidad máxima del husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Some lines of the program are not reached during proving.</source>
       <translation>Al comprobar el programa no se llega a algunas líneas.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Start at the diameter of the first pass; check X at the start of the thread.</source>
       <translation>Empiece en el diámetro de la primera pasada; compruebe la X al inicio de la rosca.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Start farther from the material, lower S, end in a groove, or pull out while the tool moves along Z.</source>
       <translation>Empiece más lejos del material, baje S, termine en una ranura o salga mientras la herramienta avanza en Z.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Start the spindle or the live tool before this move.</source>
       <translation>Arranque el husillo o la herramienta motorizada antes de este movimiento.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Start the spindle with M03 or M04.</source>
       <translation>Arranque el husillo con M03 o M04.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Stop short of the material and feed in; look for a rapid that is still active, and for a wrong sign or decimal point.</source>
       <translation>Pare antes del material y entre en avance; busque un rápido que sigue activo, y un signo o un punto decimal equivocado.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Support the part, or part it off in two steps.</source>
       <translation>Apoye la pieza, o trónzela en dos pasos.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The Z clearance between the outline of the tool or holder and the contour that the machine file defines under [clamping] is less than .01 in.</source>
       <translation>La holgura en Z entre el perfil de la herramienta o del portaherramientas y el contorno que el archivo de máquina define en [clamping] es menor de .01 in.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The bar is cut far past the part-off.</source>
       <translation>La barra se corta mucho más allá del tronzado.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The blade turns along Z by more than its width. The depth of cut is more than .01 in for a parting blade, or more than .8 of the blade width for a grooving blade (Ingersoll's limit).</source>
       <translation>La cuchilla cilindra a lo largo de Z más que su ancho. La profundidad de corte es de más de .01 in en una cuchilla de tronzar, o de más de .8 del ancho en una de ranurar (límite de Ingersoll).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The commanded speed is higher than max_rpm under [clamping] in the machine file.</source>
       <translation>La velocidad mandada es mayor que max_rpm en [clamping] del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The cutting edge enters material by more than .001 in, both on the radius and in Z.</source>
       <translation>El filo entra en el material más de .001 in, tanto en el radio como en Z.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The distance from the start of the pass to the material is less than the acceleration distance v²/2a of the Z axis, or the pass stops in material and v²/2a is more than one lead.</source>
       <translation>La distancia desde el inicio de la pasada hasta el material es menor que la distancia de aceleración v²/2a del eje Z, o la pasada se detiene en el material y v²/2a es más que un paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed of a tap does not match its pitch.</source>
       <translation>El avance de un macho no corresponde a su paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed per revolution differs from the pitch in the tool shape or comment by more than .08 of the pitch.</source>
       <translation>El avance por vuelta difiere del paso de la forma de la herramienta o del comentario en más de .08 del paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed per revolution is far too high for the cutting edge.</source>
       <translation>El avance por vuelta es muy superior a lo que admite el filo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed per revolution is more than .8 of the nose radius, .12 of the width of a grooving tool, or .04 of the diameter of a drill (.1 of a reamer).</source>
       <translation>El avance por vuelta es más de .8 del radio de punta, .12 del ancho de una herramienta de ranurar, o .04 del diámetro de una broca (.1 de un escariador).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed per revolution is more than twice the nose radius of an insert and more than .006 in, or it is more than five times the chip-load limit of a drill, reamer or blade.</source>
       <translation>El avance por vuelta es más del doble del radio de punta de una plaquita y más de .006 in, o es más de cinco veces el límite de carga de viruta de una broca, un escariador o una cuchilla.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed per revolution is too high for the cutting edge.</source>
       <translation>El avance por vuelta es demasiado alto para el filo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The first move is incremental.</source>
       <translation>El primer movimiento es incremental.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The first passes of a thread cut nothing.</source>
       <translation>Las primeras pasadas de una rosca no cortan nada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The hole is deeper than the cutting length of the drill. A drill without a defined cutting length is reported.</source>
       <translation>El agujero es más profundo que la longitud de corte de la broca. Se avisa si una broca no tiene longitud de corte definida.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The insert feeds backward at a depth of more than .02 in and more than two nose radii, or into a wall steeper than its trailing edge.</source>
       <translation>La plaquita avanza hacia atrás a una profundidad de más de .02 in y de más de dos radios de punta, o contra una pared más inclinada que su filo posterior.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The lead is not a multiple of the pitch in the tool shape.</source>
       <translation>El avance de la rosca no es múltiplo del paso de la forma de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The lead of a thread does not match the pitch of its insert.</source>
       <translation>El avance de una rosca no corresponde al paso de su plaquita.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The lines were not reached although TurnDesk proves both branches of input-dependent calls, block delete and loops, within its limits.</source>
       <translation>TurnDesk comprueba ambas ramas de las llamadas por entradas, del salto de bloque y de los bucles, dentro de sus límites.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The non-cutting part of a tool outline overlaps material by more than .001 in.</source>
       <translation>La parte no cortante del perfil de una herramienta solapa el material en más de .001 in.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The offsets of two tools with defined shapes are less than .04 in apart.</source>
       <translation>Los correctores de dos herramientas con forma definida distan menos de .04 in.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The outline of a tool or holder overlaps the contour of the quill and center defined under [clamping] in the machine file.</source>
       <translation>El perfil de una herramienta o de su portaherramientas se solapa con el contorno de la caña y el punto definido en [clamping] del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The part is larger than its stock, so a contour is cut in air outside the bar.</source>
       <translation>La pieza es mayor que su material en bruto, así que se corta un contorno en el aire, fuera de la barra.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The parted-off piece is long and unsupported.</source>
       <translation>La pieza tronzada es larga y no tiene apoyo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The parted-off piece is longer than five times its diameter.</source>
       <translation>La pieza tronzada mide más de cinco veces su diámetro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The program uses an input that the machine does not have.</source>
       <translation>El programa usa una entrada que la máquina no tiene.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The spindle speed is more than half the first critical speed of the protruding stock. The critical speed is calculated for a brass bar clamped at one end.</source>
       <translation>La velocidad del husillo supera la mitad de la primera velocidad crítica del material en voladizo. La velocidad crítica se calcula para una barra de latón sujeta por un extremo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The spindle turns faster than the chuck or collet allows.</source>
       <translation>El husillo gira más deprisa de lo que permite el plato o la pinza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The spindle turns in the wrong direction for the cutting edge.</source>
       <translation>El husillo gira en sentido equivocado para el filo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The spindle turns so fast that the stock may whip.</source>
       <translation>El husillo gira tan rápido que el material en bruto puede cabecear.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The tap is retracted at rapid, with the spindle stopped, with the spindle not reversed, or at a feed that differs from the feed into the hole; or the tap travels more than .5 in before the spindle stops. Not checked if the comment says that the holder reverses automatically.</source>
       <translation>El macho se retira en rápido, con el husillo parado, con el husillo sin invertir, o con un avance distinto del de entrada; o el macho recorre más de .5 in antes de que el husillo se pare. No se comprueba si el comentario dice que el portamachos invierte automáticamente.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The thread depth that the tap cuts, measured on the radius, is greater than the pitch.</source>
       <translation>La profundidad de rosca que corta el macho, medida en el radio, es mayor que el paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The thread is deeper than a sharp V thread of the same lead.</source>
       <translation>La rosca es más profunda que una rosca en V aguda del mismo paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The tool comes within .04 in of the spindle centerline but does not reach the centerline, and the part is not cut off.</source>
       <translation>La herramienta llega a menos de .04 in de la línea de centro del husillo sin alcanzarla, y la pieza no queda tronzada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The tool retracts through the part.</source>
       <translation>La herramienta se retira a través de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The tool rubs along the finished surface.</source>
       <translation>La herramienta roza la superficie acabada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Turn on the live tool with its M code from the machine file.</source>
       <translation>Encienda la herramienta motorizada con su código M del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Two tools have the same offset.</source>
       <translation>Dos herramientas tienen el mismo corrector.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a different path or a slimmer holder; retract the quill for work on the face.</source>
       <translation>Use otra trayectoria o un portaherramientas más fino; retire la caña para trabajar en la cara.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a different path, a shorter tool, or another position on the gang plate.</source>
       <translation>Use otra trayectoria, una herramienta más corta u otra posición en la placa.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a longer drill, or peck and check the entered flute length.</source>
       <translation>Use una broca más larga, o taladre por picadas y compruebe el largo de hélice introducido.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a longer or slimmer tool, another cutting direction, or a smaller depth of cut.</source>
       <translation>Use una herramienta más larga o más delgada, otra dirección de corte o menos profundidad de corte.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a longer or slimmer tool, or another cutting direction.</source>
       <translation>Use una herramienta más larga o más delgada, u otra dirección de corte.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a tool of the opposite hand or a slimmer insert, or cut from the other side.</source>
       <translation>Use una herramienta de la otra mano o una plaquita más fina, o corte desde el otro lado.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use several passes; look for a missing or wrong digit in X.</source>
       <translation>Use varias pasadas; busque una cifra que falta o equivocada en X.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>With [tooling] kind = "gang", the outline of another tool, positioned by its tool offset, overlaps material.</source>
       <translation>Con [tooling] kind = "gang", el perfil de otra herramienta, situado por su corrector, se solapa con el material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>With no live tool running, a drill, reamer, mill, turning tool or parting blade cuts more than .001 in of material while the spindle is stopped, or while the spindle is clamped as the C axis after turning. Not checked if the machine file has no M code for a live tool.</source>
       <translation>Sin ninguna herramienta motorizada encendida, una broca, un escariador, una fresa, una herramienta de torneado o una cuchilla de tronzar corta más de .001 in de material mientras el husillo está parado, o mientras está sujeto como eje C después de haber girado. No se comprueba si el archivo de máquina no tiene código M para una herramienta motorizada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Write G77Sn after G96, where n is the maximum rpm for this chuck and bar.</source>
       <translation>Escriba G77Sn después de G96, donde n son las rpm máximas para este plato y esta barra.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>previously drilled holes</source>
       <translation>agujeros taladrados antes</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>tool type</source>
       <translation>tipo de herramienta</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>A feed move at rapid speed retracts through the part after a cut, {depth}.</source>
       <translation>Un avance a velocidad de rápido se retira a través de la pieza tras un corte, {depth}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>A feed move at rapid speed runs into material, {depth}.</source>
       <translation>Un avance a velocidad de rápido choca con el material, {depth}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>A live tool runs into material in rapid at {place}.</source>
       <translation>Una herramienta motorizada choca en rápido con el material en {place}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>A rapid retracts through the part after a cut, {depth}.</source>
       <translation>Un rápido se retira a través de la pieza tras un corte, {depth}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>A rapid runs into material, {depth}.</source>
       <translation>Un rápido choca con el material, {depth}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>Live tool {tool} feeds but never touches material.</source>
       <translation>La herramienta motorizada {tool} avanza pero nunca toca material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>The holder of {tool} collides with material, {struck}.</source>
       <translation>El portaherramientas de {tool} choca con el material, {struck}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>The parted-off piece is {length} times as long as its diameter.</source>
       <translation>La pieza tronzada es {length} veces más larga que su diámetro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>The spindle turns at {rpm} rpm; the chuck allows at most {highest} rpm.</source>
       <translation>El husillo gira a {rpm} rpm; el plato admite como máximo {highest} rpm.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>The stock sticks out so far that it whips at {whip} rpm; the spindle turns at {rpm} rpm.</source>
       <translation>El material en bruto sobresale tanto que latiguea a {whip} rpm; el husillo gira a {rpm} rpm.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>This check is turned off: {why}</source>
       <translation>Esta comprobación está desactivada: {why}</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>at a depth of {depth}, from Z {front} to Z {back}</source>
       <translation>a una profundidad de {depth}, de Z {front} a Z {back}</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{one} and {other} have the same offset, so neither is checked for collision while the other cuts.</source>
       <translation>{one} y {other} tienen el mismo corrector, así que ninguna se comprueba contra choques mientras corta la otra.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{other}, next to {tool} on the gang plate, collides with the stock.</source>
       <translation>{other}, junto a {tool} en la placa, choca con el material en bruto.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{remedy} Assumed: {assumed}.</source>
       <translation>{remedy} Supuesto: {assumed}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} collides with the chuck, {what}.</source>
       <translation>{tool} choca con el plato, {what}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} collides with the tailstock, {what}.</source>
       <translation>{tool} choca con el contrapunto, {what}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} cuts while neither the tool nor the spindle turns.</source>
       <translation>{tool} corta mientras no giran ni la herramienta ni el husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} moves across the spindle centerline through the part.</source>
       <translation>{tool} cruza la línea de centro del husillo a través de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} nearly touches the chuck.</source>
       <translation>{tool} casi toca el plato.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} parts off down to {thick}, but the part is not cut off.</source>
       <translation>{tool} tronza hasta {thick}, pero la pieza no queda tronzada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} returns in rapid along the surface it has just turned.</source>
       <translation>{tool} vuelve en rápido a lo largo de la superficie que acaba de tornear.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} touches the chuck.</source>
       <translation>{tool} toca el plato.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>The Z axis needs {needed} to stop from the speed for the lead, but the material ends {left} before the end of the pass, so the last turns of the thread have a different lead.</source>
+      <translation>El eje Z necesita {needed} para pararse desde la velocidad del paso, pero el material termina {left} antes del final de la pasada, así que las últimas vueltas de la rosca tienen otro paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>The first {idle} passes of this thread do not touch any material.</source>
+      <translation>Las primeras {idle} pasadas de esta rosca no tocan material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>The insert of {tool} has a pitch of {pitch}, but the lead is {per_rev}.</source>
+      <translation>La plaquita de {tool} tiene un paso de {pitch}, pero el avance de rosca es {per_rev}.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>The material begins {before} after the start of the pass, but the Z axis needs {needed} to reach the speed for the lead.</source>
+      <translation>El material empieza {before} después del inicio de la pasada, pero el eje Z necesita {needed} para alcanzar la velocidad del paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>The thread is {depth} deep, but with a lead of {per_rev} and {angle}° its flanks meet at a depth of {sharp}.</source>
+      <translation>La rosca tiene {depth} de profundidad, pero con un paso de {per_rev} y {angle}° sus flancos se cortan a {sharp} de profundidad.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} cuts a thread {depth} deep on the radius, but its pitch is only {pitch}.</source>
+      <translation>{tool} corta una rosca de {depth} de profundidad en el radio, pero su paso es solo {pitch}.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} does not touch the part in any pass of this thread.</source>
+      <translation>{tool} no toca la pieza en ninguna pasada de esta rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} feeds in at {into} per revolution, but feeds out at {file}.</source>
+      <translation>{tool} entra con un avance de {into} por vuelta, pero sale con {file}.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} feeds {feed} per revolution, but its pitch is {pitch}.</source>
+      <translation>{tool} avanza {feed} por vuelta, pero su paso es {pitch}.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} retracts from the thread at rapid.</source>
+      <translation>{tool} se retira de la rosca en rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} retracts from the thread while the spindle still turns in the tapping direction.</source>
+      <translation>{tool} sale de la rosca mientras el husillo gira todavía en el sentido de roscado.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} retracts from the thread with the spindle stopped.</source>
+      <translation>{tool} se retira de la rosca con el husillo parado.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} travels {revolutions} farther before the spindle stops</source>
+      <translation>{tool} recorre todavía {revolutions} antes de que se pare el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{words}, which is more than a tap holder can compensate for.</source>
+      <translation>{words}, que es más de lo que puede compensar un portamachos.</translation>
     </message>
     <message>
       <location filename="core/proving/part_history.py" />
@@ -29585,13 +29650,38 @@
     </message>
     <message>
       <location filename="core/proving/part_making.py" />
+      <source>collisions with the chuck and jaws, and stock whip (these checks require a diameter in [clamping] and a stick-out)</source>
+      <translation>choques con plato y garras, y cabeceo del material en bruto (estas comprobaciones requieren un diámetro en [clamping] y un voladizo)</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_making.py" />
       <source>cuts made by {tool} with the spindle stopped, from line {line} on</source>
       <translation>cortes de {tool} con el husillo parado, a partir de la línea {line}</translation>
     </message>
     <message>
       <location filename="core/proving/part_making.py" />
+      <source>maximum chuck speed (unknown: no max_rpm in [clamping])</source>
+      <translation>velocidad máxima del plato (desconocida: sin max_rpm en [clamping])</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_making.py" />
       <source>no stock could be assumed: feed moves cut in front of Z0, so the stock face cannot be at Z0</source>
       <translation>no se pudo suponer un material en bruto: hay avances que cortan delante de Z0, así que la cara del material no puede estar en Z0</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_making.py" />
+      <source>{short}: maximum tool depth (unknown: no flute length defined)</source>
+      <translation>{short}: profundidad máxima de la herramienta (desconocida: sin largo de hélice definido)</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_making.py" />
+      <source>{tools}: collisions on the gang plate while a neighboring tool cuts (no tool shape defined)</source>
+      <translation>{tools}: choques en la placa mientras corta una herramienta vecina (sin forma de herramienta definida)</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_making.py" />
+      <source>{without}: tool holder, edge length and hand of the tool not defined</source>
+      <translation>{without}: portaherramientas, largo de filo y mano de la herramienta sin definir</translation>
     </message>
     <message>
       <location filename="core/proving/part_proof.py" />
@@ -29664,99 +29754,9 @@
       <translation>{hint} Supuesto: {assumed}; nada después de este punto está comprobado.</translation>
     </message>
     <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>The Z axis needs {needed} to stop from the speed for the lead, but the material ends {left} before the end of the pass, so the last turns of the thread have a different lead.</source>
-      <translation>El eje Z necesita {needed} para pararse desde la velocidad del paso, pero el material termina {left} antes del final de la pasada, así que las últimas vueltas de la rosca tienen otro paso.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>The first {idle} passes of this thread do not touch any material.</source>
-      <translation>Las primeras {idle} pasadas de esta rosca no tocan material.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>The insert of {tool} has a pitch of {pitch}, but the lead is {per_rev}.</source>
-      <translation>La plaquita de {tool} tiene un paso de {pitch}, pero el avance de rosca es {per_rev}.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>The material begins {before} after the start of the pass, but the Z axis needs {needed} to reach the speed for the lead.</source>
-      <translation>El material empieza {before} después del inicio de la pasada, pero el eje Z necesita {needed} para alcanzar la velocidad del paso.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>The thread is {depth} deep, but with a lead of {per_rev} and {angle}° its flanks meet at a depth of {sharp}.</source>
-      <translation>La rosca tiene {depth} de profundidad, pero con un paso de {per_rev} y {angle}° sus flancos se cortan a {sharp} de profundidad.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} cuts a thread {depth} deep on the radius, but its pitch is only {pitch}.</source>
-      <translation>{tool} corta una rosca de {depth} de profundidad en el radio, pero su paso es solo {pitch}.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} does not touch the part in any pass of this thread.</source>
-      <translation>{tool} no toca la pieza en ninguna pasada de esta rosca.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} feeds in at {into} per revolution, but feeds out at {file}.</source>
-      <translation>{tool} entra con un avance de {into} por vuelta, pero sale con {file}.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} feeds {feed} per revolution, but its pitch is {pitch}.</source>
-      <translation>{tool} avanza {feed} por vuelta, pero su paso es {pitch}.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} retracts from the thread at rapid.</source>
-      <translation>{tool} se retira de la rosca en rápido.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} retracts from the thread while the spindle still turns in the tapping direction.</source>
-      <translation>{tool} sale de la rosca mientras el husillo gira todavía en el sentido de roscado.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} retracts from the thread with the spindle stopped.</source>
-      <translation>{tool} se retira de la rosca con el husillo parado.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} travels {revolutions} farther before the spindle stops</source>
-      <translation>{tool} recorre todavía {revolutions} antes de que se pare el husillo</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{words}, which is more than a tap holder can compensate for.</source>
-      <translation>{words}, que es más de lo que puede compensar un portamachos.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/unchecked_parts.py" />
-      <source>collisions with the chuck and jaws, and stock whip (these checks require a diameter in [clamping] and a stick-out)</source>
-      <translation>choques con plato y garras, y cabeceo del material en bruto (estas comprobaciones requieren un diámetro en [clamping] y un voladizo)</translation>
-    </message>
-    <message>
-      <location filename="core/proving/unchecked_parts.py" />
-      <source>maximum chuck speed (unknown: no max_rpm in [clamping])</source>
-      <translation>velocidad máxima del plato (desconocida: sin max_rpm en [clamping])</translation>
-    </message>
-    <message>
-      <location filename="core/proving/unchecked_parts.py" />
-      <source>{short}: maximum tool depth (unknown: no flute length defined)</source>
-      <translation>{short}: profundidad máxima de la herramienta (desconocida: sin largo de hélice definido)</translation>
-    </message>
-    <message>
-      <location filename="core/proving/unchecked_parts.py" />
-      <source>{tools}: collisions on the gang plate while a neighboring tool cuts (no tool shape defined)</source>
-      <translation>{tools}: choques en la placa mientras corta una herramienta vecina (sin forma de herramienta definida)</translation>
-    </message>
-    <message>
-      <location filename="core/proving/unchecked_parts.py" />
-      <source>{without}: tool holder, edge length and hand of the tool not defined</source>
-      <translation>{without}: portaherramientas, largo de filo y mano de la herramienta sin definir</translation>
+      <location filename="core/proving/prove_program.py" />
+      <source>With block delete {switch}: {item}</source>
+      <translation>Con salto de bloque {switch}: {item}</translation>
     </message>
     <message>
       <location filename="core/quality/availability.py" />

@@ -21,13 +21,13 @@ from core.part.clamping import Clamping
 from core.part.cutter import Cutter
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut
-from core.proving.air_checks import AirChecks
-from core.proving.edge_checks import EdgeChecks
-from core.proving.part_findings import PartFindings
+from core.proving.checks.cut_checks import AirChecks
+from core.proving.checks.edge_checks import EdgeChecks
+from core.proving.checks.part_findings import PartFindings
+from core.proving.checks.thread_checks import ThreadChecks
 from core.proving.part_proof import prove_with_part
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 from core.proving.prove_program import prove
-from core.proving.thread_checks import ThreadChecks
 
 ROUNDS = 15
 SHAPES = {

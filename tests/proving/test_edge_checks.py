@@ -12,8 +12,8 @@ from core.part.clamping import Clamping
 from core.part.stock import Stock, bar, tube
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.proving.part_proof import prove_with_part
-from core.proving.part_report import PartReport
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
+from core.proving.proof_report import PartReport
 from tests.proving.test_part_proof import WAYS, text
 from tests.texts import text as text_of
 

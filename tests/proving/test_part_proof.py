@@ -22,9 +22,8 @@ from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_proof
 from core.proving.assumed_tools import edge_width
 from core.proving.part_proof import prove_with_part
-from core.proving.part_report import PartReport
-from core.proving.part_setting import PartSetting
-from core.proving.proof_report import Report
+from core.proving.program_tools import PartSetting
+from core.proving.proof_report import PartReport, Report
 from tests.texts import shows
 from tests.texts import text as text_of
 from tests.worked import FOLDER, worked

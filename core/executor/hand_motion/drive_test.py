@@ -33,6 +33,10 @@ _PIECES = 40  # of a wave at most; a piece is no shorter than
 _SHORTEST = 0.002  # s, and a wave has no less than
 _LEAST = 12  # pieces
 _ROUND = 1e-9
+PLANS = (
+    "drive tests are not available because the controller plans its own motion and does not accept setpoints"
+)
+TICKS = 100.0  # samples a second where the driver has none of its own
 
 
 class Shape(StrEnum):
@@ -174,12 +178,6 @@ def braking(ramps: list[Ramp], amax: float) -> list[Ramp]:
     dt, v, a = ramps[-1]
     last = v + a * dt
     return [(abs(last) / amax, last, -math.copysign(amax, last))] if abs(last) > _ROUND else []
-
-
-PLANS = (
-    "drive tests are not available because the controller plans its own motion and does not accept setpoints"
-)
-TICKS = 100.0  # samples a second where the driver has none of its own
 
 
 def barred(ports: MachinePorts) -> str:

@@ -25,6 +25,12 @@ from core.message import Message
 _FASTEST = 1000.0  # clicks a second and
 _AT_ONCE = 10  # clicks more are what a hand can do; 300 a second is a hard spin
 _AWAY = 0.1  # s between two looks; what was turned in a longer one is old
+LONGEST_CLICK = 0.254  # mm (.01 in)
+LONGEST_TURN = 0.5  # degrees
+_BEHIND = 0.1  # s by which the slide follows the wheel
+_STILL = 0.1  # s for which the wheel must stand when it is selected
+_APART = 0.5  # s between the last of two at once and the next jog
+_ROUNDING = 1e-9
 
 
 class WheelClicks:
@@ -52,14 +58,6 @@ class WheelClicks:
         self._base += clicks * self._per
         self.still = 0.0 if clicks else self.still + passed
         return clicks
-
-
-LONGEST_CLICK = 0.254  # mm (.01 in)
-LONGEST_TURN = 0.5  # degrees
-_BEHIND = 0.1  # s by which the slide follows the wheel
-_STILL = 0.1  # s for which the wheel must stand when it is selected
-_APART = 0.5  # s between the last of two at once and the next jog
-_ROUNDING = 1e-9
 
 
 class Handwheel:

@@ -31,6 +31,11 @@ from core.ports import BlockSink, DriverError, at_rest
 
 _SHORTEST = 1e-12  # s; a piece that takes less is none
 _SAME = 1e-9  # mm or degrees; places nearer than that are one
+_UNHOMED = 0.1  # of the manual rapid, for an axis that does not know where it is
+LONGEST_LEASE = 1.0  # s; no lease is longer, whoever asks
+_LONGEST_STEP = 2.54  # mm (.1 in) or degrees: what is longer is no step
+_STEP_ROUNDING = 1e-9
+_MARGINS = (0.0, 0.002, 0.02)  # s of grace for the time between asking the clock and queueing
 
 
 def jog_ramps(v0: float, v1: float, a: float, time: float, way: float) -> list[Ramp]:
@@ -97,13 +102,6 @@ def reach_ramps(v0: float, way: float, top: float, a: float) -> list[Ramp]:
 
 def _ramps(*pieces: Ramp) -> list[Ramp]:
     return [piece for piece in pieces if piece[0] > _SHORTEST]
-
-
-_UNHOMED = 0.1  # of the manual rapid, for an axis that does not know where it is
-LONGEST_LEASE = 1.0  # s; no lease is longer, whoever asks
-_LONGEST_STEP = 2.54  # mm (.1 in) or degrees: what is longer is no step
-_STEP_ROUNDING = 1e-9
-_MARGINS = (0.0, 0.002, 0.02)  # s of grace for the time between asking the clock and queueing
 
 
 class Jogger:

@@ -20,6 +20,7 @@ _SETTLED = 0.1  # s at rest until the input is believed to be off
 _RENEWED = 0.03  # s between two renewals of the way
 _THERE = 0.003  # mm or two counts: nearer than that it is where it was sent
 _NONE = -1
+_SETTLES = 1.0  # s that the slides may take to stand before the next axis looks for home
 
 
 class TouchOff:
@@ -291,9 +292,6 @@ class TouchOff:
         self.touched = Touched(count + 1, command.axis, command.sign, place, error, why)
         if why:
             self._context.log("refused", Message("touch-off: {why}", why=why))
-
-
-_SETTLES = 1.0  # s that the slides may take to stand before the next axis looks for home
 
 
 class Homing:

@@ -29,6 +29,11 @@ from core.ports import ArcOp, BlockOp, BlockSink, BlockState, LineOp, RapidOp, T
 LONGEST = 0.2  # s of a piece at its programmed speed
 _SHORTEST_PART = 0.05  # mm; a slow feed is not cut up finer
 _WIDEST = 3.0  # radians
+_CUT = 1.0  # s of motion that lie ready in pieces
+_SLOWEST = 0.1  # of the feed: what has been handed over counts as no longer than that
+_AWAY = 1.0  # s; setpoints would have run out too
+_SEEN = 4  # looks in which the spindle has been told of a block that is shown
+_NEAR = 0.01  # mm; the controller reports thousandths
 
 
 class BlockPart(NamedTuple):
@@ -136,13 +141,6 @@ def _feed_rate(block: Block, x: float, turning: Turning) -> float:
     if feed <= 0.0:
         raise AlarmError("program", Message("line {line} has no feed rate", line=block.line), block.line)
     return feed
-
-
-_CUT = 1.0  # s of motion that lie ready in pieces
-_SLOWEST = 0.1  # of the feed: what has been handed over counts as no longer than that
-_AWAY = 1.0  # s; setpoints would have run out too
-_SEEN = 4  # looks in which the spindle has been told of a block that is shown
-_NEAR = 0.01  # mm; the controller reports thousandths
 
 
 class _Sent(NamedTuple):

@@ -27,6 +27,13 @@ from core.interpreter.path_sections import needs_speed
 PathMotion = SetpointMotion | ControllerMotion
 """What moves the blocks from rest to rest: our own setpoints, or a controller that plans by itself."""
 
+_BLOCKS = 400  # read in one tick at most: a press is never kept waiting for a long program
+_ACTIONS = 50  # carried out in one tick at most
+_BUFFER = 1.0  # of the look-ahead: seconds of motion kept read beyond what is planned
+_BEHIND_TAP = "FEED HOLD BEHIND THE TAP"
+_GOING = frozenset({State.RUN, State.WAIT})
+_SPINDLE_WORDS = (SpindleStop, SpindleLock, SpindleOrient, ProgramEnd)  # done whether it turns or not
+
 
 class FeedHold:
     """Stops what a cycle has under way and lets it go on. On the executor's thread alone."""
@@ -139,14 +146,6 @@ class FeedHold:
         if not spindle.asked or spindle.at_speed(self._context.now):
             return None
         return at_speed(self._context)
-
-
-_BLOCKS = 400  # read in one tick at most: a press is never kept waiting for a long program
-_ACTIONS = 50  # carried out in one tick at most
-_BUFFER = 1.0  # of the look-ahead: seconds of motion kept read beyond what is planned
-_BEHIND_TAP = "FEED HOLD BEHIND THE TAP"
-_GOING = frozenset({State.RUN, State.WAIT})
-_SPINDLE_WORDS = (SpindleStop, SpindleLock, SpindleOrient, ProgramEnd)  # done whether it turns or not
 
 
 class Cycle:

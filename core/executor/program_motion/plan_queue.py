@@ -15,6 +15,11 @@ from core.motion.motion_plan import plan
 from core.motion.motion_profile import Profile
 from core.ports import AxisSink, DriverError, Segments
 
+_AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
+_SETTLED = 0.4  # s before a plan's end within which its braking may differ from the law of a longer path
+_TRIES = 3
+_PATIENCE = 0.02  # s added to the lead when a plan came too late
+
 # --- what the queue holds -------------------------------------------------------------------------------
 
 
@@ -62,12 +67,6 @@ class Tracks:
         kept = [track for track in self._tracks if track.since < t]
         over = max((i for i, track in enumerate(kept) if track.since <= now), default=0)
         self._tracks = [*kept[over:], *tracks]
-
-
-_AHEAD = 0.25  # s queued beyond the look-ahead, so that extending is not needed every tick
-_SETTLED = 0.4  # s before a plan's end within which its braking may differ from the law of a longer path
-_TRIES = 3
-_PATIENCE = 0.02  # s added to the lead when a plan came too late
 
 
 class PlanQueue:

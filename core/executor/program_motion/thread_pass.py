@@ -30,6 +30,15 @@ _TRIES = 3
 _OVER = 1.0005  # of the greatest speed, for what corrections need
 _AT_START = 1e-6  # mm
 _ALLOWED = 0.01  # turns, between the slide and the spindle
+_log = logging.getLogger(__name__)
+_GEARED_SHARE = 0.9  # of the acceleration; the rest is for a spindle that turns faster than foretold
+_AHEAD = 0.01  # s between the plan and what it changes, doubled where that was too short
+_FURTHER_AHEAD = tuple(_AHEAD * 2**attempt for attempt in range(4))
+_FROM_REST = tuple(_AHEAD * 2**attempt for attempt in range(7))  # .64 s: at rest a later index costs no more
+_CHANGED = 0.005  # of the speed: more, and what is still to come is planned again
+_SLOWEST = 0.1  # turns/s; a spindle that is as good as still asks for no other plan
+_ROUNDING = 1e-9  # turns
+_BEGINS = {"late", "broken-path"}  # what a driver says of setpoints behind a start that is near
 
 
 class SpindlePass:
@@ -244,18 +253,6 @@ class ThreadPass(SpindlePass):
 
 def _end(segments: Segments) -> float:
     return float(segments.t[-1] + segments.dt[-1])
-
-
-_log = logging.getLogger(__name__)
-
-_GEARED_SHARE = 0.9  # of the acceleration; the rest is for a spindle that turns faster than foretold
-_AHEAD = 0.01  # s between the plan and what it changes, doubled where that was too short
-_FURTHER_AHEAD = tuple(_AHEAD * 2**attempt for attempt in range(4))
-_FROM_REST = tuple(_AHEAD * 2**attempt for attempt in range(7))  # .64 s: at rest a later index costs no more
-_CHANGED = 0.005  # of the speed: more, and what is still to come is planned again
-_SLOWEST = 0.1  # turns/s; a spindle that is as good as still asks for no other plan
-_ROUNDING = 1e-9  # turns
-_BEGINS = {"late", "broken-path"}  # what a driver says of setpoints behind a start that is near
 
 
 class GearedThreadPass(SpindlePass):

@@ -5,7 +5,7 @@ itself. What was switched behind the back of the program holds the cycle, and it
 is fed while an output is not what the program commanded, and what a start switches on again is announced.
 
 The following error and the standstill of the axes are watched here too. The drives watch themselves, with one
-window for every speed; this is narrower, and holds at rest. The spindle has its own watch (``spindle_control``).
+window for every speed; this is narrower, and holds at rest. The spindle is watched by ``spindle_control``.
 """
 
 from __future__ import annotations
@@ -32,6 +32,8 @@ _FROZEN, _CLOSE = 3.0, 2.5  # s, counts: a drive that pushes moves its encoder b
 _PART = 0.125  # of the standstill window: pushed that far off, a slide that is free moves
 _COUNTS = 20.0  # by which it must have been sent, where counts are coarse
 _NOTHING = 1e-9
+_POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
+_UNHEARD = 0.25  # s for which a driver may have nothing of the slides before it reports why
 
 
 class FollowingErrorWatch:
@@ -185,10 +187,6 @@ class _OneAxis:
             if self._axis.rotary
             else Message("{unit} mm", unit=f"{way:.3f}")
         )
-
-
-_POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
-_UNHEARD = 0.25  # s for which a driver may have nothing of the slides before it reports why
 
 
 class Supervisor:

@@ -16,8 +16,8 @@ from core.part.stock import Stock
 from core.part.swept_edge import Point
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut, TurnedPart
-from core.proving.cut_sizes import INSERTS, is_round, size_faults
-from core.proving.thread_checks import Found
+from core.proving.checks.cut_checks import INSERTS, is_round, size_faults
+from core.proving.checks.thread_checks import Found
 from core.proving.tip_moves import TipMove
 from core.tool_edges import edge_name
 

@@ -21,16 +21,16 @@ from core.part.neighbours import Neighbours
 from core.part.stock import Stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut, Piece, TurnedPart
-from core.proving.air_checks import AirChecks
-from core.proving.edge_checks import EdgeChecks
-from core.proving.part_checks import CHECKS, STOCK, Check
-from core.proving.thread_checks import Found, ThreadChecks
+from core.proving.checks.cut_checks import AirChecks
+from core.proving.checks.edge_checks import EdgeChecks
+from core.proving.checks.part_checks import CHECKS, STOCK, Check
+from core.proving.checks.thread_checks import Found, ThreadChecks
 from core.proving.tip_moves import TipMove
 from core.tool_edges import edge_name
 
 if TYPE_CHECKING:
     from core.part.polar_field import Taken
-    from core.proving.mill_moves import MillMove
+    from core.proving.milling import MillMove
 
 Touches = Callable[[], bool]
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from core.language.diagnostics import Diagnostic, Severity
 
 STOCK, TOOL, KIND, HOLES = "stock", "tool", "tool type", "previously drilled holes"
+_ERROR, _WARNING = Severity.ERROR, Severity.WARNING
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +25,6 @@ class Check:
     remedy: str
     rests_on: tuple[str, ...] = (STOCK, TOOL)
 
-
-_ERROR, _WARNING = Severity.ERROR, Severity.WARNING
 
 CHECKS: Mapping[str, Check] = {
     "rapid-into-stock": Check(
