@@ -15,8 +15,7 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.part.clamping import Clamping
-from core.part.stock import Stock
+from core.part.stock import Clamping, Stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Piece
 from core.proving.part_proof import prove_with_part

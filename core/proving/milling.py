@@ -9,10 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from core.interpreter.elementary_blocks import Block
-from core.part.mill_paths import axial_path, locked_path, plane_path, radial_path
 from core.part.milled_part import MilledPart
 from core.part.polar_field import PolarField, Taken, in_order, turned_field
-from core.part.ray_cuts import FloatArray
+from core.part.ray_cuts import FloatArray, axial_path, locked_path, plane_path, radial_path
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Piece, TurnedPart
 from core.proving.tip_moves import QUICK, Place

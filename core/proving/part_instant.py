@@ -10,11 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from core.language.diagnostics import Diagnostic
-from core.part.clamping import Clamping
-from core.part.field_copies import FieldCopy, copied, restored
-from core.part.polar_field import Taken
+from core.part.polar_field import FieldCopy, Taken, copied, restored
 from core.part.solid_bodies import Round
-from core.part.stock import Stock
+from core.part.stock import Clamping, Stock
 from core.part.swept_edge import FloatArray, Point
 from core.part.turned_part import Cut, TurnedPart
 from core.proving.checks.part_checks import is_serious

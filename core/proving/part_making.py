@@ -11,11 +11,9 @@ from typing import TYPE_CHECKING
 from core.interpreter.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
 from core.interpreter.modal_state import Modal
 from core.message import Message
-from core.part.clamping import Clamping
-from core.part.cutter import Cutter
-from core.part.neighbours import Neighbours
+from core.part.cutter import Cutter, Neighbours
 from core.part.polar_field import NOTHING
-from core.part.stock import Point, Stock
+from core.part.stock import Clamping, Point, Stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Piece, TurnedPart
 from core.proving.assumed_tools import ToolUse

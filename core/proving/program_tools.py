@@ -10,9 +10,8 @@ from core.interpreter.actions import AskInput, Collet, Output, ProgramStop, Tool
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.units import MM_PER_INCH
 from core.message import Message
-from core.part.clamping import Clamping
 from core.part.cutter import Cutter, Side
-from core.part.stock import Point, Stock
+from core.part.stock import Clamping, Point, Stock
 from core.part.stock_spec import StockSpec
 from core.part.tool_outline import outline
 from core.part.tool_shape import ToolKind, ToolShape

@@ -17,8 +17,8 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from core.part.clamping import Clamping
 from core.part.cutter import Cutter
+from core.part.stock import Clamping
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut
 from core.proving.checks.cut_checks import AirChecks

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.part.clamping import Clamping
-from core.part.stock import bar, tube
+from core.part.stock import Clamping, bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.checks.cut_checks import depth_limit
 from tests.proving.test_edge_checks import part_of

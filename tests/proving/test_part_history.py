@@ -12,9 +12,8 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
-from core.part.clamping import Clamping
 from core.part.solid_bodies import Round
-from core.part.stock import bar
+from core.part.stock import Clamping, bar
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_history, part_instant
 from core.proving.part_history import PartGathering, PartHistory, PartMoves, share_along

@@ -16,8 +16,7 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
-from core.part.clamping import Clamping
-from core.part.stock import Stock, bar, tube
+from core.part.stock import Clamping, Stock, bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_proof
 from core.proving.assumed_tools import edge_width

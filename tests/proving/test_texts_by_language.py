@@ -12,8 +12,7 @@ from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
-from core.part.clamping import Clamping
-from core.part.stock import Stock, bar, tube
+from core.part.stock import Clamping, Stock, bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.checks.part_checks import CHECKS
 from core.proving.checks.thread_checks import Drives

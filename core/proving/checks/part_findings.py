@@ -14,11 +14,8 @@ from core.interpreter.elementary_blocks import Kind
 from core.interpreter.modal_state import Modal
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message, join_messages
-from core.part.bar_whirl import whirling_rpm
-from core.part.clamping import Clamping
-from core.part.cutter import Cutter, Side
-from core.part.neighbours import Neighbours
-from core.part.stock import Stock
+from core.part.cutter import Cutter, Neighbours, Side
+from core.part.stock import Clamping, Stock, whirling_rpm
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut, Piece, TurnedPart
 from core.proving.checks.cut_checks import AirChecks
