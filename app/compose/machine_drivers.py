@@ -2,14 +2,7 @@
 
 from __future__ import annotations
 
-from core.machine import (
-    backup_table,
-    machine_file,
-    serial_table,
-    setter_table,
-    sharing_table,
-    shop_network_tables,
-)
+from core.machine import desk_tables, machine_file, setter_table, sharing_table, shop_network_tables
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.table_schema import Driver, Finding, MachineFileError, written
@@ -31,12 +24,12 @@ DRIVERS: tuple[Driver, ...] = (
     grblhal_table.DRIVER,
     hal_table.DRIVER,
     board_table.DRIVER,
-    serial_table.DRIVER,
+    desk_tables.DRIVER,
     setter_table.DRIVER,
     pendant_table.DRIVER,
     mtconnect_table.DRIVER,
     shop_network_tables.DRIVER,
-    backup_table.DRIVER,
+    desk_tables.BACKUP_DRIVER,
     sharing_table.DRIVER,
 )
 

@@ -58,7 +58,7 @@ from core.executor.safety.watchdog import WATCHDOG, ExecutorThread, Watchdog
 from core.executor.snapshot import Event, InterruptedJob, Snapshot
 from core.interpreter.modal_state import Modal
 from core.language.source import Dialect, usual_ending
-from core.machine.backup_table import BackupTable
+from core.machine.desk_tables import BackupTable
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import Clock, DriverError

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from core.executor.machine_context import MachineContext
 from core.executor.raised_alarm import Attempt
 from core.executor.snapshot import ACTIVE, STOPPED, State
-from core.machine.signal_table import BUZZER, HALF, SIGNALS
+from core.machine.hardware_model import BUZZER, HALF, SIGNALS
 from core.message import Message
 from core.ports import DigitalIO, Unknown
 

@@ -7,8 +7,8 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from core.machine.hardware_model import LAMPS
 from core.machine.machine_model import OutputModel
-from core.machine.signal_table import LAMPS
 from core.message import Message
 from core.ports import DigitalIO, StationState
 

@@ -14,8 +14,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.geometry.intersections import clearance, distance, intersections
-from core.geometry.lines_and_arcs import SAME_POINT, Arc, Box, Element, Line, Point, left_of, turn
+from core.geometry.lines_and_arcs import (
+    SAME_POINT,
+    Arc,
+    Box,
+    Element,
+    Line,
+    Point,
+    clearance,
+    distance,
+    intersections,
+    left_of,
+    turn,
+)
 
 # Elements whose offsets end nearer than this go on in one point half way. Programs round their numbers to
 # 1.27 µm, so what was meant as tangent is tangent no better, and no machine can take the step. mm.

@@ -11,8 +11,7 @@ from itertools import pairwise
 from math import sqrt
 
 from core.geometry.contour_offset import around, trimmed_offset
-from core.geometry.intersections import holds
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, holds
 
 Span = tuple[float, float]
 """From where to where along the way, mm."""

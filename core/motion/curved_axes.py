@@ -26,7 +26,7 @@ from core.motion.path_pieces import SAME_POINT, Pieces, joined
 from core.motion.speed_limits import least_ratio
 
 if TYPE_CHECKING:
-    from core.geometry.machine_travel import CurvedMove
+    from core.geometry.working_plane import CurvedMove
 
 CHORD_ERROR = 1e-4  # mm by which a chord may leave the mill's way, seen from the part
 STEP_SHARE = 0.5  # of what a corner may ask of an axis: the joints of chords then cost no speed

@@ -12,9 +12,8 @@ from core.motion.axis_limits import FloatArray, IntArray, MotionError, MotionLim
 from core.motion.block_table import BlockTable, MotionBlock, Part, table_of
 from core.motion.chord_smoothing import SUPPORT, ends_in_chord, regrown, unrounded
 from core.motion.curved_axes import parts_of, with_parts
-from core.motion.feed_rates import by_radius, constant_rates, split_by_radius
 from core.motion.path_pieces import Pieces, joined, make_pieces
-from core.motion.speed_limits import piece_limits
+from core.motion.speed_limits import by_radius, constant_rates, piece_limits, split_by_radius
 
 GAP = 1e-6  # mm or degrees between the end of a block and the start of the next
 

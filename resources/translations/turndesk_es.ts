@@ -18254,16 +18254,6 @@
       <translation>{old}, pero el programa no especifica este ajuste; cargue el programa otra vez</translation>
     </message>
     <message>
-      <location filename="core/geometry/area_clearing.py" />
-      <source>an island touches the edge of its pocket</source>
-      <translation>una isla toca el borde de su cajera</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/area_clearing.py" />
-      <source>clearing needs more than {most_rings} concentric passes</source>
-      <translation>el vaciado necesita más de {most_rings} pasadas concéntricas</translation>
-    </message>
-    <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>no arc of this radius is tangent to both moves within their length</source>
       <translation>ningún arco de ese radio es tangente a los dos movimientos dentro de su longitud</translation>
@@ -18332,6 +18322,16 @@
       <location filename="core/geometry/contour_offset.py" />
       <source>the offset path of another move would cut into this move</source>
       <translation>la trayectoria compensada de otro movimiento cortaría este movimiento</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/pocket_area.py" />
+      <source>an island touches the edge of its pocket</source>
+      <translation>una isla toca el borde de su cajera</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/pocket_area.py" />
+      <source>clearing needs more than {most_rings} concentric passes</source>
+      <translation>el vaciado necesita más de {most_rings} pasadas concéntricas</translation>
     </message>
     <message>
       <location filename="core/geometry/pocket_area.py" />
@@ -27959,31 +27959,6 @@
       <translation>Bloque {number}: el movimiento necesita {needed} grados de giro de C, pero C gira solo {turn} grados.</translation>
     </message>
     <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>Block {number}: {why}.</source>
-      <translation>Bloque {number}: {why}.</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>the feed is per revolution, but the spindle is stopped; start the spindle first</source>
-      <translation>el avance es por vuelta, pero el husillo está parado; arranque primero el husillo</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>the feed must be greater than 0; program an F word</source>
-      <translation>el avance debe ser mayor que 0; programe una palabra F</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>the spindle speed has no upper limit at the spindle centerline; program a speed limit, or set rpm_max</source>
-      <translation>la velocidad del husillo no tiene límite superior en la línea de centro del husillo; programe un límite de velocidad o fije rpm_max</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>the thread does not advance along Z</source>
-      <translation>la rosca no avanza a lo largo de Z</translation>
-    </message>
-    <message>
       <location filename="core/motion/motion_path.py" />
       <source>Block {number} comes after the end of the path. Begin a new path.</source>
       <translation>El bloque {number} viene después del final de la trayectoria. Empiece otra trayectoria.</translation>
@@ -28037,6 +28012,31 @@
       <location filename="core/motion/path_pieces.py" />
       <source>Block {number}: the arc starts {radii} mm and ends {radii2} mm from its center. Correct the center or the end point.</source>
       <translation>Bloque {number}: el arco empieza a {radii} mm y termina a {radii2} mm de su centro. Corrija el centro o el punto final.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/speed_limits.py" />
+      <source>Block {number}: {why}.</source>
+      <translation>Bloque {number}: {why}.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/speed_limits.py" />
+      <source>the feed is per revolution, but the spindle is stopped; start the spindle first</source>
+      <translation>el avance es por vuelta, pero el husillo está parado; arranque primero el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/motion/speed_limits.py" />
+      <source>the feed must be greater than 0; program an F word</source>
+      <translation>el avance debe ser mayor que 0; programe una palabra F</translation>
+    </message>
+    <message>
+      <location filename="core/motion/speed_limits.py" />
+      <source>the spindle speed has no upper limit at the spindle centerline; program a speed limit, or set rpm_max</source>
+      <translation>la velocidad del husillo no tiene límite superior en la línea de centro del husillo; programe un límite de velocidad o fije rpm_max</translation>
+    </message>
+    <message>
+      <location filename="core/motion/speed_limits.py" />
+      <source>the thread does not advance along Z</source>
+      <translation>la rosca no avanza a lo largo de Z</translation>
     </message>
     <message>
       <location filename="core/motion/window_planner.py" />

@@ -10,8 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from core.geometry.contour_offset import TrimError, trimmed_offset
-from core.geometry.intersections import distance
-from core.geometry.lines_and_arcs import Arc, Element, Line
+from core.geometry.lines_and_arcs import Arc, Element, Line, distance
 from core.geometry.roughing_area import Area
 from tests.geometry.contours import arc, polyline, sampled
 

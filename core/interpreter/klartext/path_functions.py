@@ -12,9 +12,8 @@ from dataclasses import dataclass, replace
 
 from core.geometry.chamfer_and_rounding import CornerError, chamfer, rounding
 from core.geometry.lines_and_arcs import Arc, Element, Point
-from core.geometry.plane_arcs import HelixMove
 from core.geometry.rotation_frames import Vector
-from core.geometry.working_plane import seen
+from core.geometry.working_plane import HelixMove, seen
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.feed_rates import per_minute, plunged, rotary_feed

@@ -1,4 +1,4 @@
-"""[dnc] and [gauge] of the machine file: the serial lines for programs and for a gauge."""
+"""[backup], [dnc] and [gauge] of the machine file: daily backups, serial lines for programs and gauges."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ _PARITY: Any = file_key(
     default="N", choices=("N", "E", "O"), meaning="Parity: none (N), even (E) or odd (O)."
 )
 _STOP: Any = file_key(Range(1, 2), default=1, meaning="Stop bits of a character.")
+KEPT = 14
 
 
 @key_table
@@ -78,6 +79,33 @@ DRIVER = Driver(
             GaugeModel,
             port="gauge.port",
             purpose="A gauge that sends its readings as lines of text over a serial line.",
+        ),
+    )
+)
+
+
+@key_table
+class BackupTable:
+    """``folder`` on another disk or computer; empty: the data folder's own. The newest ``keep`` stay."""
+
+    folder: str = file_key(
+        default="",
+        meaning="Folder for the daily backups, preferably on another disk or computer. Default: `backups` "
+        "in the data folder.",
+    )
+    keep: int = file_key(
+        Range(2, 400),
+        default=KEPT,
+        meaning="Number of daily backups that TurnDesk retains; it deletes older backups.",
+    )
+
+
+BACKUP_DRIVER = Driver(
+    tables=(
+        DriverTable(
+            "backup",
+            BackupTable,
+            purpose="Where TurnDesk saves its daily backups, and how many of them it retains.",
         ),
     )
 )
