@@ -19,7 +19,7 @@ from app.quality.shift_times import Shift
 from core.message import Message
 from core.quality.availability import Availability, Span, availability
 from core.quality.stops import ReasonShare, Stop, pareto
-from core.store import event_log, measured_parts, offset_tables, part_cycles, tool_lives
+from core.store import event_log, measured_parts, offset_history, part_cycles, tool_lives
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.part_cycles import CycleRow, CycleTime, StopRow
 from core.store.store import Store
@@ -111,7 +111,7 @@ def shift_figures(store: Store, shift: Shift, now: float, tools: Kind = Kind.TOO
         readings = measured_parts.readings_between(connection, since, end)
         lives = tool_lives.lives(connection, tools)
         inserts = tool_lives.insert_changes(connection, -1)
-        offsets = offset_tables.history_any(connection, _ALL)
+        offsets = offset_history.history_any(connection, _ALL)
     running = spans_of(cycles, now)
     ended = [row for row in cycles if row.ended is not None and since <= row.ended < end]
     return ShiftFigures(

@@ -21,7 +21,7 @@ from core.executor.job import Job
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.store.program_settings import notes_key
+from core.store.program_records import notes_key
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:

@@ -28,6 +28,7 @@ from core.machine.machine_model import Machine
 from core.message import Message
 
 WARNING = "WARNING: "
+"""What an announcement of something that a proof has warned of begins with."""
 
 
 class ProgramPass(NamedTuple):
@@ -190,9 +191,6 @@ class Job:
     carries: frozenset[str] = frozenset()  # what the program has from the job before it
     text_digest: str = ""  # of the text alone
     part_of: str = ""  # digest of the program's job, when this one begins in the middle of it
-
-
-"""What an announcement of something that a proof has warned of begins with."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,9 @@ FULL_TURN = 2 * math.pi
 # Two ends closer than this on a circle are one point: a full turn. Well under the control's step of 1.27 µm.
 SAME_POINT = 1e-6
 Point = tuple[float, float]
+"""X as a radius, Z; mm."""
 Box = tuple[float, float, float, float]
+"""Least x, greatest x, least z, greatest z; mm."""
 # Curves that miss each other by less than this touch: the offsets of tangent elements are that exact, and a
 # thousandth of a micrometre is nothing to a machine. mm.
 TOUCH = 1e-6
@@ -54,9 +56,6 @@ def arc_extent(
     return min(xs), max(xs), min(zs), max(zs)
 
 
-"""X as a radius, Z; mm."""
-
-
 def centre_from_radius(start: Point, end: Point, radius: float, *, clockwise: bool) -> Point:
     """Centre of the arc of at most 180 degrees from start to end.
 
@@ -77,9 +76,6 @@ def arc_length(start: Point, end: Point, centre: Point, *, clockwise: bool) -> f
     last = hypot(end[0] - centre[0], end[1] - centre[1])
     _, sweep = arc_sweep(*start, *end, *centre, clockwise)
     return (first + last) / 2 * abs(sweep)
-
-
-"""Least x, greatest x, least z, greatest z; mm."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from core.key_declaration import Pair, Range, file_key, key_table
 _Table = TypeVar("_Table")
 RED, AMBER, GREEN, BUZZER = "lamp_red", "lamp_amber", "lamp_green", "lamp_buzzer"
 LAMPS = (RED, AMBER, GREEN, BUZZER)
+"""Outputs of [io.out] that the control lights by itself, where the machine file has them."""
 PREFIX = "lamp_"
 HALF = 0.5  # s that a blinking lamp is on, and off
 
@@ -79,9 +80,6 @@ class Hardware:
     def table(self, kind: type[_Table]) -> _Table | None:
         """What a driver has made of its table; None where the file has no such table."""
         return next((each for each in self.tables.values() if isinstance(each, kind)), None)
-
-
-"""Outputs of [io.out] that the control lights by itself, where the machine file has them."""
 
 
 class Signal(NamedTuple):

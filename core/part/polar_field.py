@@ -28,6 +28,7 @@ _TOUCH = 1e-7  # mm; less is no metal
 _JUMP = 0.05  # mm: a rise from one fine column to the next that is a shoulder
 _LEAST = 0.002  # mm: no column is divided nearer to its edge
 Ends = tuple[float, float]
+"""Of a column: from and to which Z."""
 
 
 class Taken(NamedTuple):
@@ -253,9 +254,6 @@ def _starts(low: FloatArray, high: FloatArray, columns: int) -> IntArray:
         for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)
     ]
     return np.unique(np.concatenate(parts).astype(np.intp))
-
-
-"""Of a column: from and to which Z."""
 
 
 class FieldCopy(NamedTuple):

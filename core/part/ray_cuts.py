@@ -21,6 +21,7 @@ FloatArray = npt.NDArray[np.float64]
 
 _TINY = 1e-12
 CHORD = 0.002
+"""How far a chord may lie off its curve, mm."""
 _AWAY = 1e-6  # mm
 
 
@@ -134,9 +135,6 @@ def nearest_turn(turned: FloatArray, way: float) -> FloatArray:
     middle = np.remainder(turned - 0.5 * way + np.pi, 2.0 * np.pi) - np.pi
     left = np.maximum(np.abs(middle) - 0.5 * abs(way), 0.0)
     return np.asarray(np.copysign(left, middle), dtype=np.float64)
-
-
-"""How far a chord may lie off its curve, mm."""
 
 
 def plane_path(move: PlaneMove, lift: float = 0.0, chord: float = CHORD) -> FloatArray:

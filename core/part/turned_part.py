@@ -19,11 +19,13 @@ from core.part.stock import Stock
 from core.part.swept_edge import Columns, FloatArray, Point
 
 STEP = 0.008
+"""Width of a column, mm, up to ``_FINE`` of them: a shoulder is off by .004 mm (.00016 in) at most."""
 _FINE = 40_000  # columns: 320 mm
 _TOUCH = 1e-6  # mm; less is no metal
 _FIT = 0.004  # mm by which a profile that is told may be off
 _STEEP = 8.0  # a rise of so many steps from one column to the next is a shoulder
 Profile = list[tuple[float, float]]
+"""Z and r, mm, Z falling: from the face towards the chuck."""
 
 
 def simplified(points: FloatArray, tolerance: float) -> FloatArray:
@@ -53,12 +55,6 @@ def _distances(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatA
         return np.hypot(away[:, 0], away[:, 1])
     off: FloatArray = np.abs(way[0] * away[:, 1] - way[1] * away[:, 0]) / length
     return off
-
-
-"""Width of a column, mm, up to ``_FINE`` of them: a shoulder is off by .004 mm (.00016 in) at most."""
-
-
-"""Z and r, mm, Z falling: from the face towards the chuck."""
 
 
 class Cut(NamedTuple):

@@ -31,6 +31,7 @@ _SHORTEST = 0.25  # mm
 _STRAIGHT = 0.006  # mm of r along a diameter, or of Z along a shoulder: a profile is told within .004
 _FAR = 6.35  # mm; two features further apart are not one
 FINE = 0.001
+"""Width of a column of the part, mm, where parts are compared: a shoulder is off by .00002 in at most."""
 SAME = 0.0012  # mm; less is no difference
 
 
@@ -114,9 +115,6 @@ def matched(here: Sequence[Feature], there: Sequence[Feature]) -> list[Pair]:
             taken.add(j)
     pairs = [Pair(a, there[partner[i]] if i in partner else None) for i, a in enumerate(here)]
     return pairs + [Pair(None, b) for j, b in enumerate(there) if j not in taken]
-
-
-"""Width of a column of the part, mm, where parts are compared: a shoulder is off by .00002 in at most."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,6 +28,7 @@ _OF_METAL = frozenset(
     {"rapid-into-stock", "feed-into-holder", "holder-into-stock", "through-part", "neighbour-tool"}
 )
 Metal = tuple[FloatArray, FloatArray]
+"""Lowest and highest radius of each column's layers, mm."""
 _EVERY = 16  # blocks from one copy to the next, at first
 _MOST_COPIES = 96
 _MOST_BYTES = 96e6  # of all copies
@@ -89,9 +90,6 @@ class PartInstant(NamedTuple):
     is_open: bool = False
     reach: tuple[Point, Point] | None = None
     c: float = 0.0  # degrees at which the part is held, or was last
-
-
-"""Lowest and highest radius of each column's layers, mm."""
 
 
 def metal_of(part: TurnedPart | None) -> Metal | None:

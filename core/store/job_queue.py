@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from core.message import Message
-from core.store import event_log, program_records, program_texts, row_sums
-from core.store.program_settings import text_key
+from core.store import event_log, program_records, row_sums
+from core.store.program_records import text_key
 from core.store.store_errors import StoreError
 from core.store.store_rows import utc_now
 
@@ -76,7 +76,7 @@ def jobs(connection: sqlite3.Connection, held: Held | None = None) -> tuple[JobR
 def _job(connection: sqlite3.Connection, row: JobRow, held: Held) -> JobRow:
     """A count that is put to nought only in memory yet takes nothing from a job: ``base`` follows it then."""
     counted = program_records.parts(connection, row.program)
-    reset, more = held.get(program_texts.key_of(connection, row.program), (False, 0))
+    reset, more = held.get(program_records.key_of(connection, row.program), (False, 0))
     if reset and row.base is not None:
         before = row.before + counted - row.base
         return row._replace(counted=max(0, more), before=before, base=0)
@@ -156,19 +156,19 @@ def put_away(connection: sqlite3.Connection) -> None:
 
 def count_reset(connection: sqlite3.Connection, program: str) -> None:
     """The part count of a program is about to be put to nought: its job keeps what was made."""
-    key = program_texts.key_of(connection, program)
+    key = program_records.key_of(connection, program)
     for row in jobs(connection):
-        if row.under_way and program_texts.key_of(connection, row.program) == key:
+        if row.under_way and program_records.key_of(connection, row.program) == key:
             connection.execute("UPDATE jobs SET made = ?, base = 0 WHERE id = ?", (row.made, row.id))
 
 
 def load_text(connection: sqlite3.Connection, program: str, text: str) -> None:
     """State that ``text``, a record key, is loaded under this name; its job retains what was made."""
-    before = program_texts.key_of(connection, program)
+    before = program_records.key_of(connection, program)
     if before == text:
         return
     if before == program:
-        program_texts.adopt(connection, program)
+        program_records.adopt(connection, program)
     made = {row.id: row.made for row in jobs(connection) if row.under_way and row.program == program}
     event_log.set_setting(connection, text_key(program), text)
     base = program_records.parts(connection, program)

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 from core.message import Message
 from core.store import row_sums
-from core.store.offset_fields import Field, Sort
 from core.store.store_errors import StoreError
 from core.store.store_rows import (
     FIELDS,
@@ -23,6 +22,7 @@ from core.store.store_rows import (
     TOOL_ROWS,
     ZERO_CODES,
     Change,
+    Field,
     Kind,
     MillRow,
     PresetRow,
@@ -30,6 +30,7 @@ from core.store.store_rows import (
     Row,
     SecondaryRow,
     ShapeRow,
+    Sort,
     ToolRow,
     Value,
     ZeroRow,
@@ -39,6 +40,8 @@ from core.store.store_rows import (
 from core.tool_edges import edge_name, tool_of
 
 Changes = Mapping[int, tuple[Row | None, Row | None]]
+_NO_SHAPE = "no tool shape change to undo"
+MOST_STEPS = 2**62  # SQLite counts as far as twice that
 
 
 class Reason(NamedTuple):
@@ -49,7 +52,7 @@ class Reason(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class _Log:
+class Log:
     """A history table: the column that holds the number, and the columns of a row before and after."""
 
     name: str
@@ -71,7 +74,7 @@ class _Table:
     letter: str
     numbers: Container[int]
     row: type[Row]
-    log: _Log
+    log: Log
 
 
 def _columns(kind: Kind) -> tuple[str, ...]:
@@ -79,29 +82,27 @@ def _columns(kind: Kind) -> tuple[str, ...]:
 
 
 # Columns of a secondary offset are the first of those of a tool: both share one history.
-_OFFSETS = _Log("offset_changes", "number", _columns(Kind.TOOL), "kind", "no offset change to undo")
-_ZEROS = _Log("zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "no G54…G59 change to undo")
-_NO_SHAPE = "no tool shape change to undo"
-_SHAPES = _Log("tool_shape_changes", "number", _columns(Kind.SHAPE), "'shape'", _NO_SHAPE)
-_MILL_TOOLS = _Log(
+OFFSET_LOG = Log("offset_changes", "number", _columns(Kind.TOOL), "kind", "no offset change to undo")
+_ZEROS = Log("zero_offset_changes", "code", _columns(Kind.ZERO), "'zero'", "no G54…G59 change to undo")
+_SHAPES = Log("tool_shape_changes", "number", _columns(Kind.SHAPE), "'shape'", _NO_SHAPE)
+_MILL_TOOLS = Log(
     "mill_tool_changes",
     "number",
     _columns(Kind.MILL_TOOL),
     "'mill tool'",
     "no tool data change to undo",
 )
-_PRESETS = _Log(
+_PRESETS = Log(
     "datum_preset_changes",
     "number",
     _columns(Kind.PRESET),
     "'preset'",
     "no preset change to undo",
 )
-_MOST_STEPS = 2**62  # SQLite counts as far as twice that
-_LOGS = (_OFFSETS, _ZEROS, _SHAPES, _MILL_TOOLS, _PRESETS)
-_TABLES = {
-    Kind.TOOL: _Table("tool_offsets", "T", TOOL_ROWS, ToolRow, _OFFSETS),
-    Kind.SECONDARY: _Table("secondary_offsets", "D", OFFSETS, SecondaryRow, _OFFSETS),
+LOGS = (OFFSET_LOG, _ZEROS, _SHAPES, _MILL_TOOLS, _PRESETS)
+TABLES = {
+    Kind.TOOL: _Table("tool_offsets", "T", TOOL_ROWS, ToolRow, OFFSET_LOG),
+    Kind.SECONDARY: _Table("secondary_offsets", "D", OFFSETS, SecondaryRow, OFFSET_LOG),
     Kind.ZERO: _Table("zero_offsets", "G", ZERO_CODES, ZeroRow, _ZEROS),
     Kind.SHAPE: _Table("tool_shapes", "T", TOOL_ROWS, ShapeRow, _SHAPES),
     Kind.MILL_TOOL: _Table("mill_tools", "T", MILL_TOOLS, MillRow, _MILL_TOOLS),
@@ -111,7 +112,7 @@ _TABLES = {
 
 def current(connection: sqlite3.Connection, kind: Kind) -> dict[int, Row]:
     """All offsets of one table that have been set, by number; not those that are not as they were saved."""
-    table = _TABLES[kind]
+    table = TABLES[kind]
     columns = ", ".join((table.log.key, *_columns(kind)))
     rows = row_sums.raw(connection, f"SELECT {columns} FROM {table.name} ORDER BY {table.log.key}")
     broken = row_sums.broken(connection, table.name)
@@ -202,7 +203,7 @@ def never_set(number: int) -> str:
 
 def check_number(kind: Kind, number: int) -> None:
     """Raises StoreError for an offset that does not exist."""
-    table = _TABLES[kind]
+    table = TABLES[kind]
     if number in table.numbers:
         return
     if kind is Kind.ZERO:
@@ -233,7 +234,7 @@ def check_number(kind: Kind, number: int) -> None:
 
 def changed(kind: Kind, number: int, old: Row | None, wanted: Mapping[str, Value]) -> Row:
     """The row with the fields of ``wanted``. Raises StoreError for a value that is not kept."""
-    fields, table = FIELDS[kind], _TABLES[kind]
+    fields, table = FIELDS[kind], TABLES[kind]
     for name, value in wanted.items():
         field = fields.get(name)
         if field is None or not field.takes(value):
@@ -258,7 +259,7 @@ def _told(field: Field, value: Value) -> str:
 def _row(kind: Kind, values: Sequence[Value | None]) -> Row:
     """A row from its columns; those that were not kept yet when it was written are as they were then."""
     whole = [_plain(field, value) for field, value in zip(FIELDS[kind].values(), values, strict=True)]
-    return _TABLES[kind].row._make(whole)
+    return TABLES[kind].row._make(whole)
 
 
 def _plain(field: Field, value: Value | None) -> Value:
@@ -304,7 +305,7 @@ def apply(
     connection: sqlite3.Connection, kind: Kind, changes: Changes, reason: Reason, undoes: int | None = None
 ) -> tuple[Change, ...]:
     """Writes offsets and their history as one step; answers what it is in the history."""
-    table, log = _TABLES[kind], _TABLES[kind].log
+    table, log = TABLES[kind], TABLES[kind].log
     step, at, columns = _next_step(connection), utc_now(), _columns(kind)
     # All go before any comes: there is never more than one master.
     connection.executemany(f"DELETE FROM {table.name} WHERE {log.key} = ?", [(number,) for number in changes])
@@ -326,7 +327,7 @@ def apply(
             for number, (old, new) in changes.items()
         ],
     )
-    return _select(connection, log, "WHERE step = ? ORDER BY id", (step,))
+    return select(connection, log, "WHERE step = ? ORDER BY id", (step,))
 
 
 def _insert(
@@ -336,159 +337,23 @@ def _insert(
     connection.executemany(f"INSERT INTO {table} ({', '.join(columns)}) VALUES ({marks})", rows)
 
 
-def undo(connection: sqlite3.Connection, reason: Reason, kind: Kind | None = None) -> tuple[Change, ...]:
-    """Takes the last step back that is not undone yet; answers the changes this made.
-
-    With ``kind`` the last step of that table, without one that of tools and secondary offsets together.
-    Asking again goes further back. Raises StoreError when there is nothing left to undo.
-    """
-    return _undo(connection, reason, _log_of(kind), kind)
-
-
-def undo_any(connection: sqlite3.Connection, reason: Reason) -> tuple[Change, ...]:
-    """The same for the youngest step of all tables."""
-    last = {log: _last_step(connection, log, None) or 0 for log in _LOGS}
-    log = max(_LOGS, key=lambda each: last[each] if isinstance(last[each], int) else _MOST_STEPS)
-    return _undo(connection, reason, log, None)
-
-
 def _next_step(connection: sqlite3.Connection) -> int:
     """Return the step number after those of all histories, so that a changed clock cannot reorder them."""
-    return 1 + max(_newest_step(connection, log) for log in _LOGS)
+    return 1 + max(_newest_step(connection, log) for log in LOGS)
 
 
-def _newest_step(connection: sqlite3.Connection, log: _Log) -> int:
+def _newest_step(connection: sqlite3.Connection, log: Log) -> int:
     """The last step that is a number; what else was put there by nobody of ours."""
     asked = f"SELECT coalesce(max(step), 0) FROM {log.name}"
     (last,) = connection.execute(asked).fetchone()
-    if not isinstance(last, int) or last >= _MOST_STEPS:
+    if not isinstance(last, int) or last >= MOST_STEPS:
         only = "WHERE typeof(step) = 'integer' AND step < ?"  # looks through all of them: only then
-        (last,) = connection.execute(f"{asked} {only}", (_MOST_STEPS,)).fetchone()
+        (last,) = connection.execute(f"{asked} {only}", (MOST_STEPS,)).fetchone()
     return int(last)
 
 
-def _last_step(
-    connection: sqlite3.Connection, log: _Log, kind: Kind | None, number: int | None = None
-) -> int | None:
-    """Return the last step that is not undone yet; None without one. ``number``: of this row."""
-    step: int | None
-    (step,) = connection.execute(
-        f"SELECT max(step) FROM {log.name}"
-        f" WHERE undoes IS NULL AND {log.kind} = coalesce(?, {log.kind})"
-        f" AND {log.key} = coalesce(?, {log.key})"
-        f" AND step NOT IN (SELECT undoes FROM {log.name} WHERE undoes IS NOT NULL)",
-        (kind.value if kind else None, number),
-    ).fetchone()
-    return step
-
-
-def _undo(connection: sqlite3.Connection, reason: Reason, log: _Log, kind: Kind | None) -> tuple[Change, ...]:
-    rows = _step_to_undo(connection, log, kind)
-    if not rows:
-        raise StoreError(log.nothing_left, "nothing-to-undo")
-    return apply(connection, rows[0].kind, backward(rows), reason, undoes=rows[0].step)
-
-
-def _step_to_undo(
-    connection: sqlite3.Connection, log: _Log, kind: Kind | None, number: int | None = None
-) -> tuple[Change, ...]:
-    step = _last_step(connection, log, kind, number)
-    rows = _select(connection, log, "WHERE step = ? ORDER BY id", (step,)) if step is not None else ()
-    first = rows[0].id if rows else 0
-    for entry in row_sums.broken(connection, log.name, first):  # of this step, or a later one that it hides
-        raise _damaged_entry(entry)
-    return rows
-
-
-def backward(rows: Sequence[Change]) -> Changes:
-    """Return these changes in the opposite direction."""
-    return {row.number: (row.new, row.old) for row in rows}
-
-
-def undoable(connection: sqlite3.Connection, kind: Kind, number: int | None) -> tuple[Change, ...]:
-    """Return the changes of the step that ``undo_step`` would take back; none when nothing is left.
-
-    ``number`` restricts it to the last step that changed this row; None: the last step of the table.
-    """
-    return _step_to_undo(connection, _log_of(kind), kind, number)
-
-
-def history(connection: sqlite3.Connection, kind: Kind | None, limit: int) -> tuple[Change, ...]:
-    """The last changes, newest first; without ``kind`` those of tools and secondary offsets together."""
-    log = _log_of(kind)
-    if kind is None:
-        return _select(connection, log, "ORDER BY id DESC LIMIT ?", (limit,))
-    return _select(connection, log, f"WHERE {log.kind} = ? ORDER BY id DESC LIMIT ?", (kind.value, limit))
-
-
-def history_any(connection: sqlite3.Connection, limit: int) -> tuple[Change, ...]:
-    """The last changes of all tables, newest first; a limit below nought, as SQLite has it, is none."""
-    tail = "ORDER BY id DESC LIMIT ?"
-    found = [each for log in _LOGS for each in _select(connection, log, tail, (limit,))]
-    return tuple(sorted(found, key=lambda each: each.step, reverse=True)[: limit if limit >= 0 else None])
-
-
-def as_of(connection: sqlite3.Connection, kind: Kind, moment: str) -> dict[int, Row]:
-    """The offsets of a table as they were set at a moment (UTC), by number."""
-    log = _log_of(kind)
-    changes = _select(connection, log, f"WHERE {log.kind} = ? AND at <= ? ORDER BY id", (kind.value, moment))
-    rows = {each.number: each.new for each in changes}
-    return {number: row for number, row in rows.items() if row is not None}
-
-
-def _log_of(kind: Kind | None) -> _Log:
-    return _OFFSETS if kind is None else _TABLES[kind].log
-
-
-def named(name: str, key: row_sums.Key) -> str:
-    """A row of a table with a sum, as people call it."""
-    table = next((each for each in _TABLES.values() if each.name == name), None)
-    if any(log.name == name for log in _LOGS):
-        return Message("entry {key} of the offset history", key=key)
-    if table is None:
-        return Message("{others} {text}", others=_OTHERS[name], text=" ".join(str(key).split()))
-    if table.letter != "T" or not isinstance(key, int):
-        return f"{table.letter}{key}"
-    return Message("the tool shape of {key}", key=edge_name(key)) if table.row is ShapeRow else edge_name(key)
-
-
-_OTHERS = {
-    "settings": "the setting",
-    "part_counts": "the part-count record",
-    "tool_lives": "the tool-life record",
-    "mill_tool_lives": "the tool-life record",
-    "jobs": "the job",
-    "people": "the PIN entry",
-    "runs": "the program-run record",
-    "part_features": "the measured feature",
-    "part_readings": "the reading",
-    "insert_changes": "the insert-change record",
-    "events": "the event",
-    "programs": "the program record",
-    "program_versions": "the program-version record",
-    "part_cycles": "the part-cycle record",
-    "production_stops": "the production-stop record",
-    "shared_versions": "the shared version",
-    "shared_here": "the shared program",
-}
-
-
-def history_of(
-    connection: sqlite3.Connection, name: str, key: row_sums.Key, columns: Sequence[str]
-) -> tuple[row_sums.Value, ...] | None:
-    """The row as it was last entered, by the columns of its table; None: never, or it was cleared."""
-    kind = next((kind for kind, table in _TABLES.items() if table.name == name), None)
-    if kind is None:
-        return None
-    log = _TABLES[kind].log
-    sides = ", ".join(log.key if column == log.key else f"new_{column}" for column in columns)
-    last = f"WHERE {log.key} = ? AND {log.kind} = ? ORDER BY id DESC LIMIT 1"
-    found = row_sums.raw(connection, f"SELECT {sides} FROM {log.name} {last}", (key, kind.value))
-    return None if not found or None in found[0] else found[0]
-
-
-def _select(
-    connection: sqlite3.Connection, log: _Log, tail: str, values: tuple[int | str, ...]
+def select(
+    connection: sqlite3.Connection, log: Log, tail: str, values: tuple[int | str, ...]
 ) -> tuple[Change, ...]:
     rows = connection.execute(
         f"SELECT id, step, undoes, at, {log.kind}, {log.key}, why, who, {', '.join(log.sides)}"
@@ -499,11 +364,11 @@ def _select(
     if found:
         broken = row_sums.broken(connection, log.name, min(row[0] for row in found))
         for entry in [row[0] for row in found if row[0] in broken]:
-            raise _damaged_entry(entry)
+            raise damaged_entry(entry)
     return tuple(_change(log, row) for row in found)
 
 
-def _damaged_entry(entry: object) -> StoreError:
+def damaged_entry(entry: object) -> StoreError:
     return StoreError(
         Message(
             "entry {entry} of the offset history is damaged; the offsets themselves are verified "
@@ -514,14 +379,14 @@ def _damaged_entry(entry: object) -> StoreError:
     )
 
 
-def _change(log: _Log, row: Sequence[Any]) -> Change:
+def _change(log: Log, row: Sequence[Any]) -> Change:
     """Raises StoreError for one that holds what was never written: nothing may be undone by it."""
     half, (i, step, undoes, at, kind, number, why, who, *both) = len(log.columns), row
     try:
         old, new = _side(kind, both[:half]), _side(kind, both[half:])
         return Change(i, step, undoes, at, Kind(kind), number, old, new, why, who)
     except (ValueError, TypeError, OverflowError) as error:
-        raise _damaged_entry(i) from error
+        raise damaged_entry(i) from error
 
 
 def _side(kind: str, values: list[Value | None]) -> Row | None:

@@ -31350,8 +31350,38 @@
     </message>
     <message>
       <location filename="core/store/backup.py" />
+      <source>part counts</source>
+      <translation>contadores de piezas</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>secondary offsets</source>
+      <translation>correctores secundarios</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
       <source>the file is damaged: {text}</source>
       <translation>el archivo está dañado: {text}</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>tool lives</source>
+      <translation>vidas de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>tool offsets</source>
+      <translation>correctores de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>tool shapes</source>
+      <translation>formas de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>zero offsets</source>
+      <translation>decalajes de origen</translation>
     </message>
     <message>
       <location filename="core/store/backup.py" />
@@ -31389,36 +31419,6 @@
       <translation>{which} no coincide con su suma de comprobación</translation>
     </message>
     <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>part counts</source>
-      <translation>contadores de piezas</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>secondary offsets</source>
-      <translation>correctores secundarios</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>tool lives</source>
-      <translation>vidas de herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>tool offsets</source>
-      <translation>correctores de herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>tool shapes</source>
-      <translation>formas de herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>zero offsets</source>
-      <translation>decalajes de origen</translation>
-    </message>
-    <message>
       <location filename="core/store/damaged_rows.py" />
       <source>clear the job from the queue ('turndesk jobs clear') and enter the job again</source>
       <translation>quite el trabajo de la cola ('turndesk jobs clear') e introdúzcalo otra vez</translation>
@@ -31440,8 +31440,98 @@
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
+      <source>entry {key} of the offset history</source>
+      <translation>la entrada {key} del historial de correctores</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the PIN entry</source>
+      <translation>la entrada de PIN</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
       <source>the database schema differs from the schema that TurnDesk created</source>
       <translation>el esquema de la base de datos difiere del que creó TurnDesk</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the event</source>
+      <translation>el evento</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the insert-change record</source>
+      <translation>el registro de cambio de plaquita</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the job</source>
+      <translation>el trabajo</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the measured feature</source>
+      <translation>la característica medida</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the part-count record</source>
+      <translation>el registro de cuenta de piezas</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the part-cycle record</source>
+      <translation>el registro de ciclo de pieza</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the production-stop record</source>
+      <translation>el registro de parada de producción</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the program record</source>
+      <translation>el registro de programa</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the program-run record</source>
+      <translation>el historial de corridas</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the program-version record</source>
+      <translation>el registro de versión de programa</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the reading</source>
+      <translation>la lectura</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the setting</source>
+      <translation>el ajuste</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the shared program</source>
+      <translation>el programa compartido</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the shared version</source>
+      <translation>la versión compartida</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the tool shape of {key}</source>
+      <translation>la forma de herramienta de {key}</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the tool-life record</source>
+      <translation>el registro de vida de herramienta</translation>
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
@@ -31475,18 +31565,8 @@
     </message>
     <message>
       <location filename="core/store/database.py" />
-      <source> (process {owner})</source>
-      <translation> (proceso {owner})</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
       <source>an index of the stored data was damaged; TurnDesk rebuilt the index from its table, and no data was lost</source>
       <translation>un índice de los datos guardados estaba dañado; TurnDesk reconstruyó el índice a partir de su tabla y no se perdió ningún dato</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>malformed database schema</source>
-      <translation>esquema de la base de datos dañado</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -31495,28 +31575,8 @@
     </message>
     <message>
       <location filename="core/store/database.py" />
-      <source>the data store in {folder} is in use by another TurnDesk{who}; close that TurnDesk, or make the entry there</source>
-      <translation>otro TurnDesk{who} usa el almacén de datos en {folder}; ciérrelo, o haga la entrada allí</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
       <source>the folder {folder} cannot be created ({cause}); set TURNDESK_HOME to a folder that you own</source>
       <translation>no se puede crear la carpeta {folder} ({cause}); ponga TURNDESK_HOME en una carpeta suya</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>the last saved change</source>
-      <translation>el último cambio guardado</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>the last {count} saved changes</source>
-      <translation>los últimos {count} cambios guardados</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>the log of the data store was damaged and lost {lost} made before the control shut down. Check offsets, counts and settings before you make a part; the log is saved as {saved}</source>
-      <translation>la bitácora del almacén de datos estaba dañada y perdió {lost} de antes de que se cerrara el control. Revise correctores, contadores y ajustes antes de hacer una pieza; la bitácora está guardada como {saved}</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -31559,11 +31619,6 @@
       <translation>{path} fue escrito por un TurnDesk más nuevo (versión de almacén {version}, este admite {newest}) y no se cambió. Use el TurnDesk más nuevo</translation>
     </message>
     <message>
-      <location filename="core/store/database.py" />
-      <source>{path}: the log of this database is damaged, and {lost} cannot be read. Start turndesk once to save a copy of the log and continue with the earlier data, or restore a backup</source>
-      <translation>{path}: la bitácora de esta base de datos está dañada y no se puede leer {lost}. Inicie turndesk una vez para guardar una copia de la bitácora y continuar con los datos anteriores, o restaure un respaldo</translation>
-    </message>
-    <message>
       <location filename="core/store/event_log.py" />
       <source>the setting {key} cannot be stored: {error}</source>
       <translation>el ajuste {key} no se puede guardar: {error}</translation>
@@ -31594,6 +31649,26 @@
       <translation>la cola está llena ({most_jobs} trabajos); quite los trabajos terminados</translation>
     </message>
     <message>
+      <location filename="core/store/log_damage.py" />
+      <source>the last saved change</source>
+      <translation>el último cambio guardado</translation>
+    </message>
+    <message>
+      <location filename="core/store/log_damage.py" />
+      <source>the last {count} saved changes</source>
+      <translation>los últimos {count} cambios guardados</translation>
+    </message>
+    <message>
+      <location filename="core/store/log_damage.py" />
+      <source>the log of the data store was damaged and lost {lost} made before the control shut down. Check offsets, counts and settings before you make a part; the log is saved as {saved}</source>
+      <translation>la bitácora del almacén de datos estaba dañada y perdió {lost} de antes de que se cerrara el control. Revise correctores, contadores y ajustes antes de hacer una pieza; la bitácora está guardada como {saved}</translation>
+    </message>
+    <message>
+      <location filename="core/store/log_damage.py" />
+      <source>{path}: the log of this database is damaged, and {lost} cannot be read. Start turndesk once to save a copy of the log and continue with the earlier data, or restore a backup</source>
+      <translation>{path}: la bitácora de esta base de datos está dañada y no se puede leer {lost}. Inicie turndesk una vez para guardar una copia de la bitácora y continuar con los datos anteriores, o restaure un respaldo</translation>
+    </message>
+    <message>
       <location filename="core/store/measured_parts.py" />
       <source>a reading must be a number; measure again</source>
       <translation>una lectura debe ser un número; mida otra vez</translation>
@@ -31619,24 +31694,19 @@
       <translation>{row} ya no está en la lista de características medidas; introduzca la característica otra vez</translation>
     </message>
     <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>up to {high} characters on one line</source>
-      <translation>hasta {high} caracteres en una línea</translation>
+      <location filename="core/store/offset_history.py" />
+      <source>cutting edge {orphans} would be left without a tool; clear this cutting edge first</source>
+      <translation>el filo {orphans} quedaría sin herramienta; borre antes ese filo</translation>
     </message>
     <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>whole number</source>
-      <translation>número entero</translation>
+      <location filename="core/store/offset_history.py" />
+      <source>offset {changed_since} was changed later; undo that change first</source>
+      <translation>el corrector {changed_since} se cambió después; deshaga antes ese cambio</translation>
     </message>
     <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>yes or no</source>
-      <translation>sí o no</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>{low}…{high} in</source>
-      <translation>{low}…{high} pulg</translation>
+      <location filename="core/store/offset_history.py" />
+      <source>{masters} would both be master tools; clear the current master first</source>
+      <translation>{masters} serían maestras a la vez; quite antes la maestra actual</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -31647,11 +31717,6 @@
       <location filename="core/store/offset_tables.py" />
       <source>entry {entry} of the offset history is damaged; the offsets themselves are verified by separate checksums. Restore a backup to recover the history</source>
       <translation>la entrada {entry} del historial de correctores está dañada; los correctores mismos se verifican con sumas propias. Restaure un respaldo para recuperar el historial</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>entry {key} of the offset history</source>
-      <translation>la entrada {key} del historial de correctores</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -31680,31 +31745,6 @@
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
-      <source>the PIN entry</source>
-      <translation>la entrada de PIN</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the event</source>
-      <translation>el evento</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the insert-change record</source>
-      <translation>el registro de cambio de plaquita</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the job</source>
-      <translation>el trabajo</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the measured feature</source>
-      <translation>la característica medida</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
       <source>the offset of {number} has never been set, so the offsets of other tools cannot be relative to this tool; touch off this tool first</source>
       <translation>el corrector de {number} nunca se fijó, así que los correctores de otras herramientas no pueden ser relativos a esta; tome antes la referencia de esta herramienta</translation>
     </message>
@@ -31712,66 +31752,6 @@
       <location filename="core/store/offset_tables.py" />
       <source>the offset of {number} has never been set; set cutting edge D1 of this tool before {number2}</source>
       <translation>el corrector de {number} nunca se fijó; fije el filo D1 de esta herramienta antes de {number2}</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the part-count record</source>
-      <translation>el registro de cuenta de piezas</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the part-cycle record</source>
-      <translation>el registro de ciclo de pieza</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the production-stop record</source>
-      <translation>el registro de parada de producción</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the program record</source>
-      <translation>el registro de programa</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the program-run record</source>
-      <translation>el historial de corridas</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the program-version record</source>
-      <translation>el registro de versión de programa</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the reading</source>
-      <translation>la lectura</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the setting</source>
-      <translation>el ajuste</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the shared program</source>
-      <translation>el programa compartido</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the shared version</source>
-      <translation>la versión compartida</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the tool shape of {key}</source>
-      <translation>la forma de herramienta de {key}</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the tool-life record</source>
-      <translation>el registro de vida de herramienta</translation>
     </message>
     <message>
       <location filename="core/store/offset_tables.py" />
@@ -31802,21 +31782,6 @@
       <location filename="core/store/offset_tables.py" />
       <source>{number} is an additional cutting edge; set cutting edge D1 of this tool as the master</source>
       <translation>{number} es un filo adicional; haga maestro el filo D1 de esta herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_undo.py" />
-      <source>cutting edge {orphans} would be left without a tool; clear this cutting edge first</source>
-      <translation>el filo {orphans} quedaría sin herramienta; borre antes ese filo</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_undo.py" />
-      <source>offset {changed_since} was changed later; undo that change first</source>
-      <translation>el corrector {changed_since} se cambió después; deshaga antes ese cambio</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_undo.py" />
-      <source>{masters} would both be master tools; clear the current master first</source>
-      <translation>{masters} serían maestras a la vez; quite antes la maestra actual</translation>
     </message>
     <message>
       <location filename="core/store/people.py" />
@@ -31867,6 +31832,21 @@
       <location filename="core/store/store.py" />
       <source>{path} is open read-only; nothing can be stored</source>
       <translation>{path} está abierto solo para lectura; no se puede guardar nada</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_connection.py" />
+      <source> (process {owner})</source>
+      <translation> (proceso {owner})</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_connection.py" />
+      <source>malformed database schema</source>
+      <translation>esquema de la base de datos dañado</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_connection.py" />
+      <source>the data store in {folder} is in use by another TurnDesk{who}; close that TurnDesk, or make the entry there</source>
+      <translation>otro TurnDesk{who} usa el almacén de datos en {folder}; ciérrelo, o haga la entrada allí</translation>
     </message>
     <message>
       <location filename="core/store/store_errors.py" />
@@ -31982,6 +31962,26 @@
       <location filename="core/store/store_rows.py" />
       <source>tip quadrant</source>
       <translation>cuadrante de punta</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>up to {high} characters on one line</source>
+      <translation>hasta {high} caracteres en una línea</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>whole number</source>
+      <translation>número entero</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>yes or no</source>
+      <translation>sí o no</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>{low}…{high} in</source>
+      <translation>{low}…{high} pulg</translation>
     </message>
     <message>
       <location filename="core/store/store_writer.py" />

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from app.quality.parts_book import parts_data
-from core.store import backup, database, measured_parts, part_cycles, tool_lives
+from core.store import backup, database, measured_parts, part_cycles, store_connection, tool_lives
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.part_cycles import CycleRow, StopRow
 from core.store.store import Store
@@ -211,7 +211,7 @@ def test_an_export_and_a_backup_have_it(store: Store, folder: Path, tmp_path: Pa
 def test_a_reading_without_its_feature_is_found(store: Store, folder: Path) -> None:
     read(store, feature(store), 1, 12.7)
     store.close()
-    with database.connect(folder / FILE_NAME, read_only=False) as connection:
+    with store_connection.connect(folder / FILE_NAME, read_only=False) as connection:
         connection.execute("PRAGMA foreign_keys = OFF")
         connection.execute("DELETE FROM part_features")
     assert any("part_readings" in problem for problem in backup.problems(folder / FILE_NAME))

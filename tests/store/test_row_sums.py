@@ -13,7 +13,7 @@ import pytest
 from app.compose.stored_offsets import stored_offsets
 from app.desk.command_errors import CommandError
 from core.store import backup, database, program_records, row_sums
-from core.store.offset_tables import named
+from core.store.damaged_rows import named
 from core.store.store import Store
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import ToolRow

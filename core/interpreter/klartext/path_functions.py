@@ -22,13 +22,7 @@ from core.interpreter.klartext.path_elements import PathElement, elements, goal,
 from core.interpreter.klartext.radius_compensation import Contour, Entry, way_in, way_out
 from core.interpreter.klartext.tip_control import swivelled
 from core.language.diagnostics import ProgramError
-from core.language.klartext.klartext_faults import (
-    COMPENSATION,
-    PREVIOUS,
-    ROUNDING,
-    WRONG_AXIS,
-    unsupported,
-)
+from core.language.klartext.klartext_faults import COMPENSATION, PREVIOUS, ROUNDING, WRONG_AXIS, unsupported
 from core.language.klartext.klartext_nodes import AxisWord, Corner, Move, Pole
 from core.message import Message
 
