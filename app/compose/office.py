@@ -185,7 +185,7 @@ class AlarmDrawing:
 
 def _drawing(record: Path) -> bytes:
     from app.shopfloor.alarm_drawing import alarm_drawing
-    from core.records.record_errors import RecordError
+    from core.records.record import RecordError
     from core.records.record_file import open_record
 
     try:

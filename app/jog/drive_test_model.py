@@ -40,8 +40,7 @@ from core.executor.hand_motion.jog_line import room_to_limit
 from core.executor.snapshot import BY_HAND, Snapshot, State
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record
 
 SHAPES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
 INCH_SIZES, MM_SIZES = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1), (0.05, 0.1, 0.2, 0.5, 1.0, 2.5)

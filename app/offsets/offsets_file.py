@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from app.desk.toml_file import read_toml, refuse, unknown, unknown_key
-from core.coded_error import CodedError
-from core.message import Message
+from core.message import CodedError, Message
 from core.store.store_rows import (
     FIELDS,
     MM_PER_INCH,

@@ -36,8 +36,7 @@ from core.machine.machine_model import Axis, SpindleModel
 from core.message import Message
 from core.records.ball_bar import BallBar, arcs_in, ball_bar
 from core.records.path_error import PathError, WorstPlace, of_samples, worst_places
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record
 from core.records.thread_passes import Thread, fastest, find_thread
 
 FloatArray = npt.NDArray[np.float64]

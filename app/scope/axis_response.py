@@ -20,8 +20,7 @@ from app.scope.drawing import Drawing
 from core.machine.machine_model import Axis
 from core.message import Message
 from core.records.derived_figures import velocity
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record
 from core.records.step_response import (
     StepResponse,
     at_other_speed,

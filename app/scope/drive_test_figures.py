@@ -21,8 +21,7 @@ from app.scope.axis_response import SHARES, Moved, Units, moved, step_rows, stre
 from core.executor.hand_motion.drive_test import PAUSE, DriveTestPath, Shape
 from core.machine.machine_model import Axis
 from core.message import Message
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record
 from core.records.step_response import (
     RampResponse,
     SineResponse,

@@ -17,8 +17,7 @@ from app.desk.translation import tr
 from app.scope.drawing import Drawing
 from core.machine.machine_model import SpindleModel
 from core.message import Message
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record
 from core.records.step_response import StepResponse, step_response
 
 FloatArray = npt.NDArray[np.float64]

@@ -15,9 +15,8 @@ from pathlib import Path
 
 from app.programs.whole_file import FileError, write_new, write_whole
 from app.sharing.program_files import FilesOfMachine, SharedFile
-from core.coded_error import CodedError, error_code
 from core.input_file import input_bytes
-from core.message import Message
+from core.message import CodedError, Message, error_code
 from core.sharing.shared_place import Found, Published, SharedPlace
 from core.sharing.sharing_errors import Cause, SharingError
 from core.sharing.version_record import MOST_BYTES, DeskState, new_version

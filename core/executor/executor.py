@@ -37,11 +37,12 @@ from core.executor.snapshot import ACTIVE, CYCLE, Event, InterruptedJob, Snapsho
 from core.executor.snapshot_publisher import Publisher
 from core.executor.spindle_control import SpindleControl
 from core.executor.start_conditions import guard_open
+from core.faults import TrippedError
 from core.interpreter.job_setup import Setup
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.motion.axis_limits import MotionError
-from core.ports import DriverError, MachinePorts, TrippedError, Unknown
+from core.ports import DriverError, MachinePorts, Unknown
 
 _RESTING = frozenset({State.ESTOP, State.DISABLED, State.IDLE, State.FAULT})
 _SETTLED = 100  # ticks in which nothing has happened

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from core.input_file import TooLargeError, input_text
+from core.input_file import TooLargeError, input_text, toml_tables
 from core.machine import driver_tables, machine_reading, machine_rules, machine_tables, signal_rules
 from core.machine.driver_tables import DriverReading, tables_there
 from core.machine.machine_model import (
@@ -36,7 +36,6 @@ from core.table_schema import (
     joined,
     written_openly,
 )
-from core.toml_text import toml_tables
 
 _MOST_BYTES = 16 * 1024 * 1024
 _NONE = (-math.inf, math.inf)

@@ -20,8 +20,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import radians, sin, tan
 
-from core.coded_error import CodedError
-from core.message import Message
+from core.message import CodedError, Message
 
 MM_PER_INCH = 25.4
 _RHOMBS = {"C": 80.0, "D": 55.0, "E": 75.0, "K": 55.0, "M": 86.0, "S": 90.0, "V": 35.0}

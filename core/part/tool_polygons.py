@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from core.coded_error import CodedError
+from core.message import CodedError
 
 FloatArray = NDArray[np.float64]
 CHORD = 0.0005  # mm between a nose and its chords

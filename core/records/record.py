@@ -1,4 +1,4 @@
-"""A record of the scope: samples of one stretch of time, one column a channel.
+"""A record of the scope: samples of a stretch of time, one column a channel, and its errors.
 
 Channels are named by what they are: ``X demand`` ``X actual`` ``X following error`` (mm, degrees of rotary
 axes), ``spindle command`` ``spindle speed`` (rpm), ``feed override`` and so on; ``channels_of`` says all.
@@ -6,17 +6,25 @@ axes), ``spindle command`` ``spindle speed`` (rpm), ``feed override`` and so on;
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from core.message import Message
+from core.input_file import MB, TooLargeError
+from core.message import CodedError, Message
 
 FloatArray = npt.NDArray[np.float64]
 _LATEST = 250_000_000_000.0  # s since 1970, in the year 9892: calendars end soon after
+# Of each axis, behind its letter.
+AXIS_CHANNELS = (("demand", ""), ("actual", ""), ("following error", ""), ("load", "%"))
+_FULL = frozenset({errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.EFBIG})
+MOST_BYTES = 512 * MB
+"""The most that a record may have, packed or unpacked; five minutes at 1 kHz have 50 MB."""
 
 
 class UnsoundError(ValueError):
@@ -31,8 +39,6 @@ class Channel(NamedTuple):
     logic: bool = False
 
 
-# Of each axis, behind its letter.
-AXIS_CHANNELS = (("demand", ""), ("actual", ""), ("following error", ""), ("load", "%"))
 # Of the machine as a whole.
 MACHINE_CHANNELS = (
     Channel("spindle command", "rpm"),
@@ -117,3 +123,39 @@ def checked_record(record: Record) -> Record:
         for name, column in record.columns.items()
     }
     return replace(record, columns=known)
+
+
+class RecordError(CodedError):
+    """``str()`` is the sentence for whoever asked: what, where, what to do."""
+
+
+class AnalysisError(CodedError):
+    """``str()`` is the sentence: what the record lacks, and what to do."""
+
+
+def damage(path: Path, error: Exception) -> RecordError:
+    """Return the error for a file whose content is not as it was written."""
+    if isinstance(error, UnsoundError):
+        return RecordError(
+            Message("{path} is damaged ({error}); open another scope record", path=path, error=error),
+            "damaged",
+        )
+    return RecordError(Message("{path} is damaged; open another scope record", path=path), "damaged")
+
+
+def why(path: Path, error: OSError) -> RecordError:
+    """The same as a sentence."""
+    if isinstance(error, TooLargeError):
+        return RecordError(
+            Message(
+                "{path}: {cause}, so the file is not a scope record; check the file name",
+                path=path,
+                cause=error.strerror,
+            ),
+            "too-large",
+        )
+    if error.errno in _FULL:
+        return RecordError(Message("{path}: the disk is full; free up disk space", path=path), "disk-full")
+    if isinstance(error, FileNotFoundError):
+        return RecordError(Message("{path}: file not found", path=path), "not-found")
+    return RecordError(Message("{path}: {cause}", path=path, cause=error.strerror or error), "unusable")

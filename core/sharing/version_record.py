@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 
-from core.coded_error import CodedError
-from core.message import Message
+from core.message import CodedError, Message
 from core.store.program_records import check_name
 from core.store.shared_versions import SharedVersion
 from core.store.store_errors import StoreError

@@ -11,6 +11,7 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
+from core.file_lock import unfinished_file
 from core.file_placing import put_in_place
 from core.message import Message
 from core.store import damaged_rows, database, log_damage, people, program_records, row_sums
@@ -19,7 +20,6 @@ from core.store.people import PersonRow
 from core.store.store_connection import WriterLock, companions, connect, version_of
 from core.store.store_errors import Cause, StoreError, cause_of, said, why
 from core.store.store_file import FILE_NAME, has_store, real_path
-from core.unfinished import unfinished_file
 
 _NAMES = {
     "tool_offsets": "tool offsets",

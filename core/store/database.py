@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core import file_placing
-from core.file_placing import put_in_place
+from core.file_lock import forget_killed, unfinished_file
+from core.file_placing import NEW_FILE, put_in_place, restrict_folder
 from core.input_file import open_input
 from core.message import Message
-from core.private_files import NEW_FILE, restrict_folder
 from core.store import row_sums
 from core.store.log_damage import check_log, put_damaged_log_aside
 from core.store.store_connection import (
@@ -28,7 +28,6 @@ from core.store.store_connection import (
 )
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_file import FILE_NAME, has_store
-from core.unfinished import forget_killed, unfinished_file
 
 APPLICATION_ID = 0x5475724E  # "TurN": tells a store of ours from any other SQLite file
 _MIGRATIONS = Path(__file__).with_name("migrations")

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 from core.message import Message
 from core.store import event_log, program_records, row_sums
-from core.store.program_records import text_key
 from core.store.store_errors import StoreError
+from core.store.store_file import text_key
 from core.store.store_rows import utc_now
 
 MOST_PARTS = 9_999_999

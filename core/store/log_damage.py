@@ -14,9 +14,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
-from core.file_placing import write_in_place
+from core.file_placing import restrict, write_in_place
 from core.message import Message
-from core.private_files import restrict
 from core.store.store_connection import companions, connect, has_log, in_use
 from core.store.store_errors import StoreError, why
 

@@ -14,31 +14,12 @@ from hashlib import sha256
 from core.message import Message
 from core.store import event_log, row_sums
 from core.store.store_errors import StoreError
+from core.store.store_file import notes_key, part_key, stock_key, text_key
 from core.store.store_rows import ProgramRow, RunRow, VersionRow, utc_now
 
 _NAME_BYTES = 200
 _FORBIDDEN = frozenset('/\\:*?"<>|')
 PREFIX = "sha256:"  # no file name contains a colon
-
-
-def stock_key(program: str) -> str:
-    """The setting that holds the stock of a program."""
-    return f"stock:{program}"
-
-
-def notes_key(program: str) -> str:
-    """The setting that holds what the setup person has noted about a program."""
-    return f"notes:{program}"
-
-
-def text_key(program: str) -> str:
-    """Return the setting that states which text was last loaded under this name."""
-    return f"text:{program}"
-
-
-def part_key(program: str) -> str:
-    """The setting that holds what else is kept of a program's part: stick-out and silenced checks."""
-    return f"part:{program}"
 
 
 def check_name(name: str) -> None:

@@ -25,9 +25,9 @@ from core.store.database import Opened, open_to_read, open_to_write
 from core.store.job_queue import JobRow
 from core.store.offset_tables import Reason
 from core.store.people import People
-from core.store.program_records import stock_key
 from core.store.row_sums import KEYS
 from core.store.store_errors import Cause, StoreError, why
+from core.store.store_file import stock_key
 from core.store.store_rows import (
     Change,
     EventRow,

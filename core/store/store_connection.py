@@ -10,8 +10,8 @@ from contextlib import suppress
 from pathlib import Path
 
 from core.file_lock import is_locked, lock, mark_locked
+from core.file_placing import NEW_FILE
 from core.message import Message
-from core.private_files import NEW_FILE
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_file import real_path
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from core.faults import code_of
 from core.message import Message
-from core.ports import AxisSample, DriverError, Segments, Stop, at_rest, code_of
+from core.ports import AxisSample, DriverError, Segments, Stop, at_rest
 from drivers.canopen.canopen_bus import Bus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_homing import Homing

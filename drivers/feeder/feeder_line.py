@@ -8,8 +8,9 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
+from core.faults import TrippedError, code_of
 from core.message import Message as Text
-from core.ports import ALL_UNKNOWN, Clock, DriverError, Fault, FloatArray, TrippedError, Unknown, code_of
+from core.ports import ALL_UNKNOWN, Clock, DriverError, Fault, FloatArray, Unknown
 from drivers.feeder.feeder_messages import NOTHING, VERSION, Message, fault_of, text, texts
 from drivers.reopening import Opening
 from drivers.wakeup import Bell

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from core.faults import code_of
 from core.message import Message
-from core.ports import BlockOp, BlockState, DriverError, ThreadOp, code_of
+from core.ports import BlockOp, BlockState, DriverError, ThreadOp
 from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_config import GrblAxis
 from drivers.grblhal.grblhal_controller import Controller

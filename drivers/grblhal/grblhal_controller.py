@@ -9,8 +9,9 @@ import re
 from collections import deque
 from collections.abc import Callable
 
+from core.faults import code_of
 from core.message import Message
-from core.ports import Clock, DriverError, Fault, FaultCode, code_of
+from core.ports import Clock, DriverError, Fault, FaultCode
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import GrblAxis, GrblConfig
 from drivers.grblhal.grblhal_dialogue import Ask, Runner, Script, Stream

@@ -6,8 +6,9 @@ import math
 from collections import deque
 from collections.abc import Callable, Sequence
 
+from core.faults import code_of
 from core.message import Message
-from core.ports import AxisSample, Cam, DriverError, Fault, Geared, Segments, Stop, at_rest, code_of
+from core.ports import AxisSample, Cam, DriverError, Fault, Geared, Segments, Stop, at_rest
 from drivers.hal.bridge.packets import number
 from drivers.hal.bridge.packets import pieces_of as pieces_told
 from drivers.hal.hal_config import HalConfig

@@ -10,19 +10,9 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from core.faults import code_of
 from core.message import Message
-from core.ports import (
-    BoolArray,
-    Cam,
-    Clock,
-    DriverError,
-    Fault,
-    FloatArray,
-    Segments,
-    StationState,
-    Stop,
-    code_of,
-)
+from core.ports import BoolArray, Cam, Clock, DriverError, Fault, FloatArray, Segments, StationState, Stop
 from drivers.operator_station import Panel
 from drivers.sample_log import SampleLog
 from drivers.setpoint_queue import Tolerance, straight

@@ -15940,6 +15940,11 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Check the controller's feed hold and door inputs, then press Cycle Start</source>
+      <translation>Revise las entradas de retención y de puerta del controlador, luego pulse arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>Check the tool offset and the start position of the axes, then press Reset</source>
       <translation>Revise el corrector de la herramienta y la posición de los ejes al arrancar, luego pulse Reset</translation>
     </message>
@@ -15950,13 +15955,28 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Check where the tool is before starting anything</source>
+      <translation>Vea dónde está la herramienta antes de arrancar nada</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>Check where the tool is. Save the log (F10), then exit and restart TurnDesk</source>
       <translation>Vea dónde está la herramienta. Guarde la bitácora (F10), luego cierre y vuelva a abrir TurnDesk</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Close the guard, read the list of functions that will restart, then press Cycle Start</source>
+      <translation>Cierre la guarda, lea la lista de funciones que arrancarán otra vez, luego pulse arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>Compare the end of the program with the original, add M30 and load the program again</source>
       <translation>Compare el final del programa con el original, agregue M30 y cargue el programa otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Correct the cause shown, then press Cycle Start</source>
+      <translation>Corrija la causa indicada, luego pulse arranque de ciclo</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -15970,6 +15990,31 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Follow the program message, then press Cycle Start</source>
+      <translation>Siga el mensaje del programa, luego pulse arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>M00 in the program</source>
+      <translation>M00 en el programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>M01 in the program, and Optional Stop is on</source>
+      <translation>M01 en el programa, y el paro opcional está activo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Make the machine safe, release the E-stop button, then press Drives On</source>
+      <translation>Ponga la máquina en estado seguro, suelte el botón de paro de emergencia y encienda los servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>No action needed: the stop was requested</source>
+      <translation>No hay que hacer nada: el paro fue pedido</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>PRESS E-STOP and switch the machine off. Save the log (F10), then exit and restart TurnDesk</source>
       <translation>PULSE EL PARO DE EMERGENCIA y apague la máquina. Guarde la bitácora (F10), luego cierre y vuelva a abrir TurnDesk</translation>
     </message>
@@ -15980,13 +16025,53 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Plug the pendant in again, then press Cycle Start. To work without the pendant, remove [pendant] and all pendant entries from the machine file</source>
+      <translation>Enchufe otra vez el mando colgante, luego pulse arranque de ciclo. Para trabajar sin él, borre del archivo de máquina [pendant] y todo lo que se refiere al mando colgante</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Press Cycle Start to resume or Reset to cancel the program</source>
+      <translation>Pulse arranque de ciclo para continuar o Reset para cancelar el programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Press Cycle Start to resume. Press O to switch Optional Stop off</source>
+      <translation>Pulse arranque de ciclo para continuar. Pulse O para apagar el paro opcional</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Press Cycle Start to run the next block. Press S to switch Single Block off</source>
+      <translation>Pulse arranque de ciclo para correr el bloque siguiente. Pulse S para apagar bloque a bloque</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>Press Reset, then Drives On. Save the program and the log (F10), then restart the program after the faulty line (F6)</source>
       <translation>Pulse Reset y encienda los servos. Guarde el programa y la bitácora (F10), luego reinicie el programa después de la línea defectuosa (F6)</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Reset was pressed and the program was canceled</source>
+      <translation>se pulsó Reset y el programa se canceló</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Single Block is on: each block waits for Cycle Start</source>
+      <translation>bloque a bloque está activo: cada bloque espera el arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>The axes have stopped on the path. Close other programs, then press Cycle Start</source>
       <translation>Los ejes pararon sobre la trayectoria. Cierre los demás programas, luego pulse arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>The buttons of the operator station do not work. Check the station's cable and power, then press Cycle Start</source>
+      <translation>Los botones de la estación del operador no funcionan. Revise el cable y la alimentación de la estación, luego pulse arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Turn the pot slowly through its range, and replace the pot if its signal is still unstable. Then press Cycle Start</source>
+      <translation>Gire despacio la perilla por todo su rango y cámbiela si su señal sigue inestable. Luego pulse arranque de ciclo</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16000,6 +16085,16 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>a fault in the guard switch or its cable</source>
+      <translation>una falla en el interruptor de la guarda o en su cable</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>a fault in the pendant's cable or hub</source>
+      <translation>una falla en el cable o en el concentrador del mando colgante</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>a faulty fuse, relay or terminal has changed the state of the output</source>
       <translation>un fusible, un relevador o una terminal con falla cambió el estado de la salida</translation>
     </message>
@@ -16007,6 +16102,11 @@
       <location filename="core/alarms/control_alarms.py" />
       <source>a pendant or the drive's own software is also switching the output</source>
       <translation>un mando colgante o el propio software del servo también conmuta la salida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>an E-stop button was pressed</source>
+      <translation>se pulsó un botón de paro de emergencia</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16040,6 +16140,11 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>controller in feed hold</source>
+      <translation>controlador en retención de avance</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>driver host stopped spindle/outputs</source>
       <translation>el proceso de drivers apagó el husillo o salidas</translation>
     </message>
@@ -16050,13 +16155,53 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>feed hold</source>
+      <translation>retención de avance</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>feed hold set by TurnDesk</source>
+      <translation>retención de avance activada por TurnDesk</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>feed hold was pressed</source>
+      <translation>se pulsó la retención de avance</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>feed hold: computer busy</source>
       <translation>retención de avance: computadora ocupada</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>guard open</source>
+      <translation>guarda abierta</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>no response from operator station</source>
+      <translation>la estación del operador no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>optional stop</source>
+      <translation>paro opcional</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>output not in commanded state</source>
       <translation>una salida no está en el estado ordenado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>override signal unstable</source>
+      <translation>señal de override inestable</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>pendant disconnected</source>
+      <translation>mando colgante desconectado</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16067,6 +16212,21 @@
       <location filename="core/alarms/control_alarms.py" />
       <source>program error</source>
       <translation>error de programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>program stop</source>
+      <translation>paro de programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>single block</source>
+      <translation>bloque a bloque</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>spindle stopped manually</source>
+      <translation>husillo parado a mano</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16090,6 +16250,16 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>the controller's own feed hold or safety door input is active</source>
+      <translation>la entrada de retención de avance o de puerta de seguridad del propio controlador está activa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the guard was opened during the cycle</source>
+      <translation>la guarda se abrió durante el ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>the last line is missing because the program was cut off when it was sent or copied</source>
       <translation>falta la última línea porque el programa se cortó al enviarlo o copiarlo</translation>
     </message>
@@ -16100,8 +16270,28 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>the operator station's cable is disconnected or damaged</source>
+      <translation>el cable de la estación del operador está suelto o dañado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the override pot's cable is loose</source>
+      <translation>el cable de la perilla de override está flojo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the pendant was unplugged</source>
+      <translation>se desenchufó el mando colgante</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>the program ends without M30 or M02</source>
       <translation>el programa termina sin M30 ni M02</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the safety circuit has opened</source>
+      <translation>el circuito de seguridad se abrió</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16110,8 +16300,23 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>the spindle was stopped manually</source>
+      <translation>el husillo se paró a mano</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the text of this alarm shows the cause</source>
+      <translation>el texto de esta alarma muestra la causa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>the tool offset or the part zero is wrong</source>
       <translation>el corrector de la herramienta o el cero de la pieza está mal</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the track of the feed or spindle override pot is worn</source>
+      <translation>la pista de la perilla de avance o de husillo está gastada</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16567,211 +16772,6 @@
       <location filename="core/alarms/spindle_alarms.py" />
       <source>wrong encoder counts per revolution in the machine file</source>
       <translation>cuentas de encoder por vuelta equivocadas en el archivo de máquina</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Check the controller's feed hold and door inputs, then press Cycle Start</source>
-      <translation>Revise las entradas de retención y de puerta del controlador, luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Check where the tool is before starting anything</source>
-      <translation>Vea dónde está la herramienta antes de arrancar nada</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Close the guard, read the list of functions that will restart, then press Cycle Start</source>
-      <translation>Cierre la guarda, lea la lista de funciones que arrancarán otra vez, luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Correct the cause shown, then press Cycle Start</source>
-      <translation>Corrija la causa indicada, luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Follow the program message, then press Cycle Start</source>
-      <translation>Siga el mensaje del programa, luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>M00 in the program</source>
-      <translation>M00 en el programa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>M01 in the program, and Optional Stop is on</source>
-      <translation>M01 en el programa, y el paro opcional está activo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Make the machine safe, release the E-stop button, then press Drives On</source>
-      <translation>Ponga la máquina en estado seguro, suelte el botón de paro de emergencia y encienda los servos</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>No action needed: the stop was requested</source>
-      <translation>No hay que hacer nada: el paro fue pedido</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Plug the pendant in again, then press Cycle Start. To work without the pendant, remove [pendant] and all pendant entries from the machine file</source>
-      <translation>Enchufe otra vez el mando colgante, luego pulse arranque de ciclo. Para trabajar sin él, borre del archivo de máquina [pendant] y todo lo que se refiere al mando colgante</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Press Cycle Start to resume or Reset to cancel the program</source>
-      <translation>Pulse arranque de ciclo para continuar o Reset para cancelar el programa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Press Cycle Start to resume. Press O to switch Optional Stop off</source>
-      <translation>Pulse arranque de ciclo para continuar. Pulse O para apagar el paro opcional</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Press Cycle Start to run the next block. Press S to switch Single Block off</source>
-      <translation>Pulse arranque de ciclo para correr el bloque siguiente. Pulse S para apagar bloque a bloque</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Reset was pressed and the program was canceled</source>
-      <translation>se pulsó Reset y el programa se canceló</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Single Block is on: each block waits for Cycle Start</source>
-      <translation>bloque a bloque está activo: cada bloque espera el arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>The buttons of the operator station do not work. Check the station's cable and power, then press Cycle Start</source>
-      <translation>Los botones de la estación del operador no funcionan. Revise el cable y la alimentación de la estación, luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Turn the pot slowly through its range, and replace the pot if its signal is still unstable. Then press Cycle Start</source>
-      <translation>Gire despacio la perilla por todo su rango y cámbiela si su señal sigue inestable. Luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>a fault in the guard switch or its cable</source>
-      <translation>una falla en el interruptor de la guarda o en su cable</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>a fault in the pendant's cable or hub</source>
-      <translation>una falla en el cable o en el concentrador del mando colgante</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>an E-stop button was pressed</source>
-      <translation>se pulsó un botón de paro de emergencia</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>controller in feed hold</source>
-      <translation>controlador en retención de avance</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>feed hold</source>
-      <translation>retención de avance</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>feed hold set by TurnDesk</source>
-      <translation>retención de avance activada por TurnDesk</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>feed hold was pressed</source>
-      <translation>se pulsó la retención de avance</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>guard open</source>
-      <translation>guarda abierta</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>no response from operator station</source>
-      <translation>la estación del operador no responde</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>optional stop</source>
-      <translation>paro opcional</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>override signal unstable</source>
-      <translation>señal de override inestable</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>pendant disconnected</source>
-      <translation>mando colgante desconectado</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>program stop</source>
-      <translation>paro de programa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>single block</source>
-      <translation>bloque a bloque</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>spindle stopped manually</source>
-      <translation>husillo parado a mano</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the controller's own feed hold or safety door input is active</source>
-      <translation>la entrada de retención de avance o de puerta de seguridad del propio controlador está activa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the guard was opened during the cycle</source>
-      <translation>la guarda se abrió durante el ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the operator station's cable is disconnected or damaged</source>
-      <translation>el cable de la estación del operador está suelto o dañado</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the override pot's cable is loose</source>
-      <translation>el cable de la perilla de override está flojo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the pendant was unplugged</source>
-      <translation>se desenchufó el mando colgante</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the safety circuit has opened</source>
-      <translation>el circuito de seguridad se abrió</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the spindle was stopped manually</source>
-      <translation>el husillo se paró a mano</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the text of this alarm shows the cause</source>
-      <translation>el texto de esta alarma muestra la causa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the track of the feed or spindle override pot is worn</source>
-      <translation>la pista de la perilla de avance o de husillo está gastada</translation>
     </message>
     <message>
       <location filename="core/drawings/contour_walk.py" />
@@ -30029,27 +30029,27 @@
       <translation>la hora de inicio del registro, {started} s después del 1 de enero de 1970, no es válida</translation>
     </message>
     <message>
-      <location filename="core/records/record_errors.py" />
+      <location filename="core/records/record.py" />
       <source>{path} is damaged ({error}); open another scope record</source>
       <translation>{path} está dañado ({error}); abra otro registro del osciloscopio</translation>
     </message>
     <message>
-      <location filename="core/records/record_errors.py" />
+      <location filename="core/records/record.py" />
       <source>{path} is damaged; open another scope record</source>
       <translation>{path} está dañado; abra otro registro del osciloscopio</translation>
     </message>
     <message>
-      <location filename="core/records/record_errors.py" />
+      <location filename="core/records/record.py" />
       <source>{path}: file not found</source>
       <translation>{path}: no se encontró el archivo</translation>
     </message>
     <message>
-      <location filename="core/records/record_errors.py" />
+      <location filename="core/records/record.py" />
       <source>{path}: the disk is full; free up disk space</source>
       <translation>{path}: el disco está lleno; libere espacio en el disco</translation>
     </message>
     <message>
-      <location filename="core/records/record_errors.py" />
+      <location filename="core/records/record.py" />
       <source>{path}: {cause}, so the file is not a scope record; check the file name</source>
       <translation>{path}: {cause}; por eso el archivo no es un registro del osciloscopio; compruebe el nombre del archivo</translation>
     </message>

@@ -11,7 +11,7 @@ import pytest
 from app.cli.main import main
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_rows, read_shape_rows, read_tool_shapes
-from core.coded_error import CodedError
+from core.message import CodedError
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.store.store import Store
 from core.store.store_rows import HANDS, TOOL_KINDS, Kind, ShapeRow, ToolRow

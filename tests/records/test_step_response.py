@@ -7,14 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from core.records.record_errors import AnalysisError
-from core.records.step_response import (
-    at_other_speed,
-    ramp_response,
-    sine_response,
-    step_response,
-    would_trip,
-)
+from core.records.record import AnalysisError
+from core.records.step_response import at_other_speed, ramp_response, sine_response, step_response, would_trip
 from tests.coded import raises_code
 
 T = np.arange(4001) / 1000.0 - 0.5

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError
 from core.records.thread_passes import Thread, fastest, find_thread
 from tests.coded import raises_code
 

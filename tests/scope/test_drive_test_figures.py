@@ -20,8 +20,7 @@ from app.scope.drive_test_figures import (
     words_of,
 )
 from core.executor.hand_motion.drive_test import DriveTestPath, Limits, Shape
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record
 from core.records.step_response import bandwidth, narrowest_window, sine_response, speed_of_window
 from tests.coded import raises_code
 from tests.scope.played_record import RATE, record_of, seconds

@@ -20,9 +20,10 @@ from core.executor.program_run import ProgramRun
 from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import ACTIVE, CYCLE, STOPPED, State
 from core.executor.start_conditions import Starting
+from core.faults import Trip, code_of
 from core.machine.machine_model import Axis
 from core.message import Message, join_messages
-from core.ports import AxisSample, Trip, Unknown, code_of
+from core.ports import AxisSample, Unknown
 
 _HOST = 0.03  # s beyond a drive's own time: a drive that trips by itself is to be heard first
 _RECENT = 0.1  # s for which a slide may still trail behind a speed that has gone
