@@ -9,7 +9,6 @@ from __future__ import annotations
 import errno
 import os
 import stat
-import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from io import BufferedReader
@@ -89,6 +88,8 @@ def failures_as(refusal: Callable[[Exception], Exception]) -> Iterator[None]:
 
 def toml_tables(text: str) -> dict[str, object]:
     """Return the tables of a TOML text. Raises ValueError alone, with the cause and, if known, the place."""
+    import tomllib  # noqa: PLC0415  few of those who open files read TOML
+
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from core.executor.job import Job
     from core.executor.snapshot import Snapshot
     from core.machine.machine_model import Machine
-    from core.store.part_cycles import StopRow
+    from core.store.production.part_cycles import StopRow
 
 MISSING = "{what} needs {package}, which is not installed; install turndesk[shop]"
 

@@ -23,8 +23,8 @@ from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Severity
 from core.message import Message
-from core.store import job_queue
-from core.store.job_queue import NOTE_LONGEST, JobRow
+from core.store.production import job_queue
+from core.store.production.job_queue import NOTE_LONGEST, JobRow
 from core.store.store_errors import StoreError
 from core.store.store_file import notes_key
 

@@ -19,8 +19,7 @@ from app.desk.translation import tr
 from app.scope.drawing import Drawing
 from core.machine.machine_model import Axis
 from core.message import Message
-from core.records.derived_figures import velocity
-from core.records.record import AnalysisError, Record
+from core.records.record import AnalysisError, Record, velocity
 from core.records.step_response import (
     StepResponse,
     at_other_speed,

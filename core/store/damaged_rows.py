@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 
 from core.message import Message
 from core.store import row_sums
-from core.store.offset_tables import LOGS, TABLES
+from core.store.offsets.offset_tables import LOGS, TABLES
 from core.store.row_sums import HISTORIES, KEYS, Key
 from core.store.store_rows import ShapeRow
 from core.tool_edges import edge_name

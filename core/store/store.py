@@ -11,20 +11,14 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
 from core.message import Message
-from core.store import (
-    damaged_rows,
-    event_log,
-    job_queue,
-    offset_history,
-    offset_tables,
-    people,
-    program_records,
-    touch_off,
-)
+from core.store import damaged_rows, event_log, people, program_records
 from core.store.database import Opened, open_to_read, open_to_write
-from core.store.job_queue import JobRow
-from core.store.offset_tables import Reason
+from core.store.offsets import offset_history, offset_tables, touch_off
+from core.store.offsets.offset_tables import Reason
+from core.store.offsets.touch_off import Touch
 from core.store.people import People
+from core.store.production import job_queue
+from core.store.production.job_queue import JobRow
 from core.store.row_sums import KEYS
 from core.store.store_errors import Cause, StoreError, why
 from core.store.store_file import stock_key
@@ -45,7 +39,6 @@ from core.store.store_rows import (
     ZeroRow,
     utc_now,
 )
-from core.store.touch_off import Touch
 
 if TYPE_CHECKING:
     from concurrent.futures import Future

@@ -31624,31 +31624,6 @@
       <translation>el ajuste {key} no se puede guardar: {error}</translation>
     </message>
     <message>
-      <location filename="core/store/job_queue.py" />
-      <source>a job must have 1 to {most_parts} parts, not {expected}</source>
-      <translation>un trabajo debe tener de 1 a {most_parts} piezas, no {expected}</translation>
-    </message>
-    <message>
-      <location filename="core/store/job_queue.py" />
-      <source>a job note can have at most {note_longest} characters, on one line</source>
-      <translation>la nota de un trabajo puede tener como máximo {note_longest} caracteres, en una línea</translation>
-    </message>
-    <message>
-      <location filename="core/store/job_queue.py" />
-      <source>that job is not in the queue anymore</source>
-      <translation>ese trabajo ya no está en la cola</translation>
-    </message>
-    <message>
-      <location filename="core/store/job_queue.py" />
-      <source>the data of this job does not match its checksum; clear the job from the queue and enter the job again</source>
-      <translation>los datos de este trabajo no coinciden con su suma de comprobación; quite el trabajo de la cola e introdúzcalo otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/store/job_queue.py" />
-      <source>the queue is full ({most_jobs} jobs); remove finished jobs</source>
-      <translation>la cola está llena ({most_jobs} trabajos); quite los trabajos terminados</translation>
-    </message>
-    <message>
       <location filename="core/store/log_damage.py" />
       <source>the last saved change</source>
       <translation>el último cambio guardado</translation>
@@ -31669,119 +31644,99 @@
       <translation>{path}: la bitácora de esta base de datos está dañada y no se puede leer {lost}. Inicie turndesk una vez para guardar una copia de la bitácora y continuar con los datos anteriores, o restaure un respaldo</translation>
     </message>
     <message>
-      <location filename="core/store/measured_parts.py" />
-      <source>a reading must be a number; measure again</source>
-      <translation>una lectura debe ser un número; mida otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/store/measured_parts.py" />
-      <source>that reading has already been deleted</source>
-      <translation>esa lectura ya está borrada</translation>
-    </message>
-    <message>
-      <location filename="core/store/measured_parts.py" />
-      <source>the feature of this reading is not in the list of measured features anymore; nothing was saved</source>
-      <translation>la característica de esta lectura ya no está en la lista de características medidas; no se guardó nada</translation>
-    </message>
-    <message>
-      <location filename="core/store/measured_parts.py" />
-      <source>{program} already has a feature named {row}; give this feature another name</source>
-      <translation>{program} ya tiene una característica llamada {row}; dé otro nombre a esta</translation>
-    </message>
-    <message>
-      <location filename="core/store/measured_parts.py" />
-      <source>{row} is not in the list of measured features anymore; enter the feature again</source>
-      <translation>{row} ya no está en la lista de características medidas; introduzca la característica otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_history.py" />
+      <location filename="core/store/offsets/offset_history.py" />
       <source>cutting edge {orphans} would be left without a tool; clear this cutting edge first</source>
       <translation>el filo {orphans} quedaría sin herramienta; borre antes ese filo</translation>
     </message>
     <message>
-      <location filename="core/store/offset_history.py" />
+      <location filename="core/store/offsets/offset_history.py" />
       <source>offset {changed_since} was changed later; undo that change first</source>
       <translation>el corrector {changed_since} se cambió después; deshaga antes ese cambio</translation>
     </message>
     <message>
-      <location filename="core/store/offset_history.py" />
+      <location filename="core/store/offsets/offset_history.py" />
       <source>{masters} would both be master tools; clear the current master first</source>
       <translation>{masters} serían maestras a la vez; quite antes la maestra actual</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>G{number} does not exist; settable offsets are G54…G59</source>
       <translation>G{number} no existe; los ceros ajustables son G54…G59</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>entry {entry} of the offset history is damaged; the offsets themselves are verified by separate checksums. Restore a backup to recover the history</source>
       <translation>la entrada {entry} del historial de correctores está dañada; los correctores mismos se verifican con sumas propias. Restaure un respaldo para recuperar el historial</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>no G54…G59 change to undo</source>
       <translation>no hay cambio de G54…G59 que deshacer</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>no offset change to undo</source>
       <translation>no hay cambio de corrector que deshacer</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>no preset change to undo</source>
       <translation>no hay cambio de preset que deshacer</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>no tool data change to undo</source>
       <translation>no hay cambio de datos de herramienta que deshacer</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>no tool shape change to undo</source>
       <translation>no hay cambio de forma de herramienta que deshacer</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>the offset of {number} has never been set, so the offsets of other tools cannot be relative to this tool; touch off this tool first</source>
       <translation>el corrector de {number} nunca se fijó, así que los correctores de otras herramientas no pueden ser relativos a esta; tome antes la referencia de esta herramienta</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>the offset of {number} has never been set; set cutting edge D1 of this tool before {number2}</source>
       <translation>el corrector de {number} nunca se fijó; fije el filo D1 de esta herramienta antes de {number2}</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>{details} is out of range; enter {accepted}</source>
       <translation>{details} está fuera de rango; introduzca {accepted}</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>{letter}{number} does not exist; offsets are {letter2}1…32</source>
       <translation>{letter}{number} no existe; los correctores son {letter2}1…32</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>{letter}{number} does not exist; use 1 to {last}</source>
       <translation>{letter}{number} no existe; use de 1 a {last}</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>{number} does not have a tool shape yet; enter the tool type first: {range}</source>
       <translation>{number} aún no tiene forma de herramienta; introduzca primero el tipo de herramienta: {range}</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>{number} has other cutting edges; clear {edges} first</source>
       <translation>{number} tiene otros filos; borre antes {edges}</translation>
     </message>
     <message>
-      <location filename="core/store/offset_tables.py" />
+      <location filename="core/store/offsets/offset_tables.py" />
       <source>{number} is an additional cutting edge; set cutting edge D1 of this tool as the master</source>
       <translation>{number} es un filo adicional; haga maestro el filo D1 de esta herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/touch_off.py" />
+      <source>the offset of {number} has never been set; touch off both X and Z</source>
+      <translation>el corrector de {number} nunca se fijó; tome referencia en X y Z</translation>
     </message>
     <message>
       <location filename="core/store/people.py" />
@@ -31797,6 +31752,61 @@
       <location filename="core/store/people.py" />
       <source>{name} is not in the list of users</source>
       <translation>{name} no está en la lista de usuarios</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/job_queue.py" />
+      <source>a job must have 1 to {most_parts} parts, not {expected}</source>
+      <translation>un trabajo debe tener de 1 a {most_parts} piezas, no {expected}</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/job_queue.py" />
+      <source>a job note can have at most {note_longest} characters, on one line</source>
+      <translation>la nota de un trabajo puede tener como máximo {note_longest} caracteres, en una línea</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/job_queue.py" />
+      <source>that job is not in the queue anymore</source>
+      <translation>ese trabajo ya no está en la cola</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/job_queue.py" />
+      <source>the data of this job does not match its checksum; clear the job from the queue and enter the job again</source>
+      <translation>los datos de este trabajo no coinciden con su suma de comprobación; quite el trabajo de la cola e introdúzcalo otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/job_queue.py" />
+      <source>the queue is full ({most_jobs} jobs); remove finished jobs</source>
+      <translation>la cola está llena ({most_jobs} trabajos); quite los trabajos terminados</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/measured_parts.py" />
+      <source>a reading must be a number; measure again</source>
+      <translation>una lectura debe ser un número; mida otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/measured_parts.py" />
+      <source>that reading has already been deleted</source>
+      <translation>esa lectura ya está borrada</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/measured_parts.py" />
+      <source>the feature of this reading is not in the list of measured features anymore; nothing was saved</source>
+      <translation>la característica de esta lectura ya no está en la lista de características medidas; no se guardó nada</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/measured_parts.py" />
+      <source>{program} already has a feature named {row}; give this feature another name</source>
+      <translation>{program} ya tiene una característica llamada {row}; dé otro nombre a esta</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/measured_parts.py" />
+      <source>{row} is not in the list of measured features anymore; enter the feature again</source>
+      <translation>{row} ya no está en la lista de características medidas; introduzca la característica otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/tool_lives.py" />
+      <source>tool T{number} does not exist; tools are T{numbers} to T{numbers2}</source>
+      <translation>la herramienta T{number} no existe; las herramientas son T{numbers} a T{numbers2}</translation>
     </message>
     <message>
       <location filename="core/store/program_records.py" />
@@ -32012,16 +32022,6 @@
       <location filename="core/store/store_writer.py" />
       <source>{dropped} events were lost because memory was full while no data could be saved</source>
       <translation>{dropped} eventos se perdieron porque la memoria estaba llena mientras no se podían guardar datos</translation>
-    </message>
-    <message>
-      <location filename="core/store/tool_lives.py" />
-      <source>tool T{number} does not exist; tools are T{numbers} to T{numbers2}</source>
-      <translation>la herramienta T{number} no existe; las herramientas son T{numbers} a T{numbers2}</translation>
-    </message>
-    <message>
-      <location filename="core/store/touch_off.py" />
-      <source>the offset of {number} has never been set; touch off both X and Z</source>
-      <translation>el corrector de {number} nunca se fijó; tome referencia en X y Z</translation>
     </message>
   </context>
 </TS>

@@ -15,7 +15,7 @@ from app.shopfloor.office_status import OfficeLook
 from app.shopfloor.status_file import Status, StatusFile, status_of
 from core.alarms import CATALOGUE
 from core.executor.snapshot import Alarm, InterruptedJob, Snapshot, State
-from core.store.part_cycles import StopRow
+from core.store.production.part_cycles import StopRow
 from tests.cli.test_json_page import declared_alone
 
 INTERRUPTED = InterruptedJob(

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from core.store import database, job_queue
+from core.store import database
 from core.store.damaged_rows import named
-from core.store.job_queue import JobRow
+from core.store.production import job_queue
+from core.store.production.job_queue import JobRow
 from core.store.store import Store, StoreError
 from core.store.store_file import FILE_NAME
 from tests.coded import raises_code

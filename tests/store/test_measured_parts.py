@@ -12,15 +12,16 @@ from pathlib import Path
 import pytest
 
 from app.quality.parts_book import parts_data
-from core.store import backup, database, measured_parts, part_cycles, store_connection, tool_lives
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow, StopRow
+from core.store import backup, database, store_connection
+from core.store.production import measured_parts, part_cycles, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import utc
-from core.store.tool_lives import LifeRow
 from tests.coded import raises_code
 
 SPIGOT = FeatureRow(0, "pin.nc", "SPIGOT", "diameter", 12.7, -0.02, 0.02, "tool", 3, 1, 10, 1)
@@ -232,8 +233,8 @@ WRITER = """
 import sys
 from pathlib import Path
 from core.store import measured_parts, part_cycles
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow
 from core.store.store import Store
 
 store = Store.open(Path(sys.argv[1]))

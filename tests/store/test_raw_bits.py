@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from core.store import backup, database, job_queue, measured_parts, row_sums, shared_versions
+from core.store import backup, database, row_sums, shared_versions
 from core.store.damaged_rows import TABLES_CHANGED, named
-from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.production import job_queue, measured_parts
+from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.shared_versions import SharedVersion
 from core.store.store import Store
 from core.store.store_errors import StoreError

@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.store import database, offset_history, offset_tables, touch_off
-from core.store.offset_tables import Reason
+from core.store import database
+from core.store.offsets import offset_history, offset_tables, touch_off
+from core.store.offsets.offset_tables import Reason
+from core.store.offsets.touch_off import Touch
 from core.store.store_rows import Kind, ToolRow
-from core.store.touch_off import Touch
 
 WHY = Reason("try", "test")
 START = {

@@ -6,8 +6,9 @@ import sqlite3
 from collections.abc import Mapping, Sequence
 
 from core.message import Message
-from core.store import offset_tables, row_sums
-from core.store.offset_tables import (
+from core.store import row_sums
+from core.store.offsets import offset_tables
+from core.store.offsets.offset_tables import (
     LOGS,
     MOST_STEPS,
     OFFSET_LOG,

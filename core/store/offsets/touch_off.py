@@ -11,8 +11,8 @@ import sqlite3
 from typing import NamedTuple
 
 from core.message import Message
-from core.store import offset_tables
-from core.store.offset_tables import Reason
+from core.store.offsets import offset_tables
+from core.store.offsets.offset_tables import Reason
 from core.store.store_errors import StoreError
 from core.store.store_rows import Change, Kind, Row, ToolRow
 from core.tool_edges import edge_name
