@@ -27954,11 +27954,6 @@
       <translation>Bloque {row}: {name} no es un número; corrija el bloque.</translation>
     </message>
     <message>
-      <location filename="core/motion/curved_axes.py" />
-      <source>Block {number}: the move needs {needed} degrees of C rotation, but C turns only {turn} degrees.</source>
-      <translation>Bloque {number}: el movimiento necesita {needed} grados de giro de C, pero C gira solo {turn} grados.</translation>
-    </message>
-    <message>
       <location filename="core/motion/motion_path.py" />
       <source>Block {number} comes after the end of the path. Begin a new path.</source>
       <translation>El bloque {number} viene después del final de la trayectoria. Empiece otra trayectoria.</translation>
@@ -27972,6 +27967,11 @@
       <location filename="core/motion/motion_path.py" />
       <source>Block {number} starts {max} mm from the end of the previous block. Plan the block from the current machine position.</source>
       <translation>El bloque {number} empieza a {max} mm del final del bloque anterior. Planifique el bloque desde la posición actual de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/motion_path.py" />
+      <source>Block {number}: the move needs {needed} degrees of C rotation, but C turns only {turn} degrees.</source>
+      <translation>Bloque {number}: el movimiento necesita {needed} grados de giro de C, pero C gira solo {turn} grados.</translation>
     </message>
     <message>
       <location filename="core/motion/motion_path.py" />

@@ -12,8 +12,7 @@ import numpy as np
 
 from core.executor.job import ReadAhead
 from core.executor.machine_context import MachineContext
-from core.executor.program_motion.path_section import Overrides, PathSection, Progress
-from core.executor.program_motion.plan_queue import PlanQueue, Track
+from core.executor.program_motion.path_section import Overrides, PathSection, PlanQueue, Progress, Track
 from core.executor.program_motion.thread_pass import GearedThreadPass, ThreadPass
 from core.executor.program_motion.thread_path import ThreadRetract
 from core.interpreter.elementary_blocks import Block, Kind
