@@ -182,7 +182,7 @@ def test_an_older_store_gets_its_queue(tmp_path: Path) -> None:
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from core.store import job_queue
+from core.store.production import job_queue
 from core.store.store import Store
 
 store = Store.open(Path(sys.argv[1]))

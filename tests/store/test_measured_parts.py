@@ -232,7 +232,7 @@ def test_a_migration_that_is_put_in_between_is_refused(
 WRITER = """
 import sys
 from pathlib import Path
-from core.store import measured_parts, part_cycles
+from core.store.production import measured_parts, part_cycles
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.part_cycles import CycleRow
 from core.store.store import Store
