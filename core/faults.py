@@ -1,14 +1,14 @@
-"""What a driver can find wrong: the code of the alarm that an operator reads, and a sentence for the log.
+"""What a driver can find wrong, with the code of its alarm; what has tripped, and what is unknown then.
 
 Every code here has its entry in the catalogue (``core.alarms``), with number, likely causes and remedy.
 """
 
 from __future__ import annotations
 
-from typing import Literal
+from enum import StrEnum
+from typing import Literal, NamedTuple, Protocol
 
-from core.coded_error import CodedError
-from core.message import Message
+from core.message import CodedError, Message
 
 FaultCode = Literal[
     # axes
@@ -110,8 +110,48 @@ class DriverError(CodedError):
 
 class TrippedError(DriverError):
     """What stands between control and machine has switched something off by itself, and does nothing more
-    before the control has taken note of it (``core.ports.Tripping``).
+    before the control has taken note of it (``Tripping``).
     """
 
     def __init__(self, text: str) -> None:
         super().__init__(text, "late")
+
+
+class Trip(NamedTuple):
+    """What something between control and machine has switched off, because nobody told it anything.
+
+    ``away``: s for which it heard nothing. ``spindle``: it was to turn. ``outputs``: those that were on.
+    ``found``: on the way back, where it was the machine that was not heard: it was on all the while.
+    """
+
+    number: int
+    away: float
+    spindle: bool
+    outputs: tuple[str, ...]
+    found: bool = False
+
+
+class Tripping(Protocol):
+    """A feeder that stops spindle and outputs when its control is silent. From then on it takes no setpoint
+    and switches nothing on, with TrippedError, until the control has acknowledged what it did.
+    """
+
+    def tripped(self) -> Trip | None:
+        """What it has switched off and nobody has acknowledged; None: nothing."""
+        ...
+
+    def acknowledge(self, trip: Trip) -> None:
+        """The control knows of this very trip; a newer one stays. Raises DriverError."""
+        ...
+
+
+class Unknown(StrEnum):
+    """Of what nothing is heard any more: its wire is lost, or is silent."""
+
+    SLIDES = "slides"
+    SPINDLE = "spindle"
+    OUTPUTS = "outputs"
+    INPUTS = "inputs"
+
+
+ALL_UNKNOWN = frozenset(Unknown)

@@ -1,12 +1,16 @@
-"""Files that are there whole or not at all, whatever cuts the writing off: a full disk, a kill, the mains."""
+"""Files that are there whole or not at all, whatever cuts the writing off, and private files."""
 
 from __future__ import annotations
 
 import errno
 import os
+import stat
 import sys
 from contextlib import suppress
 from pathlib import Path
+
+NEW_FILE = 0o600  # of a file that is about to be made
+_OWNER = 0o700
 
 
 def put_in_place(finished: Path, path: Path) -> None:
@@ -80,3 +84,25 @@ def bytes_to_disk(path: Path) -> None:
     # Windows brings to the disk only what is open for writing; elsewhere a file may be read-only.
     with path.open("r+b" if sys.platform == "win32" else "rb") as file:
         os.fsync(file.fileno())
+
+
+def restrict(path: Path) -> None:
+    """Take the rights of all other users away from a file or a folder.
+
+    A file of another owner stays as it is, and so does a folder like /tmp, in which every user may write.
+    """
+    with suppress(OSError):
+        mode = stat.S_IMODE(path.stat().st_mode)
+        if mode & ~_OWNER and not mode & stat.S_ISVTX:
+            path.chmod(mode & _OWNER)
+
+
+def restrict_folder(folder: Path) -> None:
+    """Restrict a folder and the files directly in it. Do nothing if the folder does not exist."""
+    if not folder.is_dir():
+        return
+    restrict(folder)
+    with suppress(OSError):
+        for path in folder.iterdir():
+            if path.is_file() and not path.is_symlink():
+                restrict(path)

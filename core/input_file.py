@@ -1,4 +1,4 @@
-"""The door for files from outside: regular files of a stated size, and one error for any failure of a reader.
+"""The door for files from outside: regular files of a stated size, one error for any failure; TOML.
 
 A reader takes its bytes from ``input_bytes``, which raises nothing but OSError, and parses them within
 ``failures_as``, which turns whatever the parser raises into the reader's own error.
@@ -14,8 +14,7 @@ from contextlib import contextmanager
 from io import BufferedReader
 from pathlib import Path
 
-from core.coded_error import CodedError
-from core.message import Message
+from core.message import CodedError, Message
 
 MB = 1024 * 1024
 # A pipe without a writer would keep whoever opens it; a terminal is not to become the one of this process.
@@ -85,3 +84,17 @@ def failures_as(refusal: Callable[[Exception], Exception]) -> Iterator[None]:
         raise
     except Exception as error:
         raise refusal(error) from error
+
+
+def toml_tables(text: str) -> dict[str, object]:
+    """Return the tables of a TOML text. Raises ValueError alone, with the cause and, if known, the place."""
+    import tomllib  # noqa: PLC0415  few of those who open files read TOML
+
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except RecursionError as error:
+        raise ValueError("brackets are nested too deeply; remove the inner ones") from error
+    except ValueError as error:  # Python's own words for an integer that it does not convert
+        raise ValueError("a whole number has too many digits; shorten it") from error

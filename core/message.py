@@ -1,4 +1,4 @@
-"""Text for people: a template with named values, so that a text can be translated after it was made."""
+"""Text for people as a template with named values, errors with codes, and the nearest known word."""
 
 from __future__ import annotations
 
@@ -134,3 +134,27 @@ def _unpacked(stored: object) -> Any:
         return stored
     values = {name: _unpacked(each) for name, each in stored["values"].items()}
     return make_message(stored["template"], values, stored["case"])
+
+
+class CodedError(Exception):
+    """An error with a text for the reader and a code for programs and tests.
+
+    ``code`` names the fault in kebab case, such as ``disk-full``. It is empty where nothing needs to
+    distinguish the faults.
+    """
+
+    def __init__(self, text: str = "", code: str = "") -> None:
+        super().__init__(text)
+        self.code = code
+
+
+def error_code(error: BaseException) -> str:
+    """Return the code of an error that another error replaces, or an empty code where it has none."""
+    return error.code if isinstance(error, CodedError) else ""
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """The known word that is most like ``word``, empty where none is."""
+    from difflib import get_close_matches  # noqa: PLC0415  only who has mistyped waits for it
+
+    return next(iter(get_close_matches(word, list(known), n=1)), "")

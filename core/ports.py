@@ -15,8 +15,6 @@ import numpy.typing as npt
 
 from core import faults
 
-# --- a controller that plans by itself ------------------------------------------------------------------
-
 
 class RapidOp(NamedTuple):
     """Straight to ``x z``, as fast as the rapid rate in force allows."""
@@ -152,8 +150,8 @@ BoolArray = npt.NDArray[np.bool_]
 Fault = faults.Fault
 FaultCode = faults.FaultCode
 DriverError = faults.DriverError
-TrippedError = faults.TrippedError
-code_of = faults.code_of
+Unknown = faults.Unknown
+ALL_UNKNOWN = faults.ALL_UNKNOWN
 
 
 class Stop(StrEnum):
@@ -443,46 +441,6 @@ class TouchInput(Protocol):
         ...
 
 
-class Trip(NamedTuple):
-    """What something between control and machine has switched off, because nobody told it anything.
-
-    ``away``: s for which it heard nothing. ``spindle``: it was to turn. ``outputs``: those that were on.
-    ``found``: on the way back, where it was the machine that was not heard: it was on all the while.
-    """
-
-    number: int
-    away: float
-    spindle: bool
-    outputs: tuple[str, ...]
-    found: bool = False
-
-
-class Tripping(Protocol):
-    """A feeder that stops spindle and outputs when its control is silent. From then on it takes no setpoint
-    and switches nothing on, with TrippedError, until the control has acknowledged what it did.
-    """
-
-    def tripped(self) -> Trip | None:
-        """What it has switched off and nobody has acknowledged; None: nothing."""
-        ...
-
-    def acknowledge(self, trip: Trip) -> None:
-        """The control knows of this very trip; a newer one stays. Raises DriverError."""
-        ...
-
-
-class Unknown(StrEnum):
-    """Of what nothing is heard any more: its wire is lost, or is silent."""
-
-    SLIDES = "slides"
-    SPINDLE = "spindle"
-    OUTPUTS = "outputs"
-    INPUTS = "inputs"
-
-
-ALL_UNKNOWN = frozenset(Unknown)
-
-
 class Wakeup(Protocol):
     """How a driver tells by itself that something has changed: a machine at rest is then looked at ten times
     a second, and at once when it rings.
@@ -527,9 +485,8 @@ class MachinePorts:
     lock: SpindleHold | None = None  # None: C has a drive of its own, or needs no change-over
     orientation: SpindleOrientation | None = None  # None: the spindle stops anywhere
     blocks: BlockSink | None = None  # a controller that plans by itself: it takes no setpoints
-    trips: Tripping | None = None  # None: nothing switches off by itself when the control is silent
+    trips: faults.Tripping | None = None  # None: nothing switches off by itself when the control is silent
     untraced: str = ""  # why the drives do not follow every setpoint, but only the end of each move
-
     wakeup: Wakeup | None = None  # None: it is looked at in every tick, at rest too
     samples: SampleSource | None = None  # None: the scope has what the axes say at each tick
     # What is not known now. The ports go on to tell the last that was known of it, and nobody may take that

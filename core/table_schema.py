@@ -8,21 +8,8 @@ from dataclasses import fields as fields_of
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple, TypeGuard, TypeVar
 
-from core.coded_error import CodedError
-from core.key_declaration import (
-    LENGTHS,
-    Field,
-    Kind,
-    Pair,
-    Schema,
-    Value,
-    keys_of,
-    shown,
-    to_file,
-    to_model,
-)
-from core.message import Message
-from core.nearest import nearest
+from core.key_declaration import LENGTHS, Field, Kind, Pair, Schema, Value, keys_of, shown, to_file, to_model
+from core.message import CodedError, Message, nearest
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from app.desk import command_errors
-from core.coded_error import CodedError
+from core.message import CodedError
 
 
 @contextmanager

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from core.executor.interrupted_job import InterruptedJob
+from core.executor.snapshot import InterruptedJob
 
 _MADE = InterruptedJob(
     program="PIN.NC",

@@ -19,26 +19,30 @@ ROOMS = ("app", "core", "drivers")
 FEW = 4  # files that one looks into
 SENTENCES = (
     # what somebody wants to know; the words that he searches for; the file
-    ("Wear counts from the next part", "wear", "core/executor/changed_offsets.py"),
-    ("Block delete is proved with the switch on and off", "block delete", "core/proving/block_delete.py"),
+    ("Wear counts from the next part", "wear", "core/executor/program_run.py"),
+    ("Block delete is proved with the switch on and off", "block delete", "core/proving/prove_program.py"),
     ("The retract of a tapered thread", "threading", "core/interpreter/omniturn/threading_cycles.py"),
-    ("A pass follows the spindle's measured angle", "thread pass", "core/executor/thread_pass.py"),
+    (
+        "A pass follows the spindle's measured angle",
+        "thread pass",
+        "core/executor/program_motion/thread_pass.py",
+    ),
     ("The slides follow the spindle by themselves", "gear", "drivers/spindle_gear.py"),
     ("Feed hold stops on the path", "feed hold", "core/executor/machine_control.py"),
-    ("Single block stops behind each block", "single block", "core/executor/cycle.py"),
+    ("Single block stops behind each block", "single block", "core/executor/program_motion/cycle.py"),
     ("Cycle repeat begins the next part", "cycle repeat", "core/executor/program_run.py"),
     ("Why Cycle Start is refused", "cycle start", "core/executor/start_conditions.py"),
-    ("The optional stop M01", "optional stop", "core/executor/standstill.py"),
-    ("An E-stop takes everything off", "safe stop", "core/executor/safe_stop.py"),
-    ("How far an axis may lag behind", "following error", "core/executor/following_error.py"),
-    ("In which order the axes are homed", "homing", "core/executor/homing_order.py"),
-    ("A jog lasts as long as its lease", "jog lease", "core/executor/jogging.py"),
-    ("Clicks of the handwheel", "handwheel", "core/executor/handwheel.py"),
-    ("A program that did not come to its end", "interrupted job", "core/executor/interrupted_job.py"),
-    ("Read-ahead stops at a standstill", "read ahead", "core/executor/read_ahead.py"),
+    ("The optional stop M01", "optional stop", "core/executor/program_motion/standstill.py"),
+    ("An E-stop takes everything off", "safe stop", "core/executor/safety/safe_stop.py"),
+    ("How far an axis may lag behind", "following error", "core/executor/safety/supervision.py"),
+    ("In which order the axes are homed", "homing", "core/executor/hand_motion/touch_off.py"),
+    ("A jog lasts as long as its lease", "jog lease", "core/executor/hand_motion/jogging.py"),
+    ("Clicks of the handwheel", "handwheel", "core/executor/hand_motion/handwheel.py"),
+    ("A program that did not come to its end", "interrupted job", "core/executor/snapshot.py"),
+    ("Read-ahead stops at a standstill", "read ahead", "core/executor/job.py"),
     ("The queue always ends at rest", "setpoint queue", "drivers/setpoint_queue.py"),
-    ("A dead thread stops the machine", "watchdog", "core/executor/watchdog.py"),
-    ("Whether a part is counted", "part count", "core/executor/parts_made.py"),
+    ("A dead thread stops the machine", "watchdog", "core/executor/safety/watchdog.py"),
+    ("Whether a part is counted", "part count", "core/executor/control_status.py"),
     ("Speed by the radius", "constant surface speed", "core/interpreter/omniturn/spindle_speed.py"),
     (
         "The nose's path beside the contour",
@@ -63,7 +67,7 @@ SENTENCES = (
     ("Tools are touched off", "touch off", "app/jog/jog_touch_off.py"),
     ("Back into the part after a stop", "restart", "core/interpreter/restart/restart_approach.py"),
     ("What a G54 is set to", "zero offsets", "app/offsets/zero_offsets.py"),
-    ("No move beyond the travel is proved", "soft limits", "core/proving/machine_checks.py"),
+    ("No move beyond the travel is proved", "soft limits", "core/proving/checks/machine_checks.py"),
     ("How long a part takes", "cycle time", "core/proving/program_timeline.py"),
     ("PLANE POINTS on a table", "plane", "core/interpreter/klartext/plane_functions.py"),
     ("C with the third axis", "third axis", "core/interpreter/sinumerik/third_axis.py"),
@@ -175,5 +179,5 @@ def test_every_room_is_on_the_map() -> None:
 
 
 def test_a_word_that_nothing_has_leads_nowhere() -> None:
-    assert not found("flux capacitor", "core/executor/cycle.py")
-    assert not found("spindle", "core/executor/homing_order.py")
+    assert not found("flux capacitor", "core/executor/program_motion/cycle.py")
+    assert not found("spindle", "core/executor/hand_motion/touch_off.py")

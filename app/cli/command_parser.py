@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from app.desk.command_errors import EXIT_USAGE, CommandError
-from core.message import Message
-from core.nearest import nearest
+from core.message import Message, nearest
 
 BEFORE = ("machine", "program", "offsets")
 """Options of the screen."""

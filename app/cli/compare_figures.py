@@ -14,9 +14,8 @@ from core.language.source import Dialect
 if TYPE_CHECKING:
     from app.cli.proof_job import ProofJob
     from core.language.source import Source
-    from core.proving.part_features import Pair
-    from core.proving.part_report import PartReport
-    from core.proving.proof_report import Report
+    from core.proving.other_offsets import Pair
+    from core.proving.proof_report import PartReport, Report
 
 _NOUGHT = 5e-5  # in or mm
 

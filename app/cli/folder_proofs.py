@@ -31,7 +31,7 @@ from core.language.source import Source
 from core.message import Message
 
 if TYPE_CHECKING:
-    from core.proving.part_setting import PartSetting
+    from core.proving.program_tools import PartSetting
 
 
 def prove_many(args: argparse.Namespace, jobs: FittingJobs) -> int:

@@ -10,8 +10,7 @@ from collections.abc import Collection
 from pathlib import Path
 
 from app.desk.toml_file import read_toml, refuse, unknown_key
-from core.coded_error import CodedError
-from core.message import Message
+from core.message import CodedError, Message
 
 
 def read_inputs(path: Path, known: Collection[str] = ()) -> dict[str, bool]:

@@ -15,7 +15,7 @@ from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from core.store.job_queue import JobRow
+    from core.store.production.job_queue import JobRow
     from core.store.store import Store
 
 
@@ -99,7 +99,7 @@ def _add(store: Store, args: argparse.Namespace) -> str:
     from app.compose.workshop import samples
     from app.desk.data_folder import data_folder
     from app.desk.program_folder import ProgramFolders
-    from core.store import job_queue
+    from core.store.production import job_queue
 
     folder = data_folder() / "programs"
     path = ProgramFolders((folder, samples())).find(args.name)
@@ -117,7 +117,7 @@ def _add(store: Store, args: argparse.Namespace) -> str:
 
 
 def _move(store: Store, args: argparse.Namespace) -> str:
-    from core.store import job_queue
+    from core.store.production import job_queue
 
     row = _at(store, args.place)
     _at(store, args.to)
@@ -126,7 +126,7 @@ def _move(store: Store, args: argparse.Namespace) -> str:
 
 
 def _remove(store: Store, args: argparse.Namespace) -> str:
-    from core.store import job_queue
+    from core.store.production import job_queue
 
     row = _at(store, args.place)
     store.write(lambda c: job_queue.remove(c, row.id)).result()
@@ -134,7 +134,7 @@ def _remove(store: Store, args: argparse.Namespace) -> str:
 
 
 def _clear(store: Store, args: argparse.Namespace) -> str:
-    from core.store import job_queue
+    from core.store.production import job_queue
 
     count = store.write(lambda c: job_queue.clear(c, everything=args.all)).result()
     return f"{count} {'job' if count == 1 else 'jobs'} taken out\n"

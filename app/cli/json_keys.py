@@ -8,10 +8,10 @@ from core.quality.capability import Capability
 from core.quality.stops import ReasonShare
 from core.records.record import Channel
 from core.store import table_keys
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow, StopRow
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.tool_lives import InsertChange, LifeRow
 from core.store.store_rows import EventRow, MillRow, PresetRow, SecondaryRow, ShapeRow, ToolRow, ZeroRow
-from core.store.tool_lives import InsertChange, LifeRow
 
 DIAGNOSTIC = keys(
     """

@@ -20,7 +20,7 @@ from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from core.machine.machine_changes import Change
+    from core.machine.machine_file import Change
     from core.machine.machine_model import Machine
 
 

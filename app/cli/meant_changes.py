@@ -22,8 +22,7 @@ from app.offsets.suspicious_changes import (
     travel_of,
 )
 from core.message import Message
-from core.store.offset_fields import MM_PER_INCH, Sort
-from core.store.store_rows import FIELDS, Kind, Value
+from core.store.store_rows import FIELDS, MM_PER_INCH, Kind, Sort, Value
 from core.tool_edges import edge_name
 
 if TYPE_CHECKING:

@@ -21,19 +21,21 @@ from app.offsets.offset_values import stated_fields
 from app.offsets.offsets_file import ALIASES, TOOL_KEYS, out_of_range, shown
 from core.access.access_table import Act
 from core.message import Message
-from core.store import offset_tables
-from core.store.offset_fields import MM_PER_INCH, Field, Sort
-from core.store.offset_tables import Reason
+from core.store.offsets import offset_tables
+from core.store.offsets.offset_tables import Reason
 from core.store.store_rows import (
     FIELDS,
+    MM_PER_INCH,
     OFFSETS,
     ZERO_CODES,
     Change,
+    Field,
     Kind,
     MillRow,
     PresetRow,
     Row,
     ShapeRow,
+    Sort,
     ToolRow,
     Value,
     ZeroRow,

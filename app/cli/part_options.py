@@ -12,8 +12,7 @@ from app.cli.figures import MM_PER_INCH
 from app.cli.program_options import STDIN, circumstances, read_source
 from app.desk.command_errors import CommandError
 from app.desk.kept_part import lasting
-from core.coded_error import error_code
-from core.message import Message
+from core.message import Message, error_code
 from core.part.stock_forms import FORMS
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from core.part.stock import Stock
     from core.part.stock_spec import StockSpec
     from core.part.tool_shape import ToolShape
-    from core.proving.part_setting import PartSetting
+    from core.proving.program_tools import PartSetting
 
 
 _LONGEST = 1016.0  # mm

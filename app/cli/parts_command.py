@@ -48,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _names(store: Store, wanted: str | None) -> list[str]:
     """The programs of which anything is kept, or the one that is asked for."""
-    from core.store import measured_parts, part_cycles
+    from core.store.production import measured_parts, part_cycles
 
     known = {row.program for row in store.runs()}
     with store.read() as connection:
@@ -78,7 +78,7 @@ def _data(store: Store, name: str) -> PartsData:
 
 def _told(store: Store, names: Sequence[str]) -> dict[str, object]:
     """Lengths mm, times s and UTC; X of corrections a radius, as the tables of offsets have it."""
-    from core.store import part_cycles, tool_lives
+    from core.store.production import part_cycles, tool_lives
 
     with store.read() as connection:
         lives = [row._asdict() for row in tool_lives.lives(connection).values()]

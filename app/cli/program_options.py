@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
 from app.desk.standard_input import DASH, standard_input
-from core.coded_error import error_code
 from core.language.source import Dialect, dialect_of
-from core.message import Message
+from core.message import Message, error_code
 
 if TYPE_CHECKING:
     from core.interpreter.job_setup import Setup

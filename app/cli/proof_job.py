@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from core.interpreter.job_setup import Setup
     from core.machine.machine_model import Machine
-    from core.proving.part_setting import PartSetting
+    from core.proving.program_tools import PartSetting
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,7 @@ from core.tool_edges import NamedTool
 
 if TYPE_CHECKING:
     from core.language.diagnostics import Diagnostic
-    from core.proving.part_report import PartReport
-    from core.proving.proof_report import Report
+    from core.proving.proof_report import PartReport, Report
 
 # Checks that interpreting makes by itself, by the code of their findings.
 _CHECKS = {"spindle-stopped": "spindle-off", "collet-open": "collet-open", "thread-run-up": "thread-run-up"}

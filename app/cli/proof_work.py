@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from app.cli.figures import Json
     from app.report.run_record import RunRecord
     from core.language.source import Source
-    from core.proving.part_report import PartReport
-    from core.proving.proof_report import Report
+    from core.proving.proof_report import PartReport, Report
 
 _ROOT = Path(__file__).parents[2]
 _ROOMS = ("app/cli", "app/compose", "app/report", "core")  # what a proof is made by

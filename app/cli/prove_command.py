@@ -11,12 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.part_options import add_part_options
-from app.cli.program_options import (
-    add_ideal_option,
-    add_program_options,
-    circumstances,
-    read_source,
-)
+from app.cli.program_options import add_ideal_option, add_program_options, circumstances, read_source
 from app.cli.progress_bar import Progress
 from app.compose.extra import proof_workers
 from app.desk import command_errors
@@ -34,8 +29,7 @@ if TYPE_CHECKING:
     from app.cli.report_file import ReportFile
     from core.interpreter.job_setup import Setup
     from core.language.source import Source
-    from core.proving.part_report import PartReport
-    from core.proving.proof_report import Report
+    from core.proving.proof_report import PartReport, Report
 
 
 def add_parser(subparsers: SubParsers) -> None:

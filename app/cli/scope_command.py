@@ -40,7 +40,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Tell what is in the record; write its samples where ``--csv`` says."""
-    from core.records.record_errors import RecordError
+    from core.records.record import RecordError
     from core.records.record_file import open_record, save_csv, write_csv
 
     if args.json and args.csv == _STDOUT:

@@ -17,8 +17,8 @@ from core.message import Message
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
     from app.transfer.line_transfer import Received, Transfer, TransferProgress
+    from core.machine.desk_tables import DncModel
     from core.machine.machine_model import Machine
-    from core.machine.serial_table import DncModel
 
 _EOL = {"crlf": "\r\n", "lf": "\n", "cr": "\r"}
 
@@ -147,7 +147,7 @@ def _settings(args: argparse.Namespace, machine: Machine) -> DncModel:
     from dataclasses import replace
 
     from app.compose.program_transfer import PLAIN
-    from core.machine.serial_table import DncModel
+    from core.machine.desk_tables import DncModel
 
     model = machine.hardware.table(DncModel) or PLAIN
     names = ("port", "baud", "bits", "parity", "stop", "flow", "wrap", "dc_codes", "wait", "leader")

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from app.shapes.shape_form import COLUMNS, ShapeForm
 from core.language.source import Dialect
-from core.message import Message
-from core.nearest import nearest
+from core.message import Message, nearest
 from core.shapes.number_words import plain
 from core.shapes.pieces import begun, setting_at, with_shape
 from core.shapes.program_head import HEAD

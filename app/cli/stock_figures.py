@@ -11,7 +11,7 @@ from core.message import Message
 if TYPE_CHECKING:
     from core.part.stock import Stock
     from core.part.turned_part import Profile
-    from core.proving.part_report import PartReport
+    from core.proving.proof_report import PartReport
 
 
 def stock_json(part: PartReport, dialect: Dialect) -> Json | None:

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
 from core.access.access_table import Act, Level, level_for
-from core.coded_error import error_code
-from core.message import Message
+from core.message import Message, error_code
 
 if TYPE_CHECKING:
     from core.store.people import People, PersonRow

@@ -10,7 +10,7 @@ from typing import Protocol
 from app.desk.machine_file_changes import FileChanges
 from app.desk.persistence import Persistence
 from core.executor.commands import Command, EnableDrives
-from core.machine.machine_changes import ABSENT, Change, changes
+from core.machine.machine_file import ABSENT, Change, changes
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError

@@ -16,7 +16,7 @@ from app.desk.latest import AbandonedError, Watch, sentence
 from app.desk.program_loading import PartProved
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message
-from core.proving.part_checks import is_serious
+from core.proving.checks.part_checks import is_serious
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from core.part.tool_shape import ToolShape
     from core.proving.other_offsets import OtherPart
     from core.proving.part_history import PartMoves
-    from core.proving.part_report import PartReport
-    from core.proving.part_setting import PartSetting
+    from core.proving.program_tools import PartSetting
+    from core.proving.proof_report import PartReport
 
 Shapes = Callable[[], Mapping[int, "ToolShape"]]
 """The shapes of tools, by T, as they are when it is called; on the worker."""

@@ -14,8 +14,8 @@ from app.quality.readings_section import ReadingsSection
 from app.quality.tool_life_section import ToolLifeSection
 from app.quality.trends_section import TrendsSection
 from app.special.special_functions import SpecialFunction
+from core.machine.desk_tables import GaugeModel
 from core.machine.machine_model import Machine
-from core.machine.serial_table import GaugeModel
 
 
 def sections(desk: Desk, machine: Machine, watch: PartsWatch) -> Sequence[SpecialFunction]:

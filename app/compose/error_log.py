@@ -12,8 +12,8 @@ import time
 from pathlib import Path
 
 from app.desk.data_folder import data_folder
+from core.file_placing import NEW_FILE
 from core.message import Message
-from core.private_files import NEW_FILE
 
 _SIZE = 1_000_000  # bytes, three files of it
 _AGAIN = 2.0  # s between two tries to write again

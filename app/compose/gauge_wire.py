@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from app.compose.serial_ports import open_wire
 from app.desk.translation import tr
 from app.quality.gauge_line import LineReader, Reading, reading_of
-from core.machine.serial_table import GaugeModel
+from core.machine.desk_tables import GaugeModel
 from core.message import Message
 from core.ports import DriverError
 from drivers.serial_line import LineSettings, Wire

@@ -17,10 +17,9 @@ from app.desk.data_folder import RECORDS, data_folder
 from app.desk.run_without_screen import HeadlessRun
 from app.quality.parts_book import tools_of
 from core.executor.executor import Executor
-from core.executor.interrupted_job import InterruptedJob
 from core.executor.interruption_watch import Note
 from core.executor.recorder import Recorder, recorded_of
-from core.executor.snapshot import Event
+from core.executor.snapshot import Event, InterruptedJob
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError

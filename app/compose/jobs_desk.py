@@ -18,7 +18,7 @@ from app.jobs.next_job import JobProofs
 from app.quality.parts_watch import PartsWatch
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 from core.store.store_rows import ToolRow
 
 Before = Callable[[str], tuple[str, dict[int, ToolRow]]]

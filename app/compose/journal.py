@@ -15,12 +15,11 @@ from app.offsets.offset_book import OffsetBook, OffsetRows, rows_of_store
 from app.programs.run_history import note_cut_off_runs
 from app.quality.cycle_recorder import CycleRecorder
 from app.quality.parts_book import PartsBook
-from core.executor.interrupted_job import InterruptedJob, of_plain, plain
-from core.executor.snapshot import Event
+from core.executor.snapshot import Event, InterruptedJob, of_plain, plain
 from core.language.source import Source
 from core.message import Message
-from core.store import backup, database, people
-from core.store.backup_verdict import Verdict, verdict
+from core.store import backup, people, store_connection
+from core.store.backup import Verdict, verdict
 from core.store.damaged_rows import OF_PROGRAMS
 from core.store.people import People, PersonRow
 from core.store.store import Store
@@ -308,7 +307,7 @@ class Journal(Persistence):
     def judge(self, source: Path) -> Verdict:
         """Look through a backup and hold it against the store. Raises StoreError."""
         self.opened()
-        with closing(database.connect(self._folder / FILE_NAME, read_only=True)) as now:
+        with closing(store_connection.connect(self._folder / FILE_NAME, read_only=True)) as now:
             return verdict(now, source)
 
     def restore(self, source: Path) -> Path | None:

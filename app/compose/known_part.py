@@ -8,11 +8,11 @@ from dataclasses import replace
 from app.desk.kept_part import KeptPart
 from core.interpreter.job_setup import ToolOffset
 from core.machine.machine_model import Machine
-from core.part.clamping import Clamping
+from core.part.stock import Clamping
 from core.part.tool_shape import ToolShape
-from core.proving.cutting_checks import LIVE
-from core.proving.part_setting import PartSetting
-from core.proving.thread_checks import Drives
+from core.proving.checks.machine_checks import LIVE
+from core.proving.checks.thread_checks import Drives
+from core.proving.program_tools import PartSetting
 
 OF_MACHINE = "set by the machine file"
 

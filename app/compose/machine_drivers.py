@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.compose.extra import extras
-from core.machine import backup_table, machine_file, serial_table, setter_table, shop_network_tables
+from core.machine import desk_tables, machine_file, setter_table, shop_network_tables
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.table_schema import Driver, Finding, MachineFileError, written
@@ -25,12 +25,12 @@ DRIVERS: tuple[Driver, ...] = (
     grblhal_table.DRIVER,
     hal_table.DRIVER,
     board_table.DRIVER,
-    serial_table.DRIVER,
+    desk_tables.DRIVER,
     setter_table.DRIVER,
     pendant_table.DRIVER,
     mtconnect_table.DRIVER,
     shop_network_tables.DRIVER,
-    backup_table.DRIVER,
+    desk_tables.BACKUP_DRIVER,
     *(table for extra in extras().values() for table in extra.machine_tables()),
 )
 
@@ -47,7 +47,7 @@ def read_machine_file(text: str, source: str) -> Machine:
 
 
 def _known_checks(silenced: tuple[str, ...], source: str) -> None:
-    from core.proving.part_checks import CHECKS
+    from core.proving.checks.part_checks import CHECKS
 
     wrong = [name for name in silenced if name not in CHECKS]
     if wrong:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from core.executor.job import Job
     from core.executor.snapshot import Snapshot
     from core.machine.machine_model import Machine
-    from core.store.part_cycles import StopRow
+    from core.store.production.part_cycles import StopRow
 
 MISSING = "{what} needs {package}, which is not installed; install turndesk[shop]"
 
@@ -185,7 +185,7 @@ class AlarmDrawing:
 
 def _drawing(record: Path) -> bytes:
     from app.shopfloor.alarm_drawing import alarm_drawing
-    from core.records.record_errors import RecordError
+    from core.records.record import RecordError
     from core.records.record_file import open_record
 
     try:

@@ -12,7 +12,7 @@ from app.programs.whole_file import FileError
 from app.transfer.line_transfer import Received
 from core.input_file import input_bytes
 from core.language.source import LARGEST_FILE, Source, SourceError, load_source
-from core.machine.serial_table import DncModel
+from core.machine.desk_tables import DncModel
 from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.serial_line import LineSettings

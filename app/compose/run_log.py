@@ -13,8 +13,8 @@ from typing import NamedTuple, TextIO
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import data_folder
 from core.executor.snapshot import Event
+from core.file_placing import NEW_FILE
 from core.message import Message
-from core.private_files import NEW_FILE
 
 MOST = 500  # files of runs and failures
 MOST_BYTES = 64_000_000  # of them together

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.part.stock import Stock
     from core.part.stock_spec import StockSpec
-    from core.proving.part_setting import PartSetting
+    from core.proving.program_tools import PartSetting
     from core.proving.prove_program import Progress
 
 _LARGEST = 16 * MB  # of a profile

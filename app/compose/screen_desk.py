@@ -53,13 +53,12 @@ from core.access.access_table import Act
 from core.closing import ClosingStep
 from core.executor.commands import LeftInterrupted
 from core.executor.executor import Executor
-from core.executor.interrupted_job import InterruptedJob
 from core.executor.recorder import Recorder, recorded_of
-from core.executor.snapshot import Event, Snapshot
-from core.executor.watchdog import WATCHDOG, ExecutorThread, Watchdog
+from core.executor.safety.watchdog import WATCHDOG, ExecutorThread, Watchdog
+from core.executor.snapshot import Event, InterruptedJob, Snapshot
 from core.interpreter.modal_state import Modal
 from core.language.source import Dialect, usual_ending
-from core.machine.backup_table import BackupTable
+from core.machine.desk_tables import BackupTable
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import Clock, DriverError

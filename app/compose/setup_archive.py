@@ -16,11 +16,10 @@ from xml.parsers import expat
 
 from app.compose.machine_setup import read_machine
 from app.desk.command_errors import CommandError
-from core.coded_error import CodedError, error_code
 from core.drawings.drawing_file import is_drawing
 from core.input_file import TooLargeError, failures_as, input_bytes, open_input
 from core.language.source import SourceError, source_of
-from core.message import Message
+from core.message import CodedError, Message, error_code
 from core.store import backup
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError

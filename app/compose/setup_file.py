@@ -30,10 +30,8 @@ from app.compose.setup_archive import (
 )
 from app.desk.command_errors import CommandError, as_command_error, cannot_write
 from app.desk.data_folder import data_folder
-from core.coded_error import error_code
-from core.file_placing import make_folder, put_in_place, write_in_place
-from core.message import Message
-from core.private_files import restrict
+from core.file_placing import make_folder, put_in_place, restrict, write_in_place
+from core.message import Message, error_code
 from core.store import backup, people
 from core.store.store import Store
 from core.store.store_errors import StoreError

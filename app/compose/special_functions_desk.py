@@ -30,9 +30,8 @@ from app.special.special_functions import SpecialFunction, SpecialFunctions
 from app.special.spindle_limit import SpindleSpeedLimit
 from app.transfer.serial_transfer import SerialTransfer
 from core.language.source import Dialect, usual_ending
-from core.machine.backup_table import BackupTable
+from core.machine.desk_tables import BackupTable, DncModel
 from core.machine.machine_model import Machine
-from core.machine.serial_table import DncModel
 
 MakeFunction = Callable[[Desk, Machine, Persistence, Latest], SpecialFunction]
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from core.executor.job import Job
     from core.machine.machine_model import Machine
     from core.part.solid_picture import Image
-    from core.proving.part_setting import PartSetting
+    from core.proving.program_tools import PartSetting
 
 WIDE, HIGH = 168, 112  # pixels
 MOST = 400  # files; of more the oldest fifth goes
@@ -60,8 +60,7 @@ class Thumbnails:
     def _made(self, job: Job, setting: PartSetting, watch: Watch) -> Image | None:
         from core.part.solid_picture import SolidPicture
         from core.part.solid_view import SolidView, fitted
-        from core.proving.finished_part import finished_part
-        from core.proving.part_history import PartGathering
+        from core.proving.part_history import PartGathering, finished_part
         from core.proving.program_timeline import Timeline
 
         gathered = PartGathering(setting)

@@ -253,7 +253,7 @@ def give_mdi(desk: Desk, machine: Machine, offsets: Callable[[], Offsets], keep:
 
 def give_part(desk: Desk, machine: Machine, keep: Persistence) -> None:
     """Give the desk its page of findings and stock."""
-    from core.proving.part_checks import CHECKS
+    from core.proving.checks.part_checks import CHECKS
 
     held = machine.clamping
     of_machine = frozenset(machine.silenced)

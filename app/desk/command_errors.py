@@ -6,8 +6,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from core.coded_error import CodedError, error_code
-from core.message import Message
+from core.message import CodedError, Message, error_code
 
 EXIT_OK, EXIT_ERRORS, EXIT_USAGE = 0, 1, 2
 EXIT_INTERRUPTED = 130  # what a shell tells of Ctrl+C

@@ -5,8 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from core.coded_error import CodedError
-from core.message import Message
+from core.message import CodedError, Message
 
 HOME = "TURNDESK_HOME"
 BACKUPS = "backups"  # the folder of backups, within it

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from core.executor.start_clearance import Clearance
+from core.executor.commands import Clearance
 
 Legs = tuple[tuple[float, float, bool], ...]
 """A path in machine X and Z, mm, with whether each leg is a rapid."""

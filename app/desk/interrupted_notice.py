@@ -9,8 +9,7 @@ from app.desk import formats
 from app.desk.program_loading import Loaded
 from app.desk.screen_settings import Units
 from app.desk.translation import tr
-from core.executor.interrupted_job import CONTROL_LOST, InterruptedJob
-from core.executor.snapshot import Snapshot, Starts, State
+from core.executor.snapshot import CONTROL_LOST, InterruptedJob, Snapshot, Starts, State
 from core.language.source import Dialect
 from core.message import Message
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from core.store.program_settings import part_key, stock_key
+from core.store.store_file import part_key, stock_key
 
 Setting = Callable[[str], object]
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from app.desk.translation import tr
-from core.machine.machine_changes import Change
+from core.machine.machine_file import Change
 from core.message import Message
 
 

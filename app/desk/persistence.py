@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from core.store.backup_verdict import Verdict
+from core.store.backup import Verdict
 from core.store.people import People, PersonRow
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow, RunRow

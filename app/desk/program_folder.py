@@ -17,7 +17,7 @@ from pathlib import Path
 from app.desk.program_loading import Loaded
 from app.desk.translation import tr
 from core.drawings.drawing_file import is_drawing
-from core.executor.attempt import Attempt
+from core.executor.raised_alarm import Attempt
 from core.language.source import Source, SourceError, load_source
 from core.message import Message
 

@@ -12,15 +12,14 @@ from typing import TYPE_CHECKING
 
 from app.desk.first_move_seen import FirstMoveSeen
 from app.desk.latest import Latest, Request, Watch
-from core.executor.commands import Command, GiveProof, LoadJob
+from core.executor.commands import Clearance, Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof
-from core.executor.start_clearance import Clearance
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Source
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
-    from core.proving.part_report import PartReport
+    from core.proving.proof_report import PartReport
 
 
 class Phase(StrEnum):

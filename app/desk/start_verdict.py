@@ -16,10 +16,9 @@ from app.desk.interrupted_notice import may_go_on
 from app.desk.latest import Watch
 from app.desk.program_loading import Loaded, Proved
 from app.desk.translation import tr
-from core.executor.interrupted_job import InterruptedJob
+from core.executor.commands import CROSSES, INSIDE, Clearance
 from core.executor.job import Job, interpret
-from core.executor.snapshot import Starts
-from core.executor.start_clearance import CROSSES, INSIDE, Clearance
+from core.executor.snapshot import InterruptedJob, Starts
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message
 from core.tool_edges import edge_name

@@ -18,10 +18,9 @@ from app.desk.program_loading import Loaded, Proved
 from app.desk.start_verdict import KnownPart, StartJudge, StartQuestion, with_verdict
 from app.desk.translation import tr
 from app.path.path_aspects import DrawnLeg
-from core.executor.commands import Command, GiveClearance
+from core.executor.commands import Clearance, Command, GiveClearance
 from core.executor.job import Job
 from core.executor.snapshot import CYCLE, LINES, Snapshot, Starts, State
-from core.executor.start_clearance import Clearance
 from core.message import Message
 
 _AT_REST = frozenset({State.IDLE, State.DISABLED})

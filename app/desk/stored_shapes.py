@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from core.message import Message
-from core.part.holder_codes import outline_points
+from core.part.insert_codes import outline_points
 from core.part.shape_rules import ShapeMistake, shape_mistakes
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.store.store_rows import ShapeRow, ToolRow

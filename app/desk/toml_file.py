@@ -8,11 +8,8 @@ from pathlib import Path
 
 from app.desk.command_errors import CommandError
 from app.desk.standard_input import DASH, standard_input
-from core.coded_error import CodedError
-from core.input_file import TooLargeError, input_bytes
-from core.message import Message
-from core.nearest import nearest
-from core.toml_text import toml_tables
+from core.input_file import TooLargeError, input_bytes, toml_tables
+from core.message import CodedError, Message, nearest
 
 _MOST_BYTES = 16 * 1024 * 1024
 # Texts and comments stay as they are; behind =, [ or , a figure may begin with its point.

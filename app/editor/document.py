@@ -8,9 +8,8 @@ from pathlib import Path
 from app.desk.program_folder import ENDINGS
 from app.editor.versions import Archive
 from app.programs.whole_file import present, write_whole
-from core.coded_error import CodedError
 from core.language.source import SourceError, load_source
-from core.message import Message
+from core.message import CodedError, Message
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
 

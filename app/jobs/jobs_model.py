@@ -23,10 +23,10 @@ from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Severity
 from core.message import Message
-from core.store import job_queue
-from core.store.job_queue import NOTE_LONGEST, JobRow
-from core.store.program_settings import notes_key
+from core.store.production import job_queue
+from core.store.production.job_queue import NOTE_LONGEST, JobRow
 from core.store.store_errors import StoreError
+from core.store.store_file import notes_key
 
 NONE_YET = "NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, THEN F10: ADD JOB"
 NO_PROGRAM = "F1, THEN F2: LOAD PROGRAM   F1, F6, THEN F10: ADD JOB"

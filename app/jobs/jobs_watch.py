@@ -18,8 +18,8 @@ from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.quality.tool_life import ToolLife
-from core.store import job_queue
-from core.store.job_queue import JobRow
+from core.store.production import job_queue
+from core.store.production.job_queue import JobRow
 
 KEY = "Jobs"  # its name in app.screen.keys
 

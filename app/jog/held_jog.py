@@ -14,7 +14,7 @@ from app.desk.translation import tr
 from app.jog.jog_speeds import CONTINUOUS, JogSpeeds
 from app.offsets.offset_values import Mode
 from core.executor.commands import Command, Jog, JogStep, JogStop
-from core.executor.jog_line import Direction
+from core.executor.hand_motion.jog_line import Direction
 from core.executor.snapshot import Snapshot, State
 
 BEGINS = 0.3  # s within which the machine must have begun to move

@@ -16,7 +16,7 @@ from app.offsets.offset_values import TOOL_FIELDS, Mode, to_mm, word
 from app.offsets.tool_fields import NewTool
 from core.executor.snapshot import Snapshot, State
 from core.message import Message
-from core.store.touch_off import Touch
+from core.store.offsets.touch_off import Touch
 
 TOUCH_X, TOUCH_Z = "touch x", "touch z"
 TOUCHES = {TOUCH_X: "x", TOUCH_Z: "z"}

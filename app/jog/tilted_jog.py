@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.desk.translation import tr
-from core.executor.jog_line import Direction
+from core.executor.hand_motion.jog_line import Direction
 from core.executor.snapshot import BY_HAND, Snapshot
 from core.geometry.rotary_axes import Kinematics, Rotary
 from core.geometry.rotation_frames import Matrix, product, turned

@@ -27,8 +27,7 @@ from app.offsets.offset_values import (
 from app.offsets.tool_fields import ToolFields
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.store.offset_fields import REMARK_LONGEST, Sort
-from core.store.store_rows import OFFSETS, Kind, ToolRow
+from core.store.store_rows import OFFSETS, REMARK_LONGEST, Kind, Sort, ToolRow
 from core.tool_edges import edge_name, edge_number
 
 TOOL = "tool"  # asked: its number

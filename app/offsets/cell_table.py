@@ -17,8 +17,7 @@ from app.offsets.offset_table import OffsetTable
 from app.offsets.offset_values import UNKNOWN, cell_text, out_of_range, signed_zero_offset
 from core.executor.snapshot import Snapshot, State
 from core.message import Message
-from core.store.offset_fields import Field, Sort
-from core.store.store_rows import FIELDS, Row, Value
+from core.store.store_rows import FIELDS, Field, Row, Sort, Value
 
 _KEYS = CHARACTERS | {"Back", "Delete", "Enter", "Tab", "Up", "Down", "Left", "Right"}
 _STEPS = {"Tab": (0, 1), "Right": (0, 1), "Left": (0, -1), "Up": (-1, 0), "Down": (1, 0)}

@@ -13,8 +13,7 @@ from app.offsets.mill_touch import MillTouch
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.quality.tool_life import LifeState
-from core.store.offset_fields import LIFE_REACH, Field, Sort
-from core.store.store_rows import MILL_TOOLS, Kind, Value
+from core.store.store_rows import LIFE_REACH, MILL_TOOLS, Field, Kind, Sort, Value
 
 USED = "used"  # the column of what was cut, which is counted and no part of the row
 _USED = Field("CUR.TIME", 0.0, LIFE_REACH, Sort.MINUTES, name=USED)

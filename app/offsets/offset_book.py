@@ -12,6 +12,7 @@ from app.offsets.offset_acts import act_of
 from app.offsets.offsets_in_force import PRESET, preset_of
 from core.access.access_table import Act
 from core.message import Message
+from core.store.offsets.touch_off import Touch
 from core.store.store_errors import StoreError
 from core.store.store_rows import (
     Change,
@@ -25,7 +26,6 @@ from core.store.store_rows import (
     Value,
     ZeroRow,
 )
-from core.store.touch_off import Touch
 
 if TYPE_CHECKING:
     from core.store.store import Store

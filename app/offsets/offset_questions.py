@@ -28,9 +28,9 @@ from app.offsets.suspicious_changes import (
 )
 from core.access.access_table import Act
 from core.message import Message
+from core.store.offsets.touch_off import Touch
 from core.store.store_errors import StoreError
 from core.store.store_rows import FIELDS, Kind, ToolRow, Value
-from core.store.touch_off import Touch
 from core.tool_edges import edge_name
 
 _MOST_NAMES = 6  # followers that a question lists by name

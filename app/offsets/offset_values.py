@@ -12,15 +12,16 @@ from app.desk.arithmetic import EntryError, value_of
 from app.desk.formats import MINUS, MM_PER_INCH
 from app.desk.translation import tr
 from core.message import Message
-from core.store.offset_fields import Field, Sort
 from core.store.store_rows import (
     FIELDS,
+    Field,
     Kind,
     MillRow,
     PresetRow,
     Row,
     SecondaryRow,
     ShapeRow,
+    Sort,
     ToolRow,
     Value,
     ZeroRow,

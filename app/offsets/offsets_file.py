@@ -12,16 +12,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from app.desk.toml_file import read_toml, refuse, unknown, unknown_key
-from core.coded_error import CodedError
-from core.message import Message
-from core.store.offset_fields import MM_PER_INCH, Field, Sort
+from core.message import CodedError, Message
 from core.store.store_rows import (
     FIELDS,
+    MM_PER_INCH,
     OFFSETS,
     ZERO_CODES,
+    Field,
     Kind,
     SecondaryRow,
     ShapeRow,
+    Sort,
     ToolRow,
     Value,
     ZeroRow,

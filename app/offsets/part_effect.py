@@ -9,8 +9,7 @@ from app.desk.translation import tr
 from app.offsets.offset_values import Mode, signed
 from core.language.diagnostics import Diagnostic
 from core.message import Message, join_messages
-from core.proving.other_offsets import SAME, OtherPart
-from core.proving.part_features import Feature, FeatureKind, Pair
+from core.proving.other_offsets import SAME, Feature, FeatureKind, OtherPart, Pair
 
 _NONE = "–"
 

@@ -18,8 +18,7 @@ from app.offsets.offset_table import OffsetTable, Proposed
 from app.offsets.offset_values import Mode, added, in_words, out_of_range, to_mm
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.store.offset_fields import RADIUS_MAX, SECONDARY_REACH
-from core.store.store_rows import OFFSETS, Kind, SecondaryRow
+from core.store.store_rows import OFFSETS, RADIUS_MAX, SECONDARY_REACH, Kind, SecondaryRow
 
 _KEYS = CHARACTERS | {"Back", "Delete", "Enter"}
 

@@ -13,8 +13,8 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from core.machine.machine_model import Machine
+from core.store.offsets.touch_off import Touch
 from core.store.store_rows import FIELDS, Kind, MillRow, Row, SecondaryRow, ToolRow, Value, with_fields
-from core.store.touch_off import Touch
 
 LARGE_MM = 0.5  # geometry: about .02 in
 LARGE_CORRECTION_MM = 0.254  # wear: .010 in as it is entered, X on the diameter; a slipped .002 is .020

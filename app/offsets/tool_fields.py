@@ -15,8 +15,7 @@ from app.offsets.offset_questions import OffsetQuestions
 from app.offsets.offset_table import OffsetTable
 from app.offsets.offset_values import TOOL_FIELDS, heading, shown_value, value_added, value_typed, word
 from core.message import Message
-from core.store.offset_fields import Sort
-from core.store.store_rows import Kind, ToolRow, Value
+from core.store.store_rows import Kind, Sort, ToolRow, Value
 from core.tool_edges import edge_name, edge_number
 
 

@@ -13,8 +13,7 @@ from core.message import Message
 from core.part.shape_rules import FIELDS_OF, ShapeMistake
 from core.part.tool_outline import ToolOutline, outline
 from core.part.tool_shape import ToolKind
-from core.store.offset_fields import Sort
-from core.store.store_rows import OFFSETS, Kind, ShapeRow, ToolRow, Value, with_fields
+from core.store.store_rows import OFFSETS, Kind, ShapeRow, Sort, ToolRow, Value, with_fields
 from core.tool_edges import edge_name, edge_number, tool_of
 
 _OF_THE_OFFSET = {"tip": "quadrant", "nose_radius": "nose_radius"}  # kept with the tool's offset

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from app.desk.latest import Latest, Request
 from core.language.diagnostics import Diagnostic
-from core.proving.part_checks import is_serious
+from core.proving.checks.part_checks import is_serious
 
 if TYPE_CHECKING:
     from app.desk.desk import Desk

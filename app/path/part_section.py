@@ -10,8 +10,7 @@ import numpy.typing as npt
 from app.path.path_projection import Floats, Projection
 
 if TYPE_CHECKING:
-    from core.part.clamping import Clamping
-    from core.part.stock import Stock
+    from core.part.stock import Clamping, Stock
     from core.proving.part_instant import Half, Hit
 
 _METAL = 1e-4  # mm; less is no metal

@@ -23,7 +23,7 @@ from app.screen.panel import Press
 from app.screen.window_layout import FINGER
 from core.language.diagnostics import Diagnostic
 from core.message import Message
-from core.proving.part_checks import is_serious
+from core.proving.checks.part_checks import is_serious
 
 BUTTON = (6.6, 6.6, 0.4)  # units: width, height, between two of them; at least a fingertip
 

@@ -14,7 +14,7 @@ from app.desk.persistence import Persistence
 from app.desk.program_folder import LISTED, ProgramFolders
 from core.drawings.drawing_file import is_drawing
 from core.language.source import SourceError, load_source
-from core.store.program_texts import key_of_text
+from core.store.program_records import key_of_text
 from core.store.store_rows import RunRow
 
 

@@ -8,12 +8,11 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from core.coded_error import CodedError, error_code
+from core.file_lock import unfinished_folder
 from core.file_placing import all_to_disk, folder_to_disk, make_folder, put_in_place
 from core.input_file import input_bytes
 from core.language.source import LARGEST_FILE, SourceError, load_source
-from core.message import Message
-from core.unfinished import unfinished_folder
+from core.message import CodedError, Message, error_code
 
 
 class FileError(CodedError):

@@ -19,7 +19,7 @@ from core.quality.capability import capability
 from core.quality.control_charts import charts_of
 from core.quality.drift_rules import findings
 from core.quality.quality_errors import QualityError
-from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.production.measured_parts import FeatureRow, ReadingRow
 
 SHOWN = 100  # newest readings that a chart is made of
 

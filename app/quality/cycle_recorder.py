@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.executor.snapshot import Event, State
-from core.store import part_cycles
-from core.store.part_cycles import CycleRow, StopRow
+from core.store.production import part_cycles
+from core.store.production.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_rows import utc_now
 

@@ -25,7 +25,7 @@ from core.quality.measured_feature import (
     check_feature,
 )
 from core.quality.quality_errors import QualityError
-from core.store import measured_parts
+from core.store.production import measured_parts
 
 NEW = Feature("", FeatureKind.DIAMETER, 0.0, 0.0, 0.0, CorrectedBy.TOOL, 1)
 FIELDS = (

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from app.desk.translation import tr
-from core.coded_error import CodedError
+from core.message import CodedError
 
 LONGEST = 60  # characters of a line; more without an end is no gauge
 _DIGIMATIC = re.compile(r"\d{2}A([+-]\d{1,8}(?:\.\d{1,8})?)")

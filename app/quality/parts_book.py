@@ -14,15 +14,15 @@ from app.quality.cycle_recorder import COMPLETE
 from core.access.access_table import Act
 from core.message import Message
 from core.quality.measured_feature import CorrectedBy, Feature, FeatureKind
-from core.store import measured_parts, part_cycles, tool_lives
-from core.store.job_queue import JobRow
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CorrectionRow, CycleRow, CycleTime, StopRow
+from core.store.production import measured_parts, part_cycles, tool_lives
+from core.store.production.job_queue import JobRow
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CorrectionRow, CycleRow, CycleTime, StopRow
+from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_rows import Kind, utc
 from core.store.store_writer import Operation
-from core.store.tool_lives import LifeRow
 
 NONE_KEPT = "MEASURED PARTS CANNOT BE SAVED: NO DATA STORE"
 _DAYS = timedelta(days=2)

@@ -26,8 +26,8 @@ from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.quality.quality_errors import QualityError
-from core.store import measured_parts
-from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.production import measured_parts
+from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.store_rows import Kind
 
 CHART = 0.45  # of the height, for the effect of a proposed correction

@@ -9,7 +9,7 @@ from app.quality.parts_book import PartsData
 from app.quality.parts_watch import PartsWatch
 from app.quality.plots import ChartDrawing
 from app.special.special_functions import FigureFunction
-from core.store.measured_parts import FeatureRow
+from core.store.production.measured_parts import FeatureRow
 
 NO_PROGRAM = "SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES"
 NO_FEATURE = "NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2"

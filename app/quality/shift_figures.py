@@ -19,12 +19,14 @@ from app.quality.shift_times import Shift
 from core.message import Message
 from core.quality.availability import Availability, Span, availability
 from core.quality.stops import ReasonShare, Stop, pareto
-from core.store import event_log, measured_parts, offset_tables, part_cycles, tool_lives
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow, CycleTime, StopRow
+from core.store import event_log
+from core.store.offsets import offset_history
+from core.store.production import measured_parts, part_cycles, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, CycleTime, StopRow
+from core.store.production.tool_lives import InsertChange, LifeRow
 from core.store.store import Store
 from core.store.store_rows import Change, EventRow, Kind
-from core.store.tool_lives import InsertChange, LifeRow
 
 ALARMS = frozenset({"alarm", "estop"})
 _ALL = 1_000_000  # changes of offsets
@@ -111,7 +113,7 @@ def shift_figures(store: Store, shift: Shift, now: float, tools: Kind = Kind.TOO
         readings = measured_parts.readings_between(connection, since, end)
         lives = tool_lives.lives(connection, tools)
         inserts = tool_lives.insert_changes(connection, -1)
-        offsets = offset_tables.history_any(connection, _ALL)
+        offsets = offset_history.history_any(connection, _ALL)
     running = spans_of(cycles, now)
     ended = [row for row in cycles if row.ended is not None and since <= row.ended < end]
     return ShiftFigures(

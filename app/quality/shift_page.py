@@ -14,7 +14,7 @@ from app.quality.shift_figures import ProgramFigures, ShiftFigures, stamp
 from app.quality.tool_life_watch import life_of
 from app.report.html_tables import PAGE_END, figure, page_head, pairs, table, verdict
 from core.message import Message
-from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.store_rows import Change, Kind, SecondaryRow, ToolRow
 
 _WIDE, _HIGH = 900, 64  # of the time line

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime, timedelta
 from typing import NamedTuple
 
-from core.coded_error import CodedError
+from core.message import CodedError
 from core.store.store_rows import utc
 
 USUAL = (6, 14)

@@ -19,9 +19,9 @@ from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.quality.quality_errors import QualityError
 from core.quality.tool_life import LifeState, ToolLife, check_life
-from core.store import tool_lives
+from core.store.production import tool_lives
+from core.store.production.tool_lives import LifeRow
 from core.store.store_rows import OFFSETS
-from core.store.tool_lives import LifeRow
 
 LIMITS = ("PARTS", "MINUTES", "WARN AT %")
 _LABELS = {"PARTS": "PARTS", "MINUTES": "MINUTES", "WARN AT %": "WARN"}

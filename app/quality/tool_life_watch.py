@@ -12,9 +12,9 @@ from core.access.access_table import Act
 from core.executor.snapshot import CYCLE, Snapshot
 from core.message import Message
 from core.quality.tool_life import LifeState, ToolLife
-from core.store import tool_lives
+from core.store.production import tool_lives
+from core.store.production.tool_lives import LifeRow
 from core.store.store_rows import Kind
-from core.store.tool_lives import LifeRow
 
 KEEP = 10.0  # s at feed after which the count is kept, so that a power cut loses no more
 

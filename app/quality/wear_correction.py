@@ -16,7 +16,7 @@ from core.message import Message
 from core.quality.measured_feature import CorrectedBy
 from core.quality.quality_errors import QualityError
 from core.quality.wear_proposal import Proposal, propose
-from core.store.measured_parts import FeatureRow
+from core.store.production.measured_parts import FeatureRow
 from core.store.store_rows import FIELDS, Kind, SecondaryRow, ToolRow, Value
 
 RESOLUTION = {True: 0.001, False: 0.0001 * 25.4}  # mm: what a correction is rounded to, metric and inch

@@ -6,9 +6,8 @@ from collections.abc import Iterator, Sequence
 
 from app.report.svg_drawing import Drawing, Point, window
 from core.interpreter.elementary_blocks import Kind
-from core.part.clamping import Clamping
 from core.part.insert_codes import InsertCodeError
-from core.part.stock import Stock
+from core.part.stock import Clamping, Stock
 from core.part.tool_outline import ToolOutline, outline
 from core.part.tool_shape import ToolShape
 from core.part.turned_part import Piece

@@ -22,8 +22,7 @@ from core.tool_edges import edge_name
 if TYPE_CHECKING:
     from core.interpreter.job_setup import Setup
     from core.machine.machine_model import Machine
-    from core.proving.part_report import PartReport
-    from core.proving.proof_report import Report
+    from core.proving.proof_report import PartReport, Report
 
 _PICTURES = 30  # of findings; each of them stands where its line is told
 _MM_PER_INCH = 25.4

@@ -10,8 +10,8 @@ from core.interpreter.elementary_blocks import Block, TimedSeries
 from core.interpreter.working_plane import Corners
 from core.part.turned_part import Piece
 from core.proving.part_proof import PartProof
-from core.proving.part_setting import PartSetting
 from core.proving.program_timeline import MotionSpan, RestSpan
+from core.proving.program_tools import PartSetting
 from core.proving.tip_moves import LiveStep, Steps, TipMove, live_move
 
 MOST_MOVES = 20_000  # that are drawn

@@ -15,9 +15,8 @@ from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from app.desk.formats import file_size
-from core.coded_error import CodedError
 from core.file_placing import put_in_place
-from core.message import Message
+from core.message import CodedError, Message
 from core.records.record import Record
 from core.records.record_file import ENDING
 

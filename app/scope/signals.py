@@ -15,7 +15,7 @@ import numpy.typing as npt
 from app.desk.formats import MM_PER_INCH
 from app.desk.translation import tr
 from core.message import Message
-from core.records import derived_figures
+from core.records import record
 from core.records.record import Channel
 
 FloatArray = npt.NDArray[np.float64]
@@ -135,8 +135,8 @@ class Signal:
 
 
 def _speed(key: str, word: str, letter: str, channel: str, quantity: Quantity) -> Signal:
-    span = derived_figures.VELOCITY_SPAN
-    return Signal(key, word, quantity, channel, letter, derived_figures.velocity, span)
+    span = record.VELOCITY_SPAN
+    return Signal(key, word, quantity, channel, letter, record.velocity, span)
 
 
 def _of_axis(letter: str, rotary: bool) -> list[Signal]:
@@ -146,7 +146,7 @@ def _of_axis(letter: str, rotary: bool) -> list[Signal]:
         else (Quantity.POSITION, Quantity.ERROR, Quantity.VELOCITY, Quantity.ACCELERATION)
     )
     demand, actual = Message("{item} demand", item=letter), Message("{item} actual", item=letter)
-    span = derived_figures.ACCELERATION_SPAN
+    span = record.ACCELERATION_SPAN
     return [
         Signal(demand, tr("commanded position"), place, demand, letter),
         Signal(actual, tr("measured position"), place, actual, letter),
@@ -167,7 +167,7 @@ def _of_axis(letter: str, rotary: bool) -> list[Signal]:
             faster,
             actual,
             letter,
-            derived_figures.acceleration,
+            record.acceleration,
             span,
         ),
         Signal(
@@ -189,8 +189,8 @@ _MACHINE = (
         Quantity.RIPPLE,
         "spindle speed",
         "",
-        derived_figures.ripple,
-        derived_figures.RIPPLE_SPAN,
+        record.ripple,
+        record.RIPPLE_SPAN,
     ),
     Signal("spindle turns", tr("Spindle revolutions"), Quantity.TURNS, "spindle turns"),
     Signal("spindle load", tr("Spindle load"), Quantity.LOAD, "spindle load"),

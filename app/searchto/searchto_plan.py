@@ -12,9 +12,8 @@ from app.desk import formats
 from app.desk.modal_rows import NONE, ModalRow, rows_of
 from app.desk.translation import tr
 from app.path.path_aspects import DrawnLeg as Drawn
-from core.executor.interrupted_job import CONTROL_LOST
 from core.executor.job import Job
-from core.executor.snapshot import Snapshot
+from core.executor.snapshot import CONTROL_LOST, Snapshot
 from core.geometry.rotary_axes import Kinematics
 from core.interpreter.actions import Coolant, Output, SpindleLock, SpindleOrient, SpindleRun
 from core.interpreter.checkpoint import ApproachStep, AxesLeg, Begin, Checkpoint, FunctionStep, Leg

@@ -9,8 +9,7 @@ from pathlib import Path
 
 from app.desk.machine_status import SilenceWatch
 from core.alarms import CATALOGUE, Code, Reaction
-from core.executor.interrupted_job import InterruptedJob
-from core.executor.snapshot import LINES, Alarm, Snapshot, State
+from core.executor.snapshot import LINES, Alarm, InterruptedJob, Snapshot, State
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import Unknown

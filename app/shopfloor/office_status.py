@@ -11,7 +11,7 @@ from app.shopfloor.floor_reading import FloorReader
 from app.shopfloor.status_file import Status, status_of
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.store.part_cycles import StopRow
+from core.store.production.part_cycles import StopRow
 
 STOPS = 6  # the newest
 

@@ -9,8 +9,7 @@ from pathlib import Path
 
 from app.desk.repeating_thread import RepeatingThread
 from app.shopfloor.floor_reading import Reading, Value
-from core.executor.interrupted_job import InterruptedJob
-from core.executor.snapshot import Alarm
+from core.executor.snapshot import Alarm, InterruptedJob
 from core.file_placing import write_in_place
 
 NAME = "status.json"

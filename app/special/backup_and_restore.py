@@ -23,7 +23,7 @@ from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.file_placing import all_to_disk
 from core.message import Message
-from core.store.backup_verdict import Verdict
+from core.store.backup import Verdict
 
 _IN_TERMINAL = "Close TurnDesk, then run in a terminal: turndesk store restore FILE"
 BARRED = "PROGRAM RUNNING. WAIT UNTIL IT ENDS, THEN RESTORE"

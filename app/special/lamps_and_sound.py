@@ -13,10 +13,10 @@ from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import Act
 from core.executor.commands import ForceOutput
-from core.executor.signal_kinds import SignalKinds
+from core.executor.signal_lamps import SignalKinds
 from core.executor.snapshot import Snapshot
+from core.machine.hardware_model import SIGNALS, Signal
 from core.machine.machine_model import Machine
-from core.machine.signal_table import SIGNALS, Signal
 from core.message import Message
 from core.store.store_errors import StoreError
 

@@ -15,12 +15,11 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.part.clamping import Clamping
-from core.part.stock import Stock
+from core.part.stock import Clamping, Stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Piece
 from core.proving.part_proof import prove_with_part
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 from core.proving.prove_program import Progress
 
 _MM_PER_INCH = 25.4

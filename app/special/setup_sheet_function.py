@@ -21,8 +21,8 @@ from core.executor.job import Job
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.store.program_settings import notes_key
 from core.store.store_errors import StoreError
+from core.store.store_file import notes_key
 
 if TYPE_CHECKING:
     from app.special.setup_sheet_work import MadeSheet

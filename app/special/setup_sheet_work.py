@@ -21,7 +21,7 @@ from core.message import Message
 from core.part.insert_codes import InsertCodeError
 from core.part.tool_outline import ToolOutline, outline
 from core.part.tool_shape import ToolShape
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 
 
 @dataclass(frozen=True, slots=True)

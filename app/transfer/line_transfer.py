@@ -9,7 +9,7 @@ from typing import Protocol, TypeVar
 
 from app.programs.copy_rename_delete import checked_name, same_name_in
 from app.programs.whole_file import FileError, write_new
-from core.machine.serial_table import DncModel
+from core.machine.desk_tables import DncModel
 from core.message import Message
 
 T_co = TypeVar("T_co", covariant=True)

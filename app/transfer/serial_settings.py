@@ -7,7 +7,7 @@ from dataclasses import asdict, fields, replace
 
 from app.desk.sheet import following
 from app.desk.translation import tr
-from core.machine.serial_table import DncModel
+from core.machine.desk_tables import DncModel
 
 BAUDS = (110, 300, 600, 1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200)
 BITS = (("7E1", 7, "E", 1), ("7E2", 7, "E", 2), ("7O1", 7, "O", 1), ("8N1", 8, "N", 1), ("8N2", 8, "N", 2),

@@ -18,7 +18,7 @@ from app.transfer.line_transfer import Received, SerialPorts, Transfer, Transfer
 from app.transfer.serial_settings import ROWS, settings_of, stored_form
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
-from core.machine.serial_table import DncModel
+from core.machine.desk_tables import DncModel
 from core.message import Message
 from core.store.store_errors import StoreError
 

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.plane_arcs import HelixMove
 from core.geometry.rotation_frames import applied, plus
+from core.geometry.working_plane import HelixMove
 from core.interpreter.elementary_blocks import Kind
 
 if TYPE_CHECKING:

@@ -12,8 +12,7 @@ import secrets
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from core.coded_error import CodedError
-from core.message import Message
+from core.message import CodedError, Message
 
 SHORTEST, LONGEST = 4, 12
 _SALT, _LENGTH = 16, 32  # bytes

@@ -11,9 +11,8 @@ from core.alarms.alarm_entry import Entry as Entry
 from core.alarms.alarm_entry import Reaction as Reaction
 from core.alarms.axis_alarms import AXES
 from core.alarms.bus_alarms import WIRES
-from core.alarms.control_alarms import CONTROL, PROGRAM
+from core.alarms.control_alarms import CONTROL, PROGRAM, STATION
 from core.alarms.spindle_alarms import CHUCK, SPINDLE
-from core.alarms.station_alarms import STATION
 
 SUBJECTS: tuple[tuple[str, Entries], ...] = (
     ("Axes and axis drives", AXES),

@@ -13,8 +13,7 @@ from itertools import pairwise
 
 from core.drawings.drawing import DrawingError
 from core.drawings.work_limit import check_work
-from core.geometry.intersections import intersections
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between, intersections
 from core.message import Message
 
 GAP = 0.02

@@ -7,9 +7,8 @@ import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from core.coded_error import CodedError
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
-from core.message import Message
+from core.message import CodedError, Message
 
 MOST_BYTES = 16 * 1024 * 1024
 MOST_ELEMENTS = 50_000

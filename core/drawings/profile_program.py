@@ -11,8 +11,7 @@ from core.drawings.drawing import DrawingError
 from core.drawings.drawing_view import Profile, Side
 from core.drawings.nose_reach import reached_by_nose
 from core.drawings.turning_contour import Groove, TurningContour, joined, reach_of, turning_contour
-from core.geometry.intersections import intersections
-from core.geometry.lines_and_arcs import Arc, Element, Line
+from core.geometry.lines_and_arcs import Arc, Element, Line, intersections
 from core.language.source import Dialect
 from core.message import Message
 from core.part.insert_codes import decoded

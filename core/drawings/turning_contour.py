@@ -13,8 +13,7 @@ from itertools import pairwise
 from core.drawings.contour_walk import split, turned_about
 from core.drawings.drawing import DrawingError
 from core.drawings.drawing_view import Profile, Side
-from core.geometry.intersections import intersections
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, intersections
 from core.message import Message
 from core.part.swept_edge import towards_axis
 from core.part.tool_outline import outline

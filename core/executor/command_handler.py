@@ -7,11 +7,11 @@ from typing import Any
 
 from core.executor import commands
 from core.executor.control_status import modal_with_offsets
-from core.executor.jogging import at_the_end
+from core.executor.hand_motion.jogging import at_the_end
 from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
+from core.executor.signals import StationWatch
 from core.executor.snapshot import CYCLE, LINES, Starts, State
-from core.executor.station_signals import StationWatch
 from core.message import Message
 
 LAMP_TEST = 2.0  # s

@@ -6,13 +6,11 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from core.executor.control_status import ControlStatus
-from core.executor.cycle import Cycle
-from core.executor.interrupted_job import CONTROL_LOST, InterruptedJob, utc_now
+from core.executor.control_status import ControlStatus, PartCount
 from core.executor.job import Job
 from core.executor.machine_context import MachineContext
-from core.executor.parts_made import PartCount
-from core.executor.snapshot import STOPPED, Starts, State
+from core.executor.program_motion.cycle import Cycle
+from core.executor.snapshot import CONTROL_LOST, STOPPED, InterruptedJob, Starts, State, utc_now
 from core.interpreter.checkpoint import Begin
 from core.interpreter.elementary_blocks import Block
 from core.language.source import Dialect

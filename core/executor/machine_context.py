@@ -8,12 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from core.alarms import Code
-from core.executor.attempt import Attempt
-from core.executor.commanded_outputs import CommandedOutputs
-from core.executor.raised_alarm import log_line, make_alarm
+from core.executor.raised_alarm import Attempt, log_line, make_alarm
+from core.executor.signals import CommandedOutputs, StationSignals
 from core.executor.snapshot import Alarm, Event
 from core.executor.spindle_control import SpindleControl
-from core.executor.station_signals import StationSignals
 from core.machine.machine_model import Machine
 from core.machine.station_rules import ENABLE
 from core.ports import AxisSample, FloatArray, MachinePorts, Unknown

@@ -7,25 +7,33 @@ from collections.abc import Callable, Iterator
 from core.alarms import Code, Reaction
 from core.alarms.bus_alarms import CUT_OFF
 from core.executor import start_conditions
-from core.executor.attempt import Attempt
 from core.executor.control_status import modal_at_power_up
-from core.executor.cycle import Cycle
-from core.executor.drive_test import DriveTester
-from core.executor.handwheel import Handwheel
-from core.executor.homing_order import Homing
-from core.executor.interrupted_job import CLOSED, ESTOP, InterruptedJob
+from core.executor.hand_motion.drive_test import DriveTester
+from core.executor.hand_motion.handwheel import Handwheel
+from core.executor.hand_motion.jogging import jogger_of
+from core.executor.hand_motion.touch_off import Homing, TouchOff
 from core.executor.interruption_watch import Note
-from core.executor.job import Job
-from core.executor.jogging import jogger_of
+from core.executor.job import Job, ProgramPass
 from core.executor.machine_context import MachineContext
+from core.executor.program_motion.cycle import Cycle
 from core.executor.program_run import ProgramRun
-from core.executor.raised_alarm import AlarmError, alarm_and_reaction, log_alarm, log_line
-from core.executor.read_ahead import ProgramPass
-from core.executor.safe_stop import SafeStop
-from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, LINES, STOPPED, Event, State, demand_allowed
+from core.executor.raised_alarm import AlarmError, Attempt, alarm_and_reaction, log_alarm, log_line
+from core.executor.safety.safe_stop import SafeStop
+from core.executor.safety.supervision import OutputsWatch, Supervisor
+from core.executor.snapshot import (
+    ACTIVE,
+    BY_HAND,
+    CLOSED,
+    CYCLE,
+    ESTOP,
+    LINES,
+    STOPPED,
+    Event,
+    InterruptedJob,
+    State,
+    demand_allowed,
+)
 from core.executor.start_conditions import SPINDLE, Announcement, Starting
-from core.executor.supervision import OutputsWatch, Supervisor
-from core.executor.touch_off import TouchOff
 from core.interpreter.job_setup import Setup
 from core.interpreter.modal_state import Modal
 from core.message import Message

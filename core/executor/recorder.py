@@ -17,13 +17,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.executor.attempt import Attempt
+from core.executor.raised_alarm import Attempt
 from core.executor.snapshot import Event, Snapshot, State, Tick
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import FloatArray, MachinePorts, Unknown
-from core.records.record import Record
-from core.records.record_errors import RecordError
+from core.records.record import Record, RecordError
 from core.records.record_file import ENDING, open_record, save_record
 from core.records.record_ring import TICKS, Recorded, Ring, Rows, bits_of
 from core.records.ring_file import NOW, RingFile, new_ring

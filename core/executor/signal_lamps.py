@@ -1,4 +1,4 @@
-"""The signal tower: red, amber, green and buzzer by the state of the machine, as ``signal_table`` has it.
+"""What the machine signals now, and the signal tower that shows it: red, amber, green and buzzer.
 
 Lamps are no outputs of the program: one that fails holds no cycle, M30 leaves them, and a machine at rest
 sleeps with one on. A fault of the drives, the E-stop and the end of the control bring them to their safe
@@ -9,16 +9,45 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from core.executor.attempt import Attempt
 from core.executor.machine_context import MachineContext
-from core.executor.signal_kinds import SignalKinds
-from core.executor.snapshot import ACTIVE, State
-from core.machine.signal_table import BUZZER, HALF, SIGNALS
+from core.executor.raised_alarm import Attempt
+from core.executor.snapshot import ACTIVE, STOPPED, State
+from core.machine.hardware_model import BUZZER, HALF, SIGNALS
 from core.message import Message
 from core.ports import DigitalIO, Unknown
 
+_NO_PARTS = frozenset({State.ESTOP, State.FAULT, State.DISABLED})
 _AGAIN = 1.0  # s until a lamp that is not as it was switched is switched again
 _REFUSED = 5.0  # s until one that the driver refused is
+
+
+@dataclass(slots=True)
+class SignalKinds:
+    """Sees every tick or every frame; remembers whether a part is done and nobody has begun another."""
+
+    _ends: int = -1
+    _made: bool = False
+
+    def see(self, state: State, ends: int, *, barred: bool) -> tuple[str, ...]:
+        """Everything that is so now. ``ends`` of programs; ``barred``: no other part begins."""
+        self._made = (self._made or ends > self._ends >= 0) and state is State.IDLE
+        self._ends = ends
+        found = [kind for kind in (_of_state(state),) if kind]
+        if barred and state not in _NO_PARTS:
+            found.append("tool-life")
+        elif self._made:
+            found.append("part")
+        return tuple(found)
+
+
+def _of_state(state: State) -> str:
+    if state is State.ESTOP:
+        return "estop"
+    if state is State.FAULT:
+        return "alarm"
+    if state in STOPPED:
+        return "stop"
+    return "runs" if state in ACTIVE else ""
 
 
 @dataclass(slots=True)

@@ -6,9 +6,9 @@ import math
 from typing import TypedDict
 
 from core.executor.control_status import ControlStatus
-from core.executor.cycle import Cycle
 from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
+from core.executor.program_motion.cycle import Cycle
 from core.executor.snapshot import Snapshot, Starts, State
 from core.interpreter.actions import ProgramEnd, ProgramStop
 from core.interpreter.elementary_blocks import Block, Kind

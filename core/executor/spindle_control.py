@@ -13,11 +13,12 @@ from typing import NamedTuple
 
 from core.executor.raised_alarm import AlarmError
 from core.executor.spindle_orientation import Orientation
+from core.faults import code_of
 from core.geometry.surface_speed import surface_rpm
 from core.interpreter.elementary_blocks import Block
 from core.machine.machine_model import SpindleModel
 from core.message import Message
-from core.ports import Spindle, SpindleHold, SpindleOrientation, code_of
+from core.ports import Spindle, SpindleHold, SpindleOrientation
 
 # --- the angle of the spindle ---------------------------------------------------------------------------
 

@@ -10,11 +10,11 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
+from core.executor.commands import UNCHECKED, Clearance, verdict
 from core.executor.control_status import ControlStatus, modal_as_machine
 from core.executor.job import Job, Proof, outdated
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import Starts, State
-from core.executor.start_clearance import UNCHECKED, Clearance, verdict
 from core.interpreter.checkpoint import Begin
 from core.interpreter.machine_requirements import ORIENT, THREAD
 from core.interpreter.modal_state import Modal

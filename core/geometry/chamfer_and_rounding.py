@@ -8,11 +8,9 @@ from __future__ import annotations
 
 from math import asin, cos, dist, pi, sin, tan
 
-from core.coded_error import CodedError
 from core.geometry.contour_offset import GougeError, offset_element
-from core.geometry.intersections import meetings
-from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, left_of, turn
-from core.message import Message
+from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, left_of, meetings, turn
+from core.message import CodedError, Message
 
 # Lines that turn by less than this go on in one direction, or straight back: a corner of any size that
 # fits a machine would be smaller, or farther off, than the last place of its numbers. rad.

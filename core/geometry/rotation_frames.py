@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from core.coded_error import CodedError
+from core.message import CodedError
 
 Vector = tuple[float, float, float]
 Matrix = tuple[Vector, Vector, Vector]

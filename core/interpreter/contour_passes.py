@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from math import dist
 from typing import NamedTuple
 
-from core.geometry.intersections import clearance, intersections
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point
-from core.geometry.roughing_area import Area, Span
+from core.geometry.contour_offset import Area, Span
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, clearance, intersections
 
 
 class Move(NamedTuple):

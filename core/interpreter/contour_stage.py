@@ -13,8 +13,7 @@ from typing import Generic, TypeVar
 
 from core.geometry.chamfer_and_rounding import CornerError, CornerTooLargeError, NoCornerError
 from core.geometry.contour_offset import NEARER, GougeError, Offset, Piece
-from core.geometry.intersections import clearance
-from core.geometry.lines_and_arcs import SAME_POINT, Element, Point, shifted
+from core.geometry.lines_and_arcs import SAME_POINT, Element, Point, clearance, shifted
 from core.interpreter.adjusted_moves import AdjustedMoves, element_of
 from core.interpreter.elementary_blocks import Block, Kind
 from core.language.diagnostics import ProgramError

@@ -20,8 +20,8 @@ from core.interpreter.actions import Action
 from core.interpreter.modal_state import Modal
 
 if TYPE_CHECKING:
-    from core.geometry.machine_travel import Travel
     from core.geometry.virtual_mill import PlaneMove
+    from core.geometry.working_plane import Travel
     from core.interpreter.working_plane import Swivel
 
 

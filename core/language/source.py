@@ -9,10 +9,9 @@ from enum import StrEnum
 from functools import cached_property
 from pathlib import Path, PurePath
 
-from core.coded_error import CodedError
 from core.input_file import TooLargeError, input_bytes
 from core.language.diagnostics import Diagnostic, refusal
-from core.message import Message
+from core.message import CodedError, Message
 
 
 class Dialect(StrEnum):

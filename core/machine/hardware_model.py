@@ -1,14 +1,19 @@
-"""What the machine is wired to, as its file describes it: pots, homing, and the tables of its drivers."""
+"""What the machine is wired to: pots, homing, tables of its drivers, signal tower and sounds."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from core.key_declaration import Pair, Range, file_key, key_table
 
 _Table = TypeVar("_Table")
+RED, AMBER, GREEN, BUZZER = "lamp_red", "lamp_amber", "lamp_green", "lamp_buzzer"
+LAMPS = (RED, AMBER, GREEN, BUZZER)
+"""Outputs of [io.out] that the control lights by itself, where the machine file has them."""
+PREFIX = "lamp_"
+HALF = 0.5  # s that a blinking lamp is on, and off
 
 
 @key_table
@@ -75,3 +80,27 @@ class Hardware:
     def table(self, kind: type[_Table]) -> _Table | None:
         """What a driver has made of its table; None where the file has no such table."""
         return next((each for each in self.tables.values() if isinstance(each, kind)), None)
+
+
+class Signal(NamedTuple):
+    """``buzz``: s for which the buzzer sounds at its beginning, by turns where the lamp blinks.
+
+    ``tones``: what the desk plays, Hz, each a fifth of a second.
+    """
+
+    lamp: str
+    blinks: bool
+    buzz: float
+    tones: tuple[int, ...]
+    use: str
+
+
+SIGNALS = {
+    "estop": Signal(RED, False, 0.0, (440, 440), "E-STOP"),
+    "alarm": Signal(RED, True, 3.0, (880, 440, 880, 440), "ALARM"),
+    "tool-life": Signal(AMBER, True, 1.0, (660, 660), "TOOL LIFE USED UP, OR PART MEASUREMENT DUE"),
+    "stop": Signal(AMBER, True, 1.0, (660, 440), "STOP: FEED HOLD, M00, SINGLE BLOCK"),
+    "part": Signal(AMBER, False, 0.5, (523, 659, 784), "PART FINISHED, NO CYCLE RUNNING"),
+    "runs": Signal(GREEN, False, 0.0, (), "CYCLE RUNNING"),
+}
+"""By the kind of what happens, as it is announced (MQTT, web hook) too."""

@@ -1,21 +1,15 @@
-"""Machine file to machine: one pass, all errors, no half-built machine."""
+"""Machine file to machine, with all errors in one pass; what differs between two of them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
-from core.input_file import TooLargeError, input_text
-from core.machine import (
-    driver_tables,
-    machine_defaults,
-    machine_rules,
-    machine_tables,
-    signal_rules,
-    terminal_wiring,
-)
+from core.input_file import TooLargeError, input_text, toml_tables
+from core.machine import driver_tables, machine_reading, machine_rules, machine_tables, signal_rules
 from core.machine.driver_tables import DriverReading, tables_there
 from core.machine.machine_model import (
     Axis,
@@ -33,8 +27,15 @@ from core.machine.machine_reading import Reading
 from core.machine.mill_kinematics import KinematicsReading
 from core.machine.station_rules import wrong_jog, wrong_palms, wrong_wheel
 from core.message import Message
-from core.table_schema import AT_PENDANT, Driver, FileReading, Finding, MachineFileError
-from core.toml_text import toml_tables
+from core.table_schema import (
+    AT_PENDANT,
+    Driver,
+    FileReading,
+    Finding,
+    MachineFileError,
+    joined,
+    written_openly,
+)
 
 _MOST_BYTES = 16 * 1024 * 1024
 _NONE = (-math.inf, math.inf)
@@ -46,6 +47,7 @@ _AXIS_KEYS = {
     "in_position": "in_pos",
     "still_time": "still_ms",
 }
+ABSENT = "—"
 
 
 def text_of(path: Path) -> str:
@@ -83,7 +85,7 @@ def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
     except ValueError as error:
         raise MachineFileError([Finding("TOML", "", str(error), "not-toml")], source) from error
     reading = Reading(data, drivers)
-    untold = [*machine_defaults.fill(reading)]
+    untold = [*machine_reading.fill(reading)]
     axes, said = _axis_names(reading), signal_rules.terminals(reading)
     buttons = {path: at for path, at in said.items() if at.startswith(AT_PENDANT)}
     wired = {path: at for path, at in said.items() if path not in buttons}
@@ -98,8 +100,8 @@ def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
         *kinematics.findings,
         *machine_rules.broken(reading.values),
         *signal_rules.broken(reading),
-        *terminal_wiring.shared(file, drivers),
-        *terminal_wiring.pots(file, drivers),
+        *signal_rules.shared(file, drivers),
+        *signal_rules.pots(file, drivers),
         *wrong_wheel(file),
         *wrong_jog(file),
         *wrong_palms(file),
@@ -181,3 +183,46 @@ def _axis(reading: Reading, name: str) -> Axis:
         home_speed=values.number(f"{path}.home.speed") if homed else 0.0,
         rotary=not slide and not (of_lathe and _of_c(reading, "linear")),
     )
+
+
+class Change(NamedTuple):
+    """One key: as it was, as it is; ``ABSENT`` where the file did not have it, or has it no more."""
+
+    path: str
+    old: str
+    new: str
+
+    def __str__(self) -> str:
+        return Message("{path}: {old} → {new}", path=self.path, old=self.old, new=self.new)
+
+
+def changes(old: str, new: str) -> tuple[Change, ...]:
+    """Every key whose value differs, in the order of the new file, then those that are gone.
+
+    Raises ValueError for a text that is no TOML.
+    """
+    before, after = dict(_leaves(toml_tables(old))), dict(_leaves(toml_tables(new)))
+    places = [*after, *(place for place in before if place not in after)]
+    return tuple(
+        Change(place, _shown(before, place), _shown(after, place))
+        for place in places
+        if place not in before or place not in after or _differ(before[place], after[place])
+    )
+
+
+def _differ(old: object, new: object) -> bool:
+    """1 and 1.0 are one number; true is none."""
+    return old != new or isinstance(old, bool) is not isinstance(new, bool)
+
+
+def _shown(values: Mapping[str, object], place: str) -> str:
+    return written_openly(place, values[place]) if place in values else ABSENT
+
+
+def _leaves(table: Mapping[str, object], path: str = "") -> Iterator[tuple[str, object]]:
+    for key, value in table.items():
+        place = joined(path, key)
+        if isinstance(value, dict) and value:
+            yield from _leaves(value, place)
+        else:
+            yield place, value

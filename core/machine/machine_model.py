@@ -7,9 +7,8 @@ from dataclasses import KW_ONLY, dataclass, field
 from math import inf
 
 from core.key_declaration import Pair, Range, Unit, file_key, key_table
-from core.machine.hardware_model import Hardware
+from core.machine.hardware_model import LAMPS, Hardware
 from core.machine.mill_kinematics import KinematicsModel
-from core.machine.signal_table import LAMPS
 
 _ROUNDING = 1e-6  # mm, degrees: the step of the control is coarser
 

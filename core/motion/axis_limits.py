@@ -10,8 +10,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from core.coded_error import CodedError
-from core.message import Message
+from core.message import CodedError, Message
 
 
 class MotionError(CodedError):

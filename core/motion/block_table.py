@@ -18,8 +18,8 @@ from core.message import Message
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError
 
 if TYPE_CHECKING:
-    from core.geometry.machine_travel import CurvedMove, Travel
     from core.geometry.virtual_mill import PlaneMove
+    from core.geometry.working_plane import CurvedMove, Travel
 
 
 class ModalLike(Protocol):

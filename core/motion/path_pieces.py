@@ -1,14 +1,22 @@
-"""Lines and arcs as arrays: the geometry on which the time law runs."""
+"""Lines and arcs as arrays, on which the time law runs, and joints of short chords made smooth.
+
+A program tells points to a step, and in chords of a hundredth that turns the direction to and fro at every
+joint, far more than the curve does that was chopped. No drive needs that: a joint is moved, by one step at
+most on each axis, to where its neighbours say the curve is. Ends of runs of chords, corners, arcs, long lines
+and turns of other axes stay where they are written.
+"""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 
 from core.message import Message
-from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError
+from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError, MotionLimits
 from core.motion.block_table import BlockTable
 
 SAME_POINT = 1e-7  # mm or degrees: nearer points are one point
@@ -16,6 +24,11 @@ _STEEPEST = 1e5  # degrees of C a mm: distances along the path are good to 1e-9 
 _NO_WAY = 1e-4  # mm of the slides beside a turn of C that measures the path then
 _TURN_ALONE = 1e-6  # mm of the slides under which the feed is that of C
 RADII_DIFFER = 0.02  # mm by which start and end of an arc may differ in their distance from the centre
+_AROUND = 6  # joints on either side of which the mean is taken, four times
+_BACK = 6  # and over which what would be more than a step is taken back, twice
+SUPPORT = 4 * _AROUND + 4 * _BACK + 2  # joints on either side that have a say
+_SHARE = 0.25  # of a chord by which its ends may be moved at most
+_TURNS = 4.0  # steps over the length of a chord: more than rounding can turn it
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,3 +170,170 @@ def _settled_centre(table: BlockTable, arc: IntArray) -> FloatArray:
     middle = 0.5 * (start + end)
     settled: FloatArray = centre - along * np.sum((centre - middle) * along, axis=1)[:, None]
     return settled
+
+
+def unrounded(pieces: Pieces, limits: MotionLimits) -> Pieces:
+    """The pieces with joints moved by ``limits.grain`` at most on each slide; both ends stay."""
+    inner = _free(pieces, limits)
+    if not inner.any():
+        return pieces
+    joints = _joints(pieces)
+    free = np.concatenate([[False], inner, [False]])
+    shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
+    allowed = np.zeros(len(free))
+    allowed[1:-1] = np.where(inner, np.minimum(limits.grain, _SHARE * shorter), 0.0)
+    s = np.concatenate([[0.0], np.cumsum(pieces.length)])
+    joints[:, :2] = _eased(joints[:, :2].T, s, free, allowed).T
+    return moved(pieces, joints, free)
+
+
+def _joints(pieces: Pieces) -> FloatArray:
+    """Where the pieces (n,) begin, and where the last of them ends: (n+1, axes)."""
+    return np.concatenate([pieces.start, pieces[-1:].point(pieces.length[-1:])])
+
+
+def moved(pieces: Pieces, joints: FloatArray, free: BoolArray) -> Pieces:
+    """Lines between ``joints`` (n+1, axes) where an end of theirs is ``free`` (n+1,)."""
+    touched = np.flatnonzero(free[:-1] | free[1:])
+    start, direction = pieces.start.copy(order="K"), pieces.direction.copy(order="K")
+    length = pieces.length.copy()
+    way = joints[touched + 1, :2] - joints[touched, :2]
+    length[touched] = np.hypot(way[:, 0], way[:, 1])
+    start[touched, :2] = joints[touched, :2]
+    direction[touched, :2] = way / length[touched, None]
+    return dataclasses.replace(pieces, start=start, direction=direction, length=length)
+
+
+def regrown(known: Pieces, written: Pieces, new: Pieces, redo: int, limits: MotionLimits) -> Pieces:
+    """The last ``redo`` pieces of ``known``, their joints where ``new`` ones behind say, and the new ones.
+
+    ``written`` are the last pieces of ``known`` as their words have them, at least SUPPORT more than ``redo``
+    where there are as many.
+    """
+    both = joined([written, new])
+    eased = unrounded(both, limits)[len(written) - redo :]
+    begin = known[-1:].point(known.length[-1:])[0] if redo == 0 else known.start[len(known) - redo]
+    # Only a chord has an end that was moved: a turn of C, whose slides differ by noise, has no other length.
+    if not len(eased) or not _chords(eased[:1], limits)[0] or (eased.start[0] == begin).all():
+        return eased
+    joints = _joints(eased)
+    joints[0] = begin
+    return moved(eased, joints, np.arange(len(joints)) == 0)
+
+
+def ends_in_chord(pieces: Pieces, limits: MotionLimits) -> bool:
+    """Whether the end may yet become a joint that is moved."""
+    return len(pieces) > 0 and bool(_chords(pieces[-1:], limits)[0])
+
+
+def _chords(pieces: Pieces, limits: MotionLimits) -> BoolArray:
+    """Lines (n,) of the slides that are short enough to feel the rounding of their ends."""
+    # Longer lines turn by so little that no speed is too high for the joint.
+    longest = _TURNS * limits.grain * limits.plane_speed / (limits.plane_acceleration * limits.interval)
+    alone = (pieces.curvature == 0.0) & ~pieces.direction[:, 2:].any(axis=1)
+    chords: BoolArray = alone & (pieces.length < longest) & pieces.direction[:, :2].any(axis=1)
+    return chords
+
+
+def _free(pieces: Pieces, limits: MotionLimits) -> BoolArray:
+    """Joints (n-1,) between two chords that are short enough to feel the rounding, and turn no more."""
+    if limits.grain <= 0.0 or len(pieces) < 3:
+        return np.zeros(max(len(pieces) - 1, 0), dtype=bool)
+    chord = _chords(pieces, limits)
+    turn = np.abs(np.diff(pieces.direction[:, :2], axis=0)).max(axis=1)
+    shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
+    rounding = turn * shorter <= _TURNS * limits.grain
+    free: BoolArray = chord[:-1] & chord[1:] & rounding & (pieces.rapid[:-1] == pieces.rapid[1:])
+    return free
+
+
+def _clear(free: BoolArray) -> IntArray:
+    """How many joints on either side of each (n+1,) are as free as it is."""
+    at = np.arange(len(free))
+    before = at - np.maximum.accumulate(np.where(free, -1, at))
+    behind = np.minimum.accumulate(np.where(free, len(free), at)[::-1])[::-1] - at
+    clear: IntArray = np.minimum(before, behind)
+    return clear
+
+
+class _Window(NamedTuple):
+    """Neighbours of each of n+1 joints: sums up to ``behind`` less those up to ``first`` are of ``size``."""
+
+    first: IntArray
+    behind: IntArray
+    size: FloatArray
+
+    @classmethod
+    def of(cls, around: IntArray) -> _Window:
+        """So many (n+1,) joints on either side of each."""
+        at = np.arange(len(around))
+        return cls(at - around, at + around + 1, (2 * around + 1).astype(np.float64))
+
+    def mean(self, values: FloatArray) -> FloatArray:
+        """Mean (k, n+1) of the values around each."""
+        base = values[:, :1]
+        sums = np.zeros((len(values), values.shape[1] + 1))
+        np.subtract(values, base, out=sums[:, 1:])
+        np.cumsum(sums, axis=1, out=sums)
+        mean = sums.take(self.behind, axis=1)
+        mean -= sums.take(self.first, axis=1)
+        mean /= self.size
+        mean += base
+        return mean
+
+
+def _eased(joints: FloatArray, s: FloatArray, free: BoolArray, allowed: FloatArray) -> FloatArray:
+    """Joints (2, n+1) at the distances ``s``, moved onto the mean of those around, ``allowed`` at most.
+
+    Every run of ``free`` (n+1,) ones is eased by itself: nothing before a corner moves for what lies behind.
+    """
+    clear, apart, fixed = _clear(free), _apart(free, _BACK), np.flatnonzero(~free)
+    around, back = _Window.of(np.minimum(clear, _AROUND)), _Window.of(np.minimum(clear, _BACK))
+    span = np.maximum(s[around.behind - 1] - s[around.first], 1e-12)
+    off = s - around.mean(s[None])[0]
+
+    def mean(of: FloatArray) -> FloatArray:
+        """Mean of the joints around each, carried along their line to its own distance: a line stays one."""
+        slope = (of.take(around.behind - 1, axis=1) - of.take(around.first, axis=1)) / span
+        carried: FloatArray = around.mean(of) + slope * off
+        return carried
+
+    once = mean(mean(joints))
+    # A mean cuts the curve short by some height; what the mean of the mean cuts off more is as much.
+    eased = 2.0 * once - mean(mean(once))
+    for _ in range(2):
+        over = np.clip(eased, joints - allowed, joints + allowed) - eased
+        if not over.any():
+            return eased
+        for sign in (1.0, -1.0):
+            most = _largest(np.maximum(sign * over, 0.0), _BACK, apart)
+            most[:, fixed] = 0.0
+            eased = eased + sign * back.mean(most)
+    return np.clip(eased, joints - allowed, joints + allowed)
+
+
+def _apart(free: BoolArray, around: int) -> IntArray | None:
+    """Places (n+1,) for the joints that keep runs of free ones more than ``around`` apart; None: one run."""
+    begins = free.copy()
+    begins[1:] &= ~free[:-1]
+    if np.count_nonzero(begins) < 2:
+        return None
+    places: IntArray = np.arange(len(free)) + around * np.cumsum(begins)
+    return places
+
+
+def _largest(values: FloatArray, around: int, apart: IntArray | None) -> FloatArray:
+    """Largest (k, m) of the values, none below 0, ``around`` each: of two, four, … neighbours at a time."""
+    if apart is not None:
+        spread = np.zeros((len(values), int(apart[-1]) + 1))
+        spread[:, apart] = values
+        near: FloatArray = _largest(spread, around, None)[:, apart]
+        return near
+    width, reach = 2 * around + 1, 1
+    largest = np.zeros((len(values), values.shape[1] + 2 * around))
+    largest[:, around : around + values.shape[1]] = values
+    while reach < width:
+        step = min(reach, width - reach)
+        largest = np.maximum(largest[:, :-step], largest[:, step:])
+        reach += step
+    return largest

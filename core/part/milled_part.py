@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.part.part_errors import PartError
 from core.part.polar_field import NOTHING, IntArray, PolarField, Taken
 from core.part.ray_cuts import FloatArray, capsules, clipped, joined, nearest_turn, radial_mill
+from core.part.tool_polygons import PartError
 
 _SCALLOP = 0.001  # mm: what a mill that goes on in steps leaves between them
 _RAMP = 0.005  # mm of depth a step

@@ -1,5 +1,4 @@
-"""Metal as a polar field: in columns along Z, on rays from the axis outwards, the intervals of r that are
-metal.
+"""Metal as a polar field: in columns along Z, on rays from the axis outwards, intervals of r.
 
 A ray has one interval as a rule, two where a bore or a face groove leaves a ring, more behind a cross hole:
 they lie in layers, ascending in r, an empty one with its high not above its low. Columns need not be equally
@@ -9,13 +8,14 @@ wide: they divide at shoulders and at the floors of pockets, so that these stand
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
-from core.part.part_errors import PartError
 from core.part.ray_cuts import FloatArray
+from core.part.tool_polygons import PartError
 
 IntArray = npt.NDArray[np.intp]
 Real = TypeVar("Real", FloatArray, npt.NDArray[np.float32])
@@ -27,6 +27,8 @@ RAYS = 720
 _TOUCH = 1e-7  # mm; less is no metal
 _JUMP = 0.05  # mm: a rise from one fine column to the next that is a shoulder
 _LEAST = 0.002  # mm: no column is divided nearer to its edge
+Ends = tuple[float, float]
+"""Of a column: from and to which Z."""
 
 
 class Taken(NamedTuple):
@@ -252,3 +254,43 @@ def _starts(low: FloatArray, high: FloatArray, columns: int) -> IntArray:
         for a, b in zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True)
     ]
     return np.unique(np.concatenate(parts).astype(np.intp))
+
+
+class FieldCopy(NamedTuple):
+    """``columns`` by their ends: (2, layers, rays) of low and high; one ray: it is round."""
+
+    columns: Mapping[Ends, FloatArray]
+    edges: FloatArray
+    layers: int
+    rays: int
+    most: int
+
+
+def copied(field: PolarField, before: FieldCopy | None) -> FieldCopy:
+    """A copy; what is as it was ``before`` takes no more room."""
+    known = before.columns if before is not None else {}
+    ends = zip(field.edges[:-1].tolist(), field.edges[1:].tolist(), strict=True)
+    columns = {
+        pair: _shared(field.low[:, at], field.high[:, at], known.get(pair)) for at, pair in enumerate(ends)
+    }
+    layers, _, rays = field.low.shape
+    return FieldCopy(columns, field.edges.copy(), layers, rays, field.most)
+
+
+def restored(copy: FieldCopy) -> PolarField:
+    """A field of its own, as it was when it was copied."""
+    shape = copy.layers, len(copy.columns), copy.rays
+    low, high = np.zeros(shape), np.zeros(shape)
+    for at, column in enumerate(copy.columns.values()):
+        low[: column.shape[1], at], high[: column.shape[1], at] = column
+    return PolarField(copy.edges.copy(), low, high, copy.most)
+
+
+def _shared(low: FloatArray, high: FloatArray, known: FloatArray | None) -> FloatArray:
+    """A column without its empty layers, on one ray where all are alike; the known one where that is it."""
+    filled = np.flatnonzero((high > low).any(axis=1))
+    deep = int(filled[-1]) + 1 if len(filled) else 0
+    column = np.stack((low[:deep], high[:deep]))
+    if deep and (column == column[:, :, :1]).all():
+        column = column[:, :, :1].copy()
+    return known if known is not None and np.array_equal(known, column) else column

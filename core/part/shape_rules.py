@@ -6,11 +6,9 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 from core.message import Message
-from core.part.holder_codes import holder_of
-from core.part.insert_codes import InsertCodeError, decoded
-from core.part.part_errors import PartError
+from core.part.insert_codes import InsertCodeError, decoded, holder_of
 from core.part.tool_outline import BORING_ENTRIES, ENTRIES
-from core.part.tool_polygons import convex_pieces
+from core.part.tool_polygons import PartError, convex_pieces
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.tool_edges import TIP_DIRECTIONS
 

@@ -14,10 +14,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from core.part.clamping import Clamping
 from core.part.ray_cuts import FloatArray
 from core.part.solid_view import SolidView
-from core.part.stock import Stock
+from core.part.stock import Clamping, Stock
 from core.part.surface_points import Solid, turned_solid
 
 Image = npt.NDArray[np.uint32]

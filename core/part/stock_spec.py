@@ -13,9 +13,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 
-from core.coded_error import CodedError
 from core.input_file import failures_as
-from core.message import Message
+from core.message import CodedError, Message
 from core.part.stock import Point, Stock
 from core.part.stock_forms import FORMS
 

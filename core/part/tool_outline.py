@@ -15,8 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.part.holder_codes import Holder, holder_of, shank
-from core.part.insert_codes import Insert, decoded, insert_of
+from core.part.insert_codes import Holder, Insert, decoded, holder_of, insert_of, shank
 from core.part.tool_polygons import (
     CHORD,
     COARSE,

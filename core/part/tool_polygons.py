@@ -12,12 +12,16 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from core.part.part_errors import PartError
+from core.message import CodedError
 
 FloatArray = NDArray[np.float64]
 CHORD = 0.0005  # mm between a nose and its chords
 COARSE = 0.02  # mm; corners that do not cut the part
 _RIGHT_ANGLE = math.pi / 2.0
+
+
+class PartError(CodedError, ValueError):
+    """Points, edges or outlines from which no part, cut or tool can be computed."""
 
 
 def polygon(points: Iterable[tuple[float, float]]) -> FloatArray:

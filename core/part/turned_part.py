@@ -1,4 +1,4 @@
-"""The metal of a turned part: in columns along Z the radii between which there is some, and what is cut off.
+"""The metal of a turned part: in columns along Z the radii between which there is some.
 
 A column has one interval of r as a rule, more where a face groove or a ring is; they lie in layers from the
 axis outwards. Radii are exact in the middle of a column, so a cylinder, a cone and an arc are as exact as
@@ -15,20 +15,46 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from core.part.polyline_fit import simplified
 from core.part.stock import Stock
 from core.part.swept_edge import Columns, FloatArray, Point
 
 STEP = 0.008
 """Width of a column, mm, up to ``_FINE`` of them: a shoulder is off by .004 mm (.00016 in) at most."""
-
 _FINE = 40_000  # columns: 320 mm
 _TOUCH = 1e-6  # mm; less is no metal
 _FIT = 0.004  # mm by which a profile that is told may be off
 _STEEP = 8.0  # a rise of so many steps from one column to the next is a shoulder
-
 Profile = list[tuple[float, float]]
 """Z and r, mm, Z falling: from the face towards the chuck."""
+
+
+def simplified(points: FloatArray, tolerance: float) -> FloatArray:
+    """Points (k, 2) of (n, 2), ends included: no other lies further off their polyline than ``tolerance``."""
+    kept = np.zeros(len(points), dtype=bool)
+    kept[[0, -1]] = True
+    todo = [(0, len(points) - 1)]
+    while todo:
+        first, last = todo.pop()
+        if last - first < 2:
+            continue
+        off = _distances(points[first + 1 : last], points[first], points[last])
+        worst = int(off.argmax())
+        if off[worst] > tolerance:
+            middle = first + 1 + worst
+            kept[middle] = True
+            todo += [(first, middle), (middle, last)]
+    return points[kept]
+
+
+def _distances(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
+    """How far each point (n, 2) lies from the straight line between two."""
+    way: FloatArray = end - start
+    length = float(np.hypot(*way))
+    away = points - start
+    if length == 0.0:
+        return np.hypot(away[:, 0], away[:, 1])
+    off: FloatArray = np.abs(way[0] * away[:, 1] - way[1] * away[:, 0]) / length
+    return off
 
 
 class Cut(NamedTuple):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from core.message import Message
 from core.page_contents import contents
-from core.proving.part_checks import CHECKS, PROGRAM_CHECKS, Check
+from core.proving.checks.part_checks import CHECKS, PROGRAM_CHECKS, Check
 
 _PART, _PROGRAM = "Checks of the part", "Checks that do not need the stock"
 _HEAD = """\
@@ -18,7 +18,7 @@ This page lists all checks. To read a finding, specify stock and tools, or turn 
 [programming/edit-and-prove.md](programming/edit-and-prove.md).
 
 {contents}
-This page is generated from `core/proving/part_checks.py` by
+This page is generated from `core/proving/checks/part_checks.py` by
 `python -m core.proving.checks_page docs/checks.md`. Do not edit it. Each finding shows its check,
 line, elementary block and remedy.
 

@@ -1,6 +1,9 @@
-"""The part at any time of a program, replayed from copies that were kept on the way.
+"""The part at any time of a program, replayed from copies, and the finished part for a picture.
 
 What is given out are arrays of their own: whoever shows them may be another thread.
+
+The finished part is what the chuck holds just before the last piece is parted off; where nothing is, at the
+end or before the collet opens for the next one, whichever has less metal left.
 """
 
 from __future__ import annotations
@@ -9,9 +12,11 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
+from core.interpreter.actions import Collet
 from core.message import Message
 from core.part.solid_bodies import Round, ToolBody, chuck_solid
 from core.part.solid_picture import Scene
@@ -20,19 +25,17 @@ from core.part.surface_points import Solid, solid_of, turned_solid
 from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import ToolOutline, outline
 from core.part.tool_shape import ToolShape
-from core.proving.part_copies import PartCopies
-from core.proving.part_hits import hit_of, metal_of
-from core.proving.part_instant import Half, Hit, PartInstant, PlacedTool
+from core.proving.part_instant import Half, Hit, PartCopies, PartInstant, PlacedTool, hit_of, metal_of
 from core.proving.part_making import PartMaking
 from core.proving.part_proof import MOST_MOVES
-from core.proving.part_setting import PartSetting
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
-from core.proving.program_tools import ProgramTools
+from core.proving.program_tools import PartSetting, ProgramTools
 from core.proving.tip_moves import LiveStep, Step, Steps, TipMove, ends_of, slides_at, zero_of
 
 _LOOKED = 20  # blocks between two looks at whether the work is still wanted
 
 Go = Callable[[], None]
+Watch = Callable[[float], None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -384,3 +387,57 @@ def _halves(making: PartMaking) -> tuple[Half | None, Half | None]:
     edges: FloatArray = columns.first + columns.step * (np.arange(columns.number + 1, dtype=np.float64) - 0.5)
     half = Half(edges, part.low.copy(), part.high.copy())
     return half, half
+
+
+class FinishedPart(NamedTuple):
+    """``back`` and ``front`` are the ends of its stock along Z, ``radius`` that of the stock; mm."""
+
+    solid: Solid
+    back: float
+    front: float
+    radius: float
+
+
+def finished_part(moves: PartMoves, watch: Watch) -> FinishedPart | None:
+    """None where nothing is cut. ``watch`` is told now and then, and may raise to give up."""
+    history = PartHistory(moves)
+
+    def at(block: int) -> PartInstant:
+        return history.at(block, 0.0, lambda: watch(block))
+
+    pieces = at(history.blocks).pieces
+    ends = [history.blocks, *_before_last_opening(history)]
+    if pieces:
+        ends = [_before_last_piece(at, history.blocks, pieces)]
+    held = [(volume, end) for end in ends if (volume := _volume(at(end).near)) > 0.0]
+    stock = history.stock
+    if not held or stock is None:
+        return None
+    solid = history.solid(at(min(held)[1]))
+    return FinishedPart(solid, stock.back, stock.front, stock.radius) if solid is not None else None
+
+
+def _before_last_opening(history: PartHistory) -> list[int]:
+    """The block before the collet opens for the last time."""
+    for step in reversed(history.steps):
+        if not isinstance(step, TipMove | LiveStep) and step.action == Collet(closed=False):
+            return [max(step.n - 1, 0)]
+    return []
+
+
+def _before_last_piece(at: Callable[[int], PartInstant], last: int, pieces: int) -> int:
+    """The last block before the last piece has come off; there are never fewer of them later."""
+    before, behind = 0, last
+    while behind - before > 1:
+        middle = (before + behind) // 2
+        before, behind = (middle, behind) if at(middle).pieces < pieces else (before, middle)
+    return before
+
+
+def _volume(half: Half | None) -> float:
+    """Of the section, turned about the axis, mm³."""
+    if half is None:
+        return 0.0
+    wide = half.edges[1:] - half.edges[:-1]
+    rings = (half.high**2 - half.low**2).clip(min=0.0)
+    return float(math.pi * (rings * wide).sum())

@@ -1,9 +1,9 @@
-"""The part while a program makes it, block by block: stock, metal taken off, pieces that came off."""
+"""The part while a program makes it, block by block; what could not be checked for want of data."""
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -11,28 +11,26 @@ from typing import TYPE_CHECKING
 from core.interpreter.actions import AskInput, Collet, Output, ProgramStop, ToolChange, WaitInput
 from core.interpreter.modal_state import Modal
 from core.message import Message
-from core.part.cutter import Cutter
-from core.part.neighbours import Neighbours
+from core.part.cutter import Cutter, Neighbours
 from core.part.polar_field import NOTHING
-from core.part.stock import Stock
+from core.part.stock import Clamping, Point, Stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Piece, TurnedPart
-from core.proving.cutting_checks import LIVE
-from core.proving.part_checks import HOLES, KIND, STOCK, TOOL
-from core.proving.part_findings import RAPID, PartFindings
-from core.proving.part_report import PartReport
-from core.proving.part_setting import PartSetting
-from core.proving.program_tools import ProgramTools
-from core.proving.thread_checks import ThreadChecks
+from core.proving.assumed_tools import ToolUse
+from core.proving.checks.machine_checks import LIVE
+from core.proving.checks.part_checks import HOLES, KIND, STOCK, TOOL
+from core.proving.checks.part_findings import RAPID, PartFindings
+from core.proving.checks.thread_checks import ThreadChecks
+from core.proving.program_tools import PartSetting, ProgramTools
+from core.proving.proof_report import PartReport
 from core.proving.tip_moves import LiveStep, Step, TipMove
-from core.proving.unchecked_parts import unchecked
 from core.tool_edges import edge_name
 
 if TYPE_CHECKING:
-    from core.proving.mill_moves import MillMove
-    from core.proving.milling import Milling
+    from core.proving.milling import Milling, MillMove
 
 
+_DEEP = frozenset({ToolKind.DRILL, ToolKind.REAMER, ToolKind.TAP, ToolKind.END_MILL})
 _TURN = frozenset(
     {
         ToolKind.DRILL,
@@ -43,6 +41,49 @@ _TURN = frozenset(
         ToolKind.PARTING,
     }
 )
+
+
+def unchecked(
+    uses: Mapping[int, ToolUse],
+    shapes: Mapping[int, ToolShape],
+    clamping: Clamping | None,
+    gang: Mapping[int, Point],
+) -> tuple[str, ...]:
+    """Short phrases, one for each kind of thing; ``uses`` are the tools of the program."""
+    return tuple(_phrases([n for n in sorted(uses) if uses[n].moves or uses[n].live], shapes, clamping, gang))
+
+
+def _phrases(
+    used: Iterable[int],
+    shapes: Mapping[int, ToolShape],
+    clamping: Clamping | None,
+    gang: Mapping[int, Point],
+) -> Iterator[str]:
+    used = list(used)
+    if without := [n for n in used if n and n not in shapes]:
+        yield Message(
+            "{without}: tool holder, edge length and hand of the tool not defined", without=_names(without)
+        )
+    if short := [n for n in used if n in shapes and shapes[n].kind in _DEEP and not shapes[n].length]:
+        yield Message("{short}: maximum tool depth (unknown: no flute length defined)", short=_names(short))
+    if clamping is None or not clamping.diameter:
+        yield (
+            "collisions with the chuck and jaws, and stock whip (these checks require a "
+            "diameter in [clamping] and a stick-out)"
+        )
+    if clamping is None or not clamping.max_rpm:
+        yield "maximum chuck speed (unknown: no max_rpm in [clamping])"
+    if gang and (beside := sorted(gang.keys() - shapes.keys())):
+        yield (
+            Message(
+                "{tools}: collisions on the gang plate while a neighboring tool cuts (no tool shape defined)",
+                tools=_names(beside),
+            )
+        )
+
+
+def _names(numbers: Iterable[int]) -> str:
+    return ", ".join(edge_name(n) for n in numbers)
 
 
 class PartMaking:
@@ -161,8 +202,7 @@ class PartMaking:
         move, shape = self.mill_move(step), self._tools.shape(self._tool)
         if move is None or shape is None or self.part is None or self._is_open:
             return
-        from core.proving.mill_moves import between
-        from core.proving.milling import Milling
+        from core.proving.milling import Milling, between
 
         if last - first < 1.0:
             move = move._replace(path=between(move.path, first, last))
@@ -181,7 +221,7 @@ class PartMaking:
         shape = self._tools.shape(self._tool)
         if shape is None or not shape.diameter:
             return None
-        from core.proving.mill_moves import mill_move
+        from core.proving.milling import mill_move
 
         return mill_move(step.block, step.place, shape)
 

@@ -17,11 +17,9 @@ from core.message import Message
 from core.part.stock_spec import StockSpec
 from core.part.turned_part import Piece
 from core.proving.part_making import PartMaking
-from core.proving.part_report import PartReport
-from core.proving.part_setting import PartSetting
 from core.proving.program_timeline import MotionSpan, Part, RestSpan
-from core.proving.program_tools import ProgramTools
-from core.proving.proof_report import Report, in_order
+from core.proving.program_tools import PartSetting, ProgramTools
+from core.proving.proof_report import PartReport, Report, in_order
 from core.proving.prove_program import Progress, prove
 from core.proving.tip_moves import Step, Steps, TipMove
 

@@ -26,7 +26,7 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.proving.cutting_checks import CuttingChecks
+from core.proving.checks.machine_checks import CuttingChecks
 from core.proving.program_timeline import MotionSpan, RestSpan, RestState, Timeline
 from core.proving.proof_pass import MAX_FINDINGS, ProofPass
 from core.proving.proof_report import Range, Report, Ways, in_order

@@ -19,8 +19,7 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine
 from core.message import Message, join_messages
-from core.proving.cutting_checks import CuttingChecks
-from core.proving.machine_checks import c_findings, travel_findings
+from core.proving.checks.machine_checks import CuttingChecks, c_findings, travel_findings
 from core.proving.program_timeline import MotionSpan, Part, RestSpan, Timeline
 from core.proving.proof_report import MillFigures, Range, Reach, Report, Times, in_order
 

@@ -1,17 +1,21 @@
-"""What proving found: figures in mm and seconds, X a radius; the command line turns them into inches."""
+"""What proving found, and what became of the stock: figures in mm and seconds, X a radius."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from core.interpreter.machine_requirements import Need
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
+from core.part.stock import Stock
+from core.part.tool_shape import ToolShape
+from core.part.turned_part import Piece
 
 if TYPE_CHECKING:
     from core.interpreter.working_plane import Swivel
+
 
 Range = tuple[float, float]
 
@@ -99,3 +103,26 @@ class Report:
 def in_order(found: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
     """Findings in the order of lines and columns."""
     return tuple(sorted(found, key=lambda each: (each.line, each.column)))
+
+
+@dataclass(frozen=True, slots=True)
+class PartReport:
+    """What became of the stock: mm and mm³. ``last`` is the last part that came off, or what the chuck holds.
+
+    ``shapes`` are the tools by T, described or assumed, None where nothing is known that would cut.
+    ``assumed`` are sentences, one for each thing that nobody has said, ``unchecked`` what could not be looked
+    at for want of it.
+    """
+
+    stock: Stock | None
+    volume: float
+    removed: float
+    left: float
+    last: Piece | None
+    milled: bool
+    pieces: tuple[Piece, ...]
+    assumed: tuple[str, ...]
+    findings: tuple[Diagnostic, ...]
+    unchecked: tuple[str, ...] = ()
+    shapes: Mapping[int, ToolShape | None] = field(default_factory=dict)
+    sides: tuple[Piece, Piece] | None = None

@@ -14,7 +14,7 @@ from itertools import pairwise
 
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import ToolOffset
-from core.part.neighbours import SolidTool, solid_tool
+from core.part.cutter import SolidTool, solid_tool
 from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import nose_circle, outline
 from core.part.turned_part import NOTHING, Cut, TurnedPart

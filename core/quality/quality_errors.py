@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.coded_error import CodedError
+from core.message import CodedError
 
 
 class QualityError(CodedError, ValueError):

@@ -1,4 +1,4 @@
-"""A record of the scope: samples of one stretch of time, one column a channel.
+"""A record of the scope: samples of a stretch of time, derived figures, and what is wrong with one.
 
 Channels are named by what they are: ``X demand`` ``X actual`` ``X following error`` (mm, degrees of rotary
 axes), ``spindle command`` ``spindle speed`` (rpm), ``feed override`` and so on; ``channels_of`` says all.
@@ -6,17 +6,29 @@ axes), ``spindle command`` ``spindle speed`` (rpm), ``feed override`` and so on;
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from core.message import Message
+from core.input_file import MB, TooLargeError
+from core.message import CodedError, Message
 
 FloatArray = npt.NDArray[np.float64]
 _LATEST = 250_000_000_000.0  # s since 1970, in the year 9892: calendars end soon after
+# Of each axis, behind its letter.
+AXIS_CHANNELS = (("demand", ""), ("actual", ""), ("following error", ""), ("load", "%"))
+_FULL = frozenset({errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.EFBIG})
+MOST_BYTES = 512 * MB
+"""The most that a record may have, packed or unpacked; five minutes at 1 kHz have 50 MB."""
+
+VELOCITY_SPAN = 0.008  # s
+ACCELERATION_SPAN = 0.032  # s
+RIPPLE_SPAN = 0.5  # s: ripple is the speed less its mean over this
 
 
 class UnsoundError(ValueError):
@@ -31,8 +43,6 @@ class Channel(NamedTuple):
     logic: bool = False
 
 
-# Of each axis, behind its letter.
-AXIS_CHANNELS = (("demand", ""), ("actual", ""), ("following error", ""), ("load", "%"))
 # Of the machine as a whole.
 MACHINE_CHANNELS = (
     Channel("spindle command", "rpm"),
@@ -117,3 +127,90 @@ def checked_record(record: Record) -> Record:
         for name, column in record.columns.items()
     }
     return replace(record, columns=known)
+
+
+class RecordError(CodedError):
+    """``str()`` is the sentence for whoever asked: what, where, what to do."""
+
+
+class AnalysisError(CodedError):
+    """``str()`` is the sentence: what the record lacks, and what to do."""
+
+
+def damage(path: Path, error: Exception) -> RecordError:
+    """Return the error for a file whose content is not as it was written."""
+    if isinstance(error, UnsoundError):
+        return RecordError(
+            Message("{path} is damaged ({error}); open another scope record", path=path, error=error),
+            "damaged",
+        )
+    return RecordError(Message("{path} is damaged; open another scope record", path=path), "damaged")
+
+
+def why(path: Path, error: OSError) -> RecordError:
+    """The same as a sentence."""
+    if isinstance(error, TooLargeError):
+        return RecordError(
+            Message(
+                "{path}: {cause}, so the file is not a scope record; check the file name",
+                path=path,
+                cause=error.strerror,
+            ),
+            "too-large",
+        )
+    if error.errno in _FULL:
+        return RecordError(Message("{path}: the disk is full; free up disk space", path=path), "disk-full")
+    if isinstance(error, FileNotFoundError):
+        return RecordError(Message("{path}: file not found", path=path), "not-found")
+    return RecordError(Message("{path}: {cause}", path=path, cause=error.strerror or error), "unusable")
+
+
+def velocity(times: FloatArray, position: FloatArray, span: float = VELOCITY_SPAN) -> FloatArray:
+    """Way over time across ``span`` s, or two samples where they lie farther apart; units a second.
+
+    Exact where the acceleration is constant. A sine of ω rad/s comes out smaller by sin(ω·span/2)/(ω·span/2).
+    """
+    k = _half(times, span)
+    found = np.full(len(times), np.nan)
+    if len(times) > 2 * k:
+        way, took = position[2 * k :] - position[: -2 * k], times[2 * k :] - times[: -2 * k]
+        found[k:-k] = way / took
+    return found
+
+
+def acceleration(times: FloatArray, position: FloatArray, span: float = ACCELERATION_SPAN) -> FloatArray:
+    """Change of the mean velocity from the first to the second half of ``span`` s; units a second squared.
+
+    With h = span/2 it is (p(t+h) − 2p(t) + p(t−h))/h² of even samples: exact where the acceleration is
+    constant, and smaller by (sin(ωh/2)/(ωh/2))² of a sine.
+    """
+    k = _half(times, span)
+    found = np.full(len(times), np.nan)
+    if len(times) > 2 * k:
+        ahead, behind = times[2 * k :] - times[k:-k], times[k:-k] - times[: -2 * k]
+        after = (position[2 * k :] - position[k:-k]) / ahead
+        before = (position[k:-k] - position[: -2 * k]) / behind
+        found[k:-k] = 2.0 * (after - before) / (ahead + behind)
+    return found
+
+
+def ripple(times: FloatArray, speed: FloatArray, span: float = RIPPLE_SPAN) -> FloatArray:
+    """Speed less its mean over ``span`` s. Ripple of which whole waves fit into it cancels in the mean."""
+    k = _half(times, span)
+    found = np.full(len(times), np.nan)
+    known = np.isfinite(speed)
+    if len(times) > 2 * k:
+        total = np.concatenate([[0.0], np.cumsum(np.where(known, speed, 0.0))])
+        count = np.concatenate([[0], np.cumsum(known)])
+        n = count[2 * k + 1 :] - count[: -2 * k - 1]
+        mean = (total[2 * k + 1 :] - total[: -2 * k - 1]) / np.maximum(n, 1)
+        found[k:-k] = np.where(n == 2 * k + 1, speed[k:-k] - mean, np.nan)
+    return found
+
+
+def _half(times: FloatArray, span: float) -> int:
+    """Samples in half the span, one at least; of the commonest distance of samples."""
+    if len(times) < 2:
+        return 1
+    step = float(np.median(np.diff(times)))
+    return max(1, round(0.5 * span / step)) if step > 0.0 else 1

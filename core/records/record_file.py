@@ -20,8 +20,17 @@ import numpy as np
 from core.file_placing import put_in_place
 from core.input_file import MB, failures_as, input_bytes
 from core.message import Message
-from core.records.record import Channel, FloatArray, Record, UnsoundError, checked_record
-from core.records.record_errors import MOST_BYTES, RecordError, damage, why
+from core.records.record import (
+    MOST_BYTES,
+    Channel,
+    FloatArray,
+    Record,
+    RecordError,
+    UnsoundError,
+    checked_record,
+    damage,
+    why,
+)
 from core.records.ring_file import is_ring, read_ring
 
 ENDING = ".scope"

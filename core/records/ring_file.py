@@ -21,8 +21,16 @@ import numpy as np
 from core.file_lock import lock
 from core.input_file import failures_as, open_input
 from core.message import Message
-from core.records.record import FloatArray, Record, UnsoundError, checked_record
-from core.records.record_errors import MOST_BYTES, RecordError, damage, why
+from core.records.record import (
+    MOST_BYTES,
+    FloatArray,
+    Record,
+    RecordError,
+    UnsoundError,
+    checked_record,
+    damage,
+    why,
+)
 from core.records.record_ring import Recorded, Ring, Rows, record_of, sound
 
 _MAGIC = b"TurnDesk ring\n"

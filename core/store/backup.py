@@ -1,4 +1,4 @@
-"""Backup and restore. A backup is one file; neither ever leaves half a file under its name."""
+"""Backup and restore, and what a backup is worth: whole, and how it differs from the store."""
 
 from __future__ import annotations
 
@@ -9,15 +9,37 @@ from contextlib import closing, suppress
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
+from core.file_lock import unfinished_file
 from core.file_placing import put_in_place
 from core.message import Message
-from core.store import damaged_rows, database, people, program_records, row_sums
-from core.store.database import WriterLock, make_folder
+from core.store import damaged_rows, database, log_damage, people, program_records, row_sums
+from core.store.database import make_folder
 from core.store.people import PersonRow
+from core.store.store_connection import WriterLock, companions, connect, version_of
 from core.store.store_errors import Cause, StoreError, cause_of, said, why
 from core.store.store_file import FILE_NAME, has_store, real_path
-from core.unfinished import unfinished_file
+
+_NAMES = {
+    "tool_offsets": "tool offsets",
+    "secondary_offsets": "secondary offsets",
+    "zero_offsets": "zero offsets",
+    "tool_shapes": "tool shapes",
+    "mill_tools": "tools",
+    "datum_presets": "presets",
+    "tool_lives": "tool lives",
+    "mill_tool_lives": "tool lives",
+    "part_counts": "part counts",
+    "settings": "settings",
+    "jobs": "jobs",
+}
+_SUMS = "SELECT tbl, key, sha256 FROM row_sums"
+_NEWEST = (
+    "SELECT name, sha256 FROM programs JOIN program_versions ON program = programs.id"
+    " WHERE number = (SELECT max(number) FROM program_versions WHERE program = programs.id)"
+)
+Found = dict[tuple[str, object], str]
 
 
 def problems(path: Path) -> tuple[str, ...]:
@@ -36,15 +58,15 @@ def all_problems(path: Path) -> tuple[str, ...]:
 def _looked_through(path: Path, look: Callable[[sqlite3.Connection], tuple[str, ...]]) -> tuple[str, ...]:
     database.check_file(path, thorough=False)
     try:
-        with closing(database.connect(path, read_only=True)) as connection:
-            database.check_log(path, connection)
+        with closing(connect(path, read_only=True)) as connection:
+            log_damage.check_log(path, connection)
             return look(connection)
     except sqlite3.Error as error:
         return (Message("the file is damaged: {text}", text=error),)
 
 
 def _of_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
-    newest = database.version_of(connection) == len(database.migrations())
+    newest = version_of(connection) == len(database.migrations())
     return damaged_rows.damaged_histories(connection) if newest else ()
 
 
@@ -63,7 +85,7 @@ def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
         Message("{which} does not match its checksum", which=which)
         for which in program_records.spoilt(connection)
     ]
-    found += damaged_rows.damaged(connection, row_sums.sealed_before(database.version_of(connection)))
+    found += damaged_rows.damaged(connection, row_sums.sealed_before(version_of(connection)))
     return tuple(found)
 
 
@@ -134,7 +156,7 @@ def restore(folder: Path, source: Path) -> Path | None:
             )
         here = _people_of(path) if there else None
         kept = _keep(path) if there else None
-        for leftover in database.companions(path):
+        for leftover in companions(path):
             leftover.unlink(missing_ok=True)
         _copy(source, real_path(path), partial(_put_people, here))
         return kept
@@ -144,7 +166,7 @@ def _people_of(path: Path) -> tuple[PersonRow, ...]:
     """Return the people of the store that is about to be replaced; none where they cannot be read."""
     try:
         database.check_header(path)
-        with closing(database.connect(path, read_only=True)) as connection:
+        with closing(connect(path, read_only=True)) as connection:
             return people.people(connection).rows
     except (StoreError, sqlite3.Error):
         return ()
@@ -169,8 +191,8 @@ def _keep(path: Path) -> Path:
     _empty_log(path)
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
     kept = path.with_name(f"{path.stem}-replaced-{stamp}.db")
-    log, _ = database.companions(path)
-    kept_log, _ = database.companions(kept)
+    log, _ = companions(path)
+    kept_log, _ = companions(kept)
     try:
         if log.exists() and log.stat().st_size:
             shutil.copy2(log, kept_log)
@@ -186,7 +208,10 @@ def _keep(path: Path) -> Path:
 def _empty_log(path: Path) -> None:
     """Pours the log into the store. A damaged store keeps its log; a busy one raises StoreError."""
     busy = 0
-    with suppress(sqlite3.Error, StoreError), closing(database.connect(path, read_only=False)) as connection:
+    with (
+        suppress(sqlite3.Error, StoreError),
+        closing(connect(path, read_only=False)) as connection,
+    ):
         busy = connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
     if busy:
         raise StoreError(
@@ -205,7 +230,7 @@ def _copy(source: Path, target: Path, change: Callable[[sqlite3.Connection], Non
     try:
         with unfinished_file(target) as unfinished:
             with (
-                closing(database.connect(source, read_only=True)) as reading,
+                closing(connect(source, read_only=True)) as reading,
                 closing(sqlite3.connect(unfinished, isolation_level=None)) as writing,
             ):
                 reading.backup(writing)
@@ -227,3 +252,50 @@ def _unwritable(target: Path, error: Exception) -> StoreError:
         ),
         "cannot-write",
     )
+
+
+class Verdict(NamedTuple):
+    """``problem`` is empty where it is whole; ``differs`` counts what is other, missing or new, by its name.
+
+    ``older``: it is of a version that has no sums to compare by, and only programs are.
+    """
+
+    problem: str = ""
+    differs: tuple[tuple[str, int], ...] = ()
+    older: bool = False
+
+
+def verdict(now: sqlite3.Connection, path: Path) -> Verdict:
+    """Look through a backup, page by page, and hold it against the store. Takes its time; writes nothing."""
+    try:
+        found = problems(path)
+        if found:
+            return Verdict(found[0])
+        with closing(connect(path, read_only=True)) as then:
+            older = version_of(then) != version_of(now)
+            return Verdict("", _differing(now, then, sums=not older), older)
+    except StoreError as error:
+        return Verdict(str(error))
+    except sqlite3.Error as error:
+        return Verdict(str(why(path, error)))
+
+
+def _differing(
+    now: sqlite3.Connection, then: sqlite3.Connection, *, sums: bool
+) -> tuple[tuple[str, int], ...]:
+    """By sums and texts, never by times: what is the same again is no difference."""
+    counts: dict[str, int] = {}
+    here, there = _by_row(now, sums=sums), _by_row(then, sums=sums)
+    for row in here.keys() | there.keys():
+        if here.get(row) != there.get(row):
+            counts[row[0]] = counts.get(row[0], 0) + 1
+    order = ["programs", *dict.fromkeys(_NAMES.values())]
+    return tuple((name, counts[name]) for name in order if name in counts)
+
+
+def _by_row(connection: sqlite3.Connection, *, sums: bool) -> Found:
+    found: Found = {("programs", name): digest for name, digest in connection.execute(_NEWEST)}
+    if sums:
+        rows = connection.execute(_SUMS).fetchall()
+        found |= {(_NAMES[table], (table, key)): digest for table, key, digest in rows if table in _NAMES}
+    return found

@@ -3,12 +3,43 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 from core.message import Message
 from core.store import row_sums
-from core.store.offset_tables import history_of, named
+from core.store.offsets.offset_tables import LOGS, TABLES
 from core.store.row_sums import HISTORIES, KEYS, Key
+from core.store.store_rows import ShapeRow
+from core.tool_edges import edge_name
+
+TABLES_CHANGED = "the database schema differs from the schema that TurnDesk created"
+OF_PROGRAMS = ("tool_offsets", "secondary_offsets", "zero_offsets", "mill_tools", "datum_presets")
+"""The tables of what programs are proved with."""
+_ANEW = "enter the data again, or restore a backup"
+_REMEDY = {
+    "part_counts": "count the parts and enter the number, or restore a backup",
+    "jobs": "clear the job from the queue ('turndesk jobs clear') and enter the job again",
+    "people": "enter the PIN again, or reset the access levels ('turndesk access reset')",
+}
+_OTHERS = {
+    "settings": "the setting",
+    "part_counts": "the part-count record",
+    "tool_lives": "the tool-life record",
+    "mill_tool_lives": "the tool-life record",
+    "jobs": "the job",
+    "people": "the PIN entry",
+    "runs": "the program-run record",
+    "part_features": "the measured feature",
+    "part_readings": "the reading",
+    "insert_changes": "the insert-change record",
+    "events": "the event",
+    "programs": "the program record",
+    "program_versions": "the program-version record",
+    "part_cycles": "the part-cycle record",
+    "production_stops": "the production-stop record",
+    "shared_versions": "the shared version",
+    "shared_here": "the shared program",
+}
 
 
 def repair(connection: sqlite3.Connection) -> tuple[str, ...]:
@@ -122,20 +153,33 @@ def damaged_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
     )
 
 
-TABLES_CHANGED = "the database schema differs from the schema that TurnDesk created"
-
-OF_PROGRAMS = ("tool_offsets", "secondary_offsets", "zero_offsets", "mill_tools", "datum_presets")
-"""The tables of what programs are proved with."""
-
-_ANEW = "enter the data again, or restore a backup"
-_REMEDY = {
-    "part_counts": "count the parts and enter the number, or restore a backup",
-    "jobs": "clear the job from the queue ('turndesk jobs clear') and enter the job again",
-    "people": "enter the PIN again, or reset the access levels ('turndesk access reset')",
-}
-
-
 def _broken(connection: sqlite3.Connection, tables: Collection[str]) -> list[tuple[str, Key]]:
     order = list(tables)
     found = row_sums.all_broken(connection, tables)
     return sorted(found, key=lambda row: (order.index(row[0]), isinstance(row[1], str), row[1]))
+
+
+def named(name: str, key: row_sums.Key) -> str:
+    """A row of a table with a sum, as people call it."""
+    table = next((each for each in TABLES.values() if each.name == name), None)
+    if any(log.name == name for log in LOGS):
+        return Message("entry {key} of the offset history", key=key)
+    if table is None:
+        return Message("{others} {text}", others=_OTHERS[name], text=" ".join(str(key).split()))
+    if table.letter != "T" or not isinstance(key, int):
+        return f"{table.letter}{key}"
+    return Message("the tool shape of {key}", key=edge_name(key)) if table.row is ShapeRow else edge_name(key)
+
+
+def history_of(
+    connection: sqlite3.Connection, name: str, key: row_sums.Key, columns: Sequence[str]
+) -> tuple[row_sums.Value, ...] | None:
+    """The row as it was last entered, by the columns of its table; None: never, or it was cleared."""
+    kind = next((kind for kind, table in TABLES.items() if table.name == name), None)
+    if kind is None:
+        return None
+    log = TABLES[kind].log
+    sides = ", ".join(log.key if column == log.key else f"new_{column}" for column in columns)
+    last = f"WHERE {log.key} = ? AND {log.kind} = ? ORDER BY id DESC LIMIT 1"
+    found = row_sums.raw(connection, f"SELECT {sides} FROM {log.name} {last}", (key, kind.value))
+    return None if not found or None in found[0] else found[0]

@@ -1,39 +1,46 @@
-"""The file itself: how it is recognised, connected to and brought up to this version's tables."""
+"""The store's file: how it is recognised, made, checked, and brought up to this version's tables."""
 
 from __future__ import annotations
 
-import os
 import re
 import sqlite3
 import stat
-import time
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack, closing, suppress
+from collections.abc import Sequence
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
 from core import file_placing
-from core.file_lock import is_locked, lock, mark_locked
-from core.file_placing import put_in_place, write_in_place
+from core.file_lock import forget_killed, unfinished_file
+from core.file_placing import NEW_FILE, put_in_place, restrict_folder
 from core.input_file import open_input
 from core.message import Message
-from core.private_files import NEW_FILE, restrict, restrict_folder
 from core.store import row_sums
-from core.store.log_damage import lost_changes
+from core.store.log_damage import check_log, put_damaged_log_aside
+from core.store.store_connection import (
+    WRITTEN_HERE,
+    WriterLock,
+    companions,
+    configured,
+    connect,
+    has_log,
+    version_of,
+)
 from core.store.store_errors import Cause, StoreError, cause_of, why
-from core.store.store_file import FILE_NAME, has_store, real_path
-from core.unfinished import forget_killed, unfinished_file
+from core.store.store_file import FILE_NAME, has_store
 
 APPLICATION_ID = 0x5475724E  # "TurN": tells a store of ours from any other SQLite file
 _MIGRATIONS = Path(__file__).with_name("migrations")
 _MAGIC = b"SQLite format 3\0"
-_BUSY_SECONDS = 5.0
-_LOCK = "turndesk.lock"
-_TRIES, _BETWEEN = 10, 0.01  # tries of a writer for the lock, s between two
-_WRITTEN_HERE = set[Path]()  # folders whose store this process writes
 _PRIVATE = ("logs", "backups")  # folders within the store's that only its owner may read
-_NO_ROOM = frozenset({Cause.FULL, Cause.FORBIDDEN})
+INDEX_REBUILT = (
+    "an index of the stored data was damaged; TurnDesk rebuilt the index from its table, and no data was lost"
+)
+_MOST_WORDS = 1000  # those of pages come first
+_INDEX = re.compile(r"\bindex \S+$")  # row 3 missing from index …, wrong # of entries in index …
+_VALUE = rf"(?:value in|constraint failed in) (?:{'|'.join(row_sums.KEYS)})\b"
+_MENDABLE = re.compile(rf"{_INDEX.pattern}|{_VALUE}")
+"""What opening mends: an index is made anew from its table, and a value of a wrong type has no good sum."""
 
 
 def migrations() -> tuple[str, ...]:
@@ -51,7 +58,7 @@ def check_header(path: Path) -> None:
     One that this process writes was looked at before; a file that a process closes loses all the locks that
     SQLite holds on it in that process, and the next other program that reads it takes its log away.
     """
-    if path.name == FILE_NAME and path.parent.resolve() in _WRITTEN_HERE:
+    if path.name == FILE_NAME and path.parent.resolve() in WRITTEN_HERE:
         return
     check_kind(path)
     try:
@@ -107,65 +114,6 @@ def check_kind(path: Path) -> None:
         )
 
 
-def connect(path: Path, *, read_only: bool) -> sqlite3.Connection:
-    """A connection with our settings. Transactions are begun by hand. Raises StoreError.
-
-    Reading, too, needs a little room beside the file, for SQLite's index. Where there is none, and no log
-    whose entries would be missed, the file is read as it stands.
-    """
-    try:
-        return _connection(path, "mode=ro" if read_only else "mode=rw")
-    except sqlite3.Error as error:
-        if not read_only or cause_of(path, error) not in _NO_ROOM or _has_log(path):
-            raise why(path, error) from error
-    try:
-        return _connection(path, "mode=ro&immutable=1")
-    except sqlite3.Error as error:
-        raise why(path, error) from error
-
-
-def _connection(path: Path, how: str) -> sqlite3.Connection:
-    connection = sqlite3.connect(
-        f"{path.resolve().as_uri()}?{how}",
-        uri=True,
-        isolation_level=None,
-        check_same_thread=False,
-        timeout=_BUSY_SECONDS,
-    )
-    try:
-        return configured(connection)
-    except UnicodeDecodeError as error:  # SQLite's own sentence quotes what is damaged
-        connection.close()
-        raise _damaged() from error
-    except sqlite3.Error:
-        connection.close()
-        raise
-
-
-def _damaged() -> sqlite3.DatabaseError:
-    """As SQLite says it of a file whose tables cannot be read."""
-    error = sqlite3.DatabaseError("malformed database schema")
-    error.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
-    return error
-
-
-def _has_log(path: Path) -> bool:
-    log, _ = companions(path)
-    return log.exists() and log.stat().st_size > 0
-
-
-def configured(connection: sqlite3.Connection) -> sqlite3.Connection:
-    """Every commit reaches the disk; references are kept whole."""
-    connection.execute("PRAGMA synchronous = FULL")
-    connection.execute("PRAGMA foreign_keys = ON")
-    return connection
-
-
-def version_of(connection: sqlite3.Connection) -> int:
-    """The last migration that was carried out on this store; 0: none, it is empty."""
-    return int(connection.execute("PRAGMA user_version").fetchone()[0])
-
-
 def check_file(path: Path, *, thorough: bool) -> int:
     """The version of the store in ``path``, which is not written to.
 
@@ -205,16 +153,6 @@ def _found_wrong(connection: sqlite3.Connection) -> list[str]:
     """What SQLite finds wrong in pages, indexes and types, in its words."""
     found = connection.execute(f"PRAGMA integrity_check({_MOST_WORDS})")
     return [str(text) for (text,) in found if text != "ok"]
-
-
-INDEX_REBUILT = (
-    "an index of the stored data was damaged; TurnDesk rebuilt the index from its table, and no data was lost"
-)
-_MOST_WORDS = 1000  # those of pages come first
-_INDEX = re.compile(r"\bindex \S+$")  # row 3 missing from index …, wrong # of entries in index …
-_VALUE = rf"(?:value in|constraint failed in) (?:{'|'.join(row_sums.KEYS)})\b"
-_MENDABLE = re.compile(rf"{_INDEX.pattern}|{_VALUE}")
-"""What opening mends: an index is made anew from its table, and a value of a wrong type has no good sum."""
 
 
 def _mend_indexes(connection: sqlite3.Connection, path: Path, wrong: list[str]) -> tuple[str, ...]:
@@ -295,83 +233,6 @@ def empty() -> sqlite3.Connection:
     return connection
 
 
-def companions(path: Path) -> tuple[Path, Path]:
-    """SQLite's write-ahead log and its index beside a database, or beside the one that a link leads to."""
-    path = real_path(path)
-    return path.with_name(path.name + "-wal"), path.with_name(path.name + "-shm")
-
-
-# --- One process writes a store. The kernel gives the lock back when that process ends, however it ends.
-
-
-class WriterLock:
-    """The advisory lock beside the store, held from construction to close. Raises StoreError when taken.
-
-    A lock that another process has for an instant only, because it asks for its owner, is tried again for
-    0.1 s; ``pause`` waits between two tries.
-    """
-
-    def __init__(self, folder: Path, pause: Callable[[float], object] = time.sleep) -> None:
-        self._path = folder / _LOCK
-        try:
-            self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, NEW_FILE)
-        except OSError as error:
-            raise why(self._path, error) from error
-        try:
-            self._take(pause)
-        except OSError as error:
-            owner = os.read(self._file, 32).decode("ascii", "replace").strip()
-            os.close(self._file)
-            who = Message(" (process {owner})", owner=owner) if owner else ""
-            raise StoreError(
-                Message(
-                    "the data store in {folder} is in use by another TurnDesk{who}; close that TurnDesk, "
-                    "or make the entry there",
-                    folder=folder,
-                    who=who,
-                ),
-                "in-use",
-            ) from error
-        mark_locked(self._file)
-        self._folder = folder.resolve()
-        with suppress(OSError):  # a courtesy to whoever finds it taken; a full disk has no room for it
-            os.ftruncate(self._file, 0)
-            os.lseek(self._file, 0, os.SEEK_SET)
-            os.write(self._file, f"{os.getpid()}\n".encode("ascii"))
-
-    def _take(self, pause: Callable[[float], object]) -> None:
-        """Raises OSError when the lock stays taken."""
-        for _ in range(_TRIES):
-            with suppress(OSError):
-                lock(self._file)
-                return
-            pause(_BETWEEN)
-        lock(self._file)
-
-    def opened(self) -> None:
-        """From now on SQLite holds the store's file open in this process."""
-        _WRITTEN_HERE.add(self._folder)
-
-    def close(self) -> None:
-        """Give the store free. Calling it again does nothing."""
-        if self._file >= 0:
-            _WRITTEN_HERE.discard(self._folder)
-            os.close(self._file)
-            self._file = -1
-
-
-def in_use(folder: Path) -> bool:
-    """Whether a process writes the store of this folder now. Asks without taking the lock."""
-    try:
-        file = os.open(folder / _LOCK, os.O_RDONLY)
-    except OSError:
-        return False
-    try:
-        return is_locked(file)
-    finally:
-        os.close(file)
-
-
 # --- Opening a store: nothing is written before the file has been found to be a whole one of ours.
 
 
@@ -429,81 +290,13 @@ def open_to_write(folder: Path) -> Opened:
             _refuse_lost_file(path)
             create(path)
         version, wrong = _checked(path, thorough=True)
-        put_aside = _put_damaged_log_aside(path)
+        put_aside = put_damaged_log_aside(path)
         lock.opened()
         writer, mended = _writing(path, version, wrong)
         undo.callback(writer.close)
         reader = connect(path, read_only=True)
         undo.pop_all()
         return Opened(path, reader, writer, lock, put_aside + mended)
-
-
-def check_log(path: Path, reader: sqlite3.Connection) -> None:
-    """Raises StoreError where changes in the log can be read no more, and no desk runs that has told it.
-
-    Beside a desk nothing is looked at: that opens SQLite's index and closes it (see ``check_header``).
-    """
-    if in_use(path.parent):
-        return
-    lost = _lost_changes(path, reader)
-    if lost:
-        raise StoreError(
-            Message(
-                "{path}: the log of this database is damaged, and {lost} cannot be read. Start "
-                "turndesk once to save a copy of the log and continue with the earlier data, "
-                "or restore a backup",
-                path=path,
-                lost=_changes(lost),
-            ),
-            "damaged-log",
-        )
-
-
-def _put_damaged_log_aside(path: Path) -> tuple[str, ...]:
-    """A copy of a log that has lost changes, before it is written over; tell what is lost."""
-    log, _ = companions(path)
-    with closing(connect(path, read_only=True)) as reader:
-        lost = _lost_changes(path, reader)
-    if not lost:
-        return ()
-    kept = path.with_name(f"{path.stem}-damaged-log-{datetime.now(UTC):%Y%m%dT%H%M%SZ}")
-    try:
-        write_in_place(kept, log.read_bytes())
-        restrict(kept)
-    except OSError as error:
-        raise why(kept, error) from error
-    with closing(connect(path, read_only=False)) as writer:
-        writer.execute("PRAGMA wal_checkpoint(TRUNCATE)")
-    return (
-        (
-            Message(
-                "the log of the data store was damaged and lost {lost} made before the control shut "
-                "down. Check offsets, counts and settings before you make a part; the log is saved "
-                "as {saved}",
-                lost=_changes(lost),
-                saved=kept.name,
-            )
-        ),
-    )
-
-
-def _lost_changes(path: Path, reader: sqlite3.Connection) -> int:
-    log, index = companions(path)
-    if not _has_log(path):
-        return 0
-    try:
-        reader.execute(
-            "SELECT count(*) FROM sqlite_master"
-        ).fetchone()  # SQLite looks how far it takes the log
-        return lost_changes(log, index)
-    except sqlite3.Error as error:
-        raise why(path, error) from error
-    except FileNotFoundError:
-        return 0  # whoever wrote it has just closed it
-
-
-def _changes(count: int) -> str:
-    return "the last saved change" if count == 1 else Message("the last {count} saved changes", count=count)
 
 
 def make_folder(folder: Path) -> None:
@@ -530,7 +323,7 @@ def make_folder(folder: Path) -> None:
 
 def _refuse_lost_file(path: Path) -> None:
     """A log without its database would be poured into the new, empty one."""
-    if _has_log(path):
+    if has_log(path):
         log, _ = companions(path)
         raise StoreError(
             Message(

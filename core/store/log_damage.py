@@ -7,9 +7,17 @@ no damage: nobody was told that it is kept.
 
 from __future__ import annotations
 
+import sqlite3
 import struct
+from contextlib import closing
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
+
+from core.file_placing import restrict, write_in_place
+from core.message import Message
+from core.store.store_connection import companions, connect, has_log, in_use
+from core.store.store_errors import StoreError, why
 
 _HEAD = struct.Struct(">8I")  # magic, version, page size, sequence, two salts, two sums
 _FRAME = struct.Struct(">6I")  # page, pages of the store behind a commit, two salts, two sums
@@ -120,3 +128,71 @@ def _sums(summed: bytes, before: Pair, order: str) -> Pair:
         one = (one + first + two) & _WORD
         two = (two + second + one) & _WORD
     return one, two
+
+
+def check_log(path: Path, reader: sqlite3.Connection) -> None:
+    """Raises StoreError where changes in the log can be read no more, and no desk runs that has told it.
+
+    Beside a desk nothing is looked at: that opens SQLite's index and closes it (see ``check_header``).
+    """
+    if in_use(path.parent):
+        return
+    lost = _changes_lost(path, reader)
+    if lost:
+        raise StoreError(
+            Message(
+                "{path}: the log of this database is damaged, and {lost} cannot be read. Start "
+                "turndesk once to save a copy of the log and continue with the earlier data, "
+                "or restore a backup",
+                path=path,
+                lost=_changes(lost),
+            ),
+            "damaged-log",
+        )
+
+
+def put_damaged_log_aside(path: Path) -> tuple[str, ...]:
+    """A copy of a log that has lost changes, before it is written over; tell what is lost."""
+    log, _ = companions(path)
+    with closing(connect(path, read_only=True)) as reader:
+        lost = _changes_lost(path, reader)
+    if not lost:
+        return ()
+    kept = path.with_name(f"{path.stem}-damaged-log-{datetime.now(UTC):%Y%m%dT%H%M%SZ}")
+    try:
+        write_in_place(kept, log.read_bytes())
+        restrict(kept)
+    except OSError as error:
+        raise why(kept, error) from error
+    with closing(connect(path, read_only=False)) as writer:
+        writer.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+    return (
+        (
+            Message(
+                "the log of the data store was damaged and lost {lost} made before the control shut "
+                "down. Check offsets, counts and settings before you make a part; the log is saved "
+                "as {saved}",
+                lost=_changes(lost),
+                saved=kept.name,
+            )
+        ),
+    )
+
+
+def _changes_lost(path: Path, reader: sqlite3.Connection) -> int:
+    log, index = companions(path)
+    if not has_log(path):
+        return 0
+    try:
+        reader.execute(
+            "SELECT count(*) FROM sqlite_master"
+        ).fetchone()  # SQLite looks how far it takes the log
+        return lost_changes(log, index)
+    except sqlite3.Error as error:
+        raise why(path, error) from error
+    except FileNotFoundError:
+        return 0  # whoever wrote it has just closed it
+
+
+def _changes(count: int) -> str:
+    return "the last saved change" if count == 1 else Message("the last {count} saved changes", count=count)

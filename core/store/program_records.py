@@ -1,18 +1,25 @@
-"""What is kept of each program: every version of its text, part counts, runs, cycle times, the last proof."""
+"""What is kept of each program, and by which text: versions, part counts, runs, proofs, settings.
+
+Counts, runs and proofs are stored by the SHA-256 of the text, never by a file name. The setting
+``text:NAME`` states which text was last loaded under a name. A name without one has rows of an older
+version of TurnDesk, which stored them by name.
+"""
 
 from __future__ import annotations
 
+import json
 import sqlite3
 from hashlib import sha256
 
 from core.message import Message
-from core.store import program_texts, row_sums
-from core.store.program_settings import notes_key, part_key, stock_key, text_key
+from core.store import event_log, row_sums
 from core.store.store_errors import StoreError
+from core.store.store_file import notes_key, part_key, stock_key, text_key
 from core.store.store_rows import ProgramRow, RunRow, VersionRow, utc_now
 
 _NAME_BYTES = 200
 _FORBIDDEN = frozenset('/\\:*?"<>|')
+PREFIX = "sha256:"  # no file name contains a colon
 
 
 def check_name(name: str) -> None:
@@ -125,7 +132,7 @@ def _is_whole(text: object, digest: object) -> bool:
 
 def parts(connection: sqlite3.Connection, program: str) -> int:
     """Parts made since the count was last put to nought; a count that is not as it was saved is none."""
-    row = row_sums.whole_row(connection, "part_counts", program_texts.key_of(connection, program))
+    row = row_sums.whole_row(connection, "part_counts", key_of(connection, program))
     return _count(row[1]) if row else 0
 
 
@@ -135,7 +142,7 @@ def _count(value: row_sums.Value) -> int:
 
 def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) -> None:
     """Parts made, added or taken away, never below nought."""
-    program = program_texts.key_of(connection, program)
+    program = key_of(connection, program)
     count = max(0, parts(connection, program) + by)
     connection.execute(
         "INSERT INTO part_counts VALUES (?1, ?2, ?3)"
@@ -146,7 +153,7 @@ def add_parts(connection: sqlite3.Connection, program: str, by: int, last: str) 
 
 def reset_parts(connection: sqlite3.Connection, program: str) -> None:
     """The count of one program to nought."""
-    key = program_texts.key_of(connection, program)
+    key = key_of(connection, program)
     connection.execute("DELETE FROM part_counts WHERE program = ?", (key,))
 
 
@@ -155,8 +162,8 @@ def all_of(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
 
     Rows that are not as they were saved are left out.
     """
-    records, names = by_text(connection), program_texts.names(connection)
-    names |= {key: key for key in records if not key.startswith(program_texts.PREFIX) and key not in names}
+    records, names = by_text(connection), keys_by_name(connection)
+    names |= {key: key for key in records if not key.startswith(PREFIX) and key not in names}
     return tuple(records[key]._replace(program=name) for name, key in sorted(names.items()) if key in records)
 
 
@@ -191,7 +198,7 @@ def cut_off(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
         " RETURNING program",
         (outcome,),
     )
-    names = {key: name for name, key in program_texts.names(connection).items()}
+    names = {key: name for name, key in keys_by_name(connection).items()}
     return tuple(sorted(names.get(program, program) for (program,) in rows))
 
 
@@ -243,6 +250,55 @@ def renamed(connection: sqlite3.Connection, old: str, new: str) -> None:
 
 def _row(connection: sqlite3.Connection, program: str) -> str:
     """Make sure that the program has a row; return its key."""
-    key = program_texts.key_of(connection, program)
+    key = key_of(connection, program)
     connection.execute("INSERT INTO runs (program) VALUES (?) ON CONFLICT DO NOTHING", (key,))
     return key
+
+
+def key_of_text(text: str) -> str:
+    """Return the key under which the record of this program text is stored."""
+    return key_of_bytes(text.encode("utf-8", "surrogateescape"))
+
+
+def key_of_bytes(data: bytes) -> str:
+    """Return the same for a stored version."""
+    return PREFIX + sha256(data).hexdigest()
+
+
+def key_of(connection: sqlite3.Connection, program: str) -> str:
+    """Return the record key of a name; a key is returned as it is."""
+    if program.startswith(PREFIX):
+        return program
+    stored = event_log.setting(connection, text_key(program))
+    return stored if isinstance(stored, str) and stored.startswith(PREFIX) else program
+
+
+def keys_by_name(connection: sqlite3.Connection) -> dict[str, str]:
+    """Return the record key of every name that has one."""
+    rows = connection.execute("SELECT key, value FROM settings WHERE key LIKE ? || '%'", (text_key(""),))
+    found = ((str(key).removeprefix(text_key("")), _loaded(value)) for key, value in rows)
+    return {name: key for name, key in found if key}
+
+
+def _loaded(value: object) -> str:
+    try:
+        key = json.loads(str(value))
+    except ValueError:
+        return ""  # a damaged row, which is reported when the store is opened
+    return key if isinstance(key, str) and key.startswith(PREFIX) else ""
+
+
+def adopt(connection: sqlite3.Connection, program: str) -> None:
+    """Move rows that an older version stored by name to the text that was proved then, if it is known."""
+    row = connection.execute(
+        "SELECT sha256 FROM program_versions JOIN programs ON program = programs.id"
+        " WHERE name = ?1 AND saved <= coalesce((SELECT proved FROM runs WHERE program = ?1), '')"
+        " ORDER BY number DESC LIMIT 1",
+        (program,),
+    ).fetchone()
+    if row is None:
+        return
+    for table in ("runs", "part_counts"):
+        connection.execute(
+            f"UPDATE OR IGNORE {table} SET program = ? WHERE program = ?", (f"{PREFIX}{row[0]}", program)
+        )

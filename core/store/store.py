@@ -11,24 +11,17 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
 from core.message import Message
-from core.store import (
-    damaged_rows,
-    event_log,
-    job_queue,
-    offset_tables,
-    offset_undo,
-    people,
-    program_records,
-    program_texts,
-    touch_off,
-)
+from core.store import damaged_rows, event_log, people, program_records
 from core.store.database import Opened, open_to_read, open_to_write
-from core.store.job_queue import JobRow
-from core.store.offset_tables import Reason
+from core.store.offsets import offset_history, offset_tables, touch_off
+from core.store.offsets.offset_tables import Reason
+from core.store.offsets.touch_off import Touch
 from core.store.people import People
-from core.store.program_settings import stock_key
+from core.store.production import job_queue
+from core.store.production.job_queue import JobRow
 from core.store.row_sums import KEYS
 from core.store.store_errors import Cause, StoreError, why
+from core.store.store_file import stock_key
 from core.store.store_rows import (
     Change,
     EventRow,
@@ -46,7 +39,6 @@ from core.store.store_rows import (
     ZeroRow,
     utc_now,
 )
-from core.store.touch_off import Touch
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -154,7 +146,7 @@ class Store:
 
     def tools_at(self, moment: str) -> dict[int, ToolRow]:
         """The tool offsets as they were set at a moment (UTC)."""
-        rows = self._asked(offset_tables.as_of, Kind.TOOL, moment)
+        rows = self._asked(offset_history.as_of, Kind.TOOL, moment)
         return {number: row for number, row in rows.items() if isinstance(row, ToolRow)}
 
     def secondary(self) -> dict[int, SecondaryRow]:
@@ -163,11 +155,11 @@ class Store:
 
     def history(self, kind: Kind | None = None, limit: int = 100) -> tuple[Change, ...]:
         """Changes of a table, newest first; without ``kind`` of tool and secondary offsets together."""
-        return self._asked(offset_tables.history, kind, limit)
+        return self._asked(offset_history.history, kind, limit)
 
     def history_of_all(self, limit: int = 100) -> tuple[Change, ...]:
         """Changes of all tables, newest first."""
-        return self._asked(offset_tables.history_any, limit)
+        return self._asked(offset_history.history_any, limit)
 
     def zero_offsets(self) -> dict[int, ZeroRow]:
         """The settable offsets G54…G59 that have been set."""
@@ -236,7 +228,7 @@ class Store:
     def parts(self, program: str) -> int:
         """Parts of this program that were counted, those that are still to be written too."""
         with self.read() as connection:
-            key = program_texts.key_of(connection, self._key(program))
+            key = program_records.key_of(connection, self._key(program))
             stored, held = program_records.parts(connection, key), self.backlog
         reset, more = (False, 0)
         if held is not None:
@@ -312,21 +304,21 @@ class Store:
 
         Without ``kind`` the last of tool and secondary offsets together.
         """
-        return self.write(lambda c: offset_tables.undo(c, Reason(why, who), kind))
+        return self.write(lambda c: offset_history.undo(c, Reason(why, who), kind))
 
     def undoable(self, kind: Kind, number: int | None = None) -> tuple[Change, ...]:
         """Return what ``undo_step`` would take back: the last step of a row, or of the whole table."""
-        return self._asked(offset_tables.undoable, kind, number)
+        return self._asked(offset_history.undoable, kind, number)
 
     def undo_step(
         self, kind: Kind, number: int | None, step: int, why: str = "undo", *, who: str = "operator"
     ) -> Future[tuple[Change, ...]]:
         """Take back exactly this step. The future raises StoreError if its rows have changed since."""
-        return self.write(lambda c: offset_undo.undo_step(c, Reason(why, who), kind, number, step))
+        return self.write(lambda c: offset_history.undo_step(c, Reason(why, who), kind, number, step))
 
     def undo_last(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[Change, ...]]:
         """Takes the youngest change of all tables back; again: the one before. StoreError without one."""
-        return self.write(lambda c: offset_tables.undo_any(c, Reason(why, who)))
+        return self.write(lambda c: offset_history.undo_any(c, Reason(why, who)))
 
     def save_program(self, name: str, text: bytes, why: str, *, who: str = "") -> Future[int]:
         """Keeps a version; answers its number, that of the newest when the text is the same."""
@@ -344,7 +336,7 @@ class Store:
 
     def keep_program(self, name: str, text: bytes, why: str) -> Future[None]:
         """Store a version that is about to run. From now on the record of this name is that of this text."""
-        key = program_texts.key_of_bytes(text)
+        key = program_records.key_of_bytes(text)
         self._texts[name] = key
 
         def operation(connection: sqlite3.Connection) -> None:
@@ -419,7 +411,7 @@ class Store:
 
         Without ``text`` it is that of the text loaded under this name.
         """
-        at, key = utc_now(), self._key(program) if text is None else program_texts.key_of_text(text)
+        at, key = utc_now(), self._key(program) if text is None else program_records.key_of_text(text)
         return self._keep_latest("proof", key, lambda c: program_records.proved(c, key, result, planned, at))
 
     def set_setting(self, key: str, value: object) -> Future[None]:

@@ -7,8 +7,7 @@ import sqlite3
 from enum import Enum
 from pathlib import Path
 
-from core.coded_error import CodedError
-from core.message import Message
+from core.message import CodedError, Message
 
 
 class StoreError(CodedError):

@@ -8,15 +8,14 @@ import json
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from core.file_lock import unfinished_folder
 from core.file_placing import folder_in_place
 from core.input_file import MB, input_bytes
 from core.message import Message
-from core.store.offset_fields import Field, Sort
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError, cause_of, said, why
-from core.store.store_rows import FIELDS, EventRow, Kind, Row, RunRow, Value, inches
+from core.store.store_rows import FIELDS, EventRow, Field, Kind, Row, RunRow, Sort, Value, inches
 from core.tool_edges import edge_of, tool_of
-from core.unfinished import unfinished_folder
 
 PROGRAMS, OFFSETS, EVENTS, RUNS = "programs", "offsets.toml", "events.csv", "runs.csv"
 TABLES = {  # of measured parts and of mills: whole tables, mm and seconds as the store has them

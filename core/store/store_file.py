@@ -1,4 +1,4 @@
-"""Where the store lies in the data folder; whoever only asks that loads no database."""
+"""The store without its database: where it lies, and the settings that are kept of a program."""
 
 from __future__ import annotations
 
@@ -25,3 +25,23 @@ def has_store(folder: Path) -> bool:
 def real_path(path: Path) -> Path:
     """Return the file that a link leads to; ``path`` itself if it is not a link."""
     return path.resolve() if path.is_symlink() else path
+
+
+def stock_key(program: str) -> str:
+    """The setting that holds the stock of a program."""
+    return f"stock:{program}"
+
+
+def notes_key(program: str) -> str:
+    """The setting that holds what the setup person has noted about a program."""
+    return f"notes:{program}"
+
+
+def text_key(program: str) -> str:
+    """Return the setting that states which text was last loaded under this name."""
+    return f"text:{program}"
+
+
+def part_key(program: str) -> str:
+    """The setting that holds what else is kept of a program's part: stick-out and silenced checks."""
+    return f"part:{program}"

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from core.message import Message, join_messages
-from core.store import event_log, job_queue, program_records
+from core.store import event_log, program_records
+from core.store.production import job_queue
 from core.store.store_errors import Cause, StoreError, cause_of, why
 from core.store.store_rows import EventRow, utc_now
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from core.json_key import Key, keys, row_keys
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CorrectionRow, CycleRow, StopRow
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CorrectionRow, CycleRow, StopRow
+from core.store.production.tool_lives import InsertChange, LifeRow
 from core.store.store_rows import EventRow, MillRow, PresetRow, SecondaryRow, ShapeRow, ToolRow, ZeroRow
-from core.store.tool_lives import InsertChange, LifeRow
 
 
 class TableKeys(NamedTuple):

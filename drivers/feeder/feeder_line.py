@@ -15,8 +15,9 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Protocol
 
+from core.faults import TrippedError, code_of
 from core.message import Message as Text
-from core.ports import ALL_UNKNOWN, Clock, DriverError, Fault, FloatArray, TrippedError, Unknown, code_of
+from core.ports import ALL_UNKNOWN, Clock, DriverError, Fault, FloatArray, Unknown
 from drivers.feeder.feeder_messages import NOTHING, VERSION, Inbox, Message, fault_of, packed, text, texts
 from drivers.feeder.feeder_server import Feeder
 from drivers.waiting import Bell, Opening

@@ -9,7 +9,8 @@ from typing import NamedTuple, get_args
 
 import numpy as np
 
-from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, Segments, code_of
+from core.faults import code_of
+from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, Segments
 
 _LENGTHS = struct.Struct("<II")  # of the head, of the numbers, in bytes
 LARGEST = 64_000_000  # bytes; more is no message

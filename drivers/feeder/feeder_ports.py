@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from core.faults import Trip
 from core.ports import (
     AxisSample,
     Cam,
@@ -17,7 +18,6 @@ from core.ports import (
     Segments,
     StationState,
     Stop,
-    Trip,
 )
 from drivers.feeder.feeder_line import Line
 from drivers.feeder.feeder_messages import (
@@ -267,7 +267,7 @@ class FeederTouch(_OnLine):
 
 
 class FeederTrips(_OnLine):
-    """``core.ports.Tripping``."""
+    """``core.faults.Tripping``."""
 
     def tripped(self) -> Trip | None:
         """What the feeder has switched off since it was last acknowledged."""

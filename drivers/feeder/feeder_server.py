@@ -9,8 +9,9 @@ from typing import TypeVar
 
 import numpy as np
 
+from core.faults import Trip, TrippedError
 from core.message import Message as Text
-from core.ports import DriverError, MachinePorts, StationState, Stop, Trip, TrippedError, at_rest
+from core.ports import DriverError, MachinePorts, StationState, Stop, at_rest
 from drivers.feeder.feeder_messages import (
     NOTHING,
     VERSION,

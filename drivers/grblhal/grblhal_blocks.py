@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from core.ports import BlockOp, BlockState, DriverError, ThreadOp, code_of
+from core.faults import code_of
+from core.ports import BlockOp, BlockState, DriverError, ThreadOp
 from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_codes import line_number, line_of
 from drivers.grblhal.grblhal_config import GrblAxis

@@ -9,7 +9,8 @@ import re
 from collections import deque
 from collections.abc import Callable
 
-from core.ports import Clock, DriverError, Fault, FaultCode, code_of
+from core.faults import code_of
+from core.ports import Clock, DriverError, Fault, FaultCode
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import GrblConfig
 from drivers.grblhal.grblhal_report import Report, read_report

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from core.faults import Trip
 from core.message import Message
-from core.ports import ALL_UNKNOWN, PROBE, Clock, DriverError, MachinePorts, Stop, Trip, Unknown
+from core.ports import ALL_UNKNOWN, PROBE, Clock, DriverError, MachinePorts, Stop, Unknown
 from drivers.grblhal import grblhal_scripts
 from drivers.grblhal.grblhal_axes import GrblAxes
 from drivers.grblhal.grblhal_blocks import GrblBlocks

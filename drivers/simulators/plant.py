@@ -10,17 +10,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from core.ports import (
-    BoolArray,
-    Cam,
-    Clock,
-    DriverError,
-    Fault,
-    FloatArray,
-    Segments,
-    StationState,
-    Stop,
-)
+from core.ports import BoolArray, Cam, Clock, DriverError, Fault, FloatArray, Segments, StationState, Stop
 from drivers.operator_station import Panel
 from drivers.port_parts import SampleLog, demand_no_fault, demand_no_homing, demand_power
 from drivers.setpoint_queue import straight

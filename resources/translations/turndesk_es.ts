@@ -16680,6 +16680,11 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Check the controller's feed hold and door inputs, then press Cycle Start</source>
+      <translation>Revise las entradas de retención y de puerta del controlador, luego pulse arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>Check the tool offset and the start position of the axes, then press Reset</source>
       <translation>Revise el corrector de la herramienta y la posición de los ejes al arrancar, luego pulse Reset</translation>
     </message>
@@ -16690,13 +16695,28 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Check where the tool is before starting anything</source>
+      <translation>Vea dónde está la herramienta antes de arrancar nada</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>Check where the tool is. Save the log (F10), then exit and restart TurnDesk</source>
       <translation>Vea dónde está la herramienta. Guarde la bitácora (F10), luego cierre y vuelva a abrir TurnDesk</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Close the guard, read the list of functions that will restart, then press Cycle Start</source>
+      <translation>Cierre la guarda, lea la lista de funciones que arrancarán otra vez, luego pulse arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>Compare the end of the program with the original, add M30 and load the program again</source>
       <translation>Compare el final del programa con el original, agregue M30 y cargue el programa otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Correct the cause shown, then press Cycle Start</source>
+      <translation>Corrija la causa indicada, luego pulse arranque de ciclo</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16710,6 +16730,31 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Follow the program message, then press Cycle Start</source>
+      <translation>Siga el mensaje del programa, luego pulse arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>M00 in the program</source>
+      <translation>M00 en el programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>M01 in the program, and Optional Stop is on</source>
+      <translation>M01 en el programa, y el paro opcional está activo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Make the machine safe, release the E-stop button, then press Drives On</source>
+      <translation>Ponga la máquina en estado seguro, suelte el botón de paro de emergencia y encienda los servos</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>No action needed: the stop was requested</source>
+      <translation>No hay que hacer nada: el paro fue pedido</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>PRESS E-STOP and switch the machine off. Save the log (F10), then exit and restart TurnDesk</source>
       <translation>PULSE EL PARO DE EMERGENCIA y apague la máquina. Guarde la bitácora (F10), luego cierre y vuelva a abrir TurnDesk</translation>
     </message>
@@ -16720,13 +16765,53 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Plug the pendant in again, then press Cycle Start. To work without the pendant, remove [pendant] and all pendant entries from the machine file</source>
+      <translation>Enchufe otra vez el mando colgante, luego pulse arranque de ciclo. Para trabajar sin él, borre del archivo de máquina [pendant] y todo lo que se refiere al mando colgante</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Press Cycle Start to resume or Reset to cancel the program</source>
+      <translation>Pulse arranque de ciclo para continuar o Reset para cancelar el programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Press Cycle Start to resume. Press O to switch Optional Stop off</source>
+      <translation>Pulse arranque de ciclo para continuar. Pulse O para apagar el paro opcional</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Press Cycle Start to run the next block. Press S to switch Single Block off</source>
+      <translation>Pulse arranque de ciclo para correr el bloque siguiente. Pulse S para apagar bloque a bloque</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>Press Reset, then Drives On. Save the program and the log (F10), then restart the program after the faulty line (F6)</source>
       <translation>Pulse Reset y encienda los servos. Guarde el programa y la bitácora (F10), luego reinicie el programa después de la línea defectuosa (F6)</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Reset was pressed and the program was canceled</source>
+      <translation>se pulsó Reset y el programa se canceló</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Single Block is on: each block waits for Cycle Start</source>
+      <translation>bloque a bloque está activo: cada bloque espera el arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>The axes have stopped on the path. Close other programs, then press Cycle Start</source>
       <translation>Los ejes pararon sobre la trayectoria. Cierre los demás programas, luego pulse arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>The buttons of the operator station do not work. Check the station's cable and power, then press Cycle Start</source>
+      <translation>Los botones de la estación del operador no funcionan. Revise el cable y la alimentación de la estación, luego pulse arranque de ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>Turn the pot slowly through its range, and replace the pot if its signal is still unstable. Then press Cycle Start</source>
+      <translation>Gire despacio la perilla por todo su rango y cámbiela si su señal sigue inestable. Luego pulse arranque de ciclo</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16740,6 +16825,16 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>a fault in the guard switch or its cable</source>
+      <translation>una falla en el interruptor de la guarda o en su cable</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>a fault in the pendant's cable or hub</source>
+      <translation>una falla en el cable o en el concentrador del mando colgante</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>a faulty fuse, relay or terminal has changed the state of the output</source>
       <translation>un fusible, un relevador o una terminal con falla cambió el estado de la salida</translation>
     </message>
@@ -16747,6 +16842,11 @@
       <location filename="core/alarms/control_alarms.py" />
       <source>a pendant or the drive's own software is also switching the output</source>
       <translation>un mando colgante o el propio software del servo también conmuta la salida</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>an E-stop button was pressed</source>
+      <translation>se pulsó un botón de paro de emergencia</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16780,6 +16880,11 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>controller in feed hold</source>
+      <translation>controlador en retención de avance</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>driver host stopped spindle/outputs</source>
       <translation>el proceso de drivers apagó el husillo o salidas</translation>
     </message>
@@ -16790,13 +16895,53 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>feed hold</source>
+      <translation>retención de avance</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>feed hold set by TurnDesk</source>
+      <translation>retención de avance activada por TurnDesk</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>feed hold was pressed</source>
+      <translation>se pulsó la retención de avance</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>feed hold: computer busy</source>
       <translation>retención de avance: computadora ocupada</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>guard open</source>
+      <translation>guarda abierta</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>no response from operator station</source>
+      <translation>la estación del operador no responde</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>optional stop</source>
+      <translation>paro opcional</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>output not in commanded state</source>
       <translation>una salida no está en el estado ordenado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>override signal unstable</source>
+      <translation>señal de override inestable</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>pendant disconnected</source>
+      <translation>mando colgante desconectado</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16807,6 +16952,21 @@
       <location filename="core/alarms/control_alarms.py" />
       <source>program error</source>
       <translation>error de programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>program stop</source>
+      <translation>paro de programa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>single block</source>
+      <translation>bloque a bloque</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>spindle stopped manually</source>
+      <translation>husillo parado a mano</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16830,6 +16990,16 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>the controller's own feed hold or safety door input is active</source>
+      <translation>la entrada de retención de avance o de puerta de seguridad del propio controlador está activa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the guard was opened during the cycle</source>
+      <translation>la guarda se abrió durante el ciclo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>the last line is missing because the program was cut off when it was sent or copied</source>
       <translation>falta la última línea porque el programa se cortó al enviarlo o copiarlo</translation>
     </message>
@@ -16840,8 +17010,28 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>the operator station's cable is disconnected or damaged</source>
+      <translation>el cable de la estación del operador está suelto o dañado</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the override pot's cable is loose</source>
+      <translation>el cable de la perilla de override está flojo</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the pendant was unplugged</source>
+      <translation>se desenchufó el mando colgante</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>the program ends without M30 or M02</source>
       <translation>el programa termina sin M30 ni M02</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the safety circuit has opened</source>
+      <translation>el circuito de seguridad se abrió</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -16850,8 +17040,23 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>the spindle was stopped manually</source>
+      <translation>el husillo se paró a mano</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the text of this alarm shows the cause</source>
+      <translation>el texto de esta alarma muestra la causa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>the tool offset or the part zero is wrong</source>
       <translation>el corrector de la herramienta o el cero de la pieza está mal</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>the track of the feed or spindle override pot is worn</source>
+      <translation>la pista de la perilla de avance o de husillo está gastada</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
@@ -17309,211 +17514,6 @@
       <translation>cuentas de encoder por vuelta equivocadas en el archivo de máquina</translation>
     </message>
     <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Check the controller's feed hold and door inputs, then press Cycle Start</source>
-      <translation>Revise las entradas de retención y de puerta del controlador, luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Check where the tool is before starting anything</source>
-      <translation>Vea dónde está la herramienta antes de arrancar nada</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Close the guard, read the list of functions that will restart, then press Cycle Start</source>
-      <translation>Cierre la guarda, lea la lista de funciones que arrancarán otra vez, luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Correct the cause shown, then press Cycle Start</source>
-      <translation>Corrija la causa indicada, luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Follow the program message, then press Cycle Start</source>
-      <translation>Siga el mensaje del programa, luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>M00 in the program</source>
-      <translation>M00 en el programa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>M01 in the program, and Optional Stop is on</source>
-      <translation>M01 en el programa, y el paro opcional está activo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Make the machine safe, release the E-stop button, then press Drives On</source>
-      <translation>Ponga la máquina en estado seguro, suelte el botón de paro de emergencia y encienda los servos</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>No action needed: the stop was requested</source>
-      <translation>No hay que hacer nada: el paro fue pedido</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Plug the pendant in again, then press Cycle Start. To work without the pendant, remove [pendant] and all pendant entries from the machine file</source>
-      <translation>Enchufe otra vez el mando colgante, luego pulse arranque de ciclo. Para trabajar sin él, borre del archivo de máquina [pendant] y todo lo que se refiere al mando colgante</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Press Cycle Start to resume or Reset to cancel the program</source>
-      <translation>Pulse arranque de ciclo para continuar o Reset para cancelar el programa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Press Cycle Start to resume. Press O to switch Optional Stop off</source>
-      <translation>Pulse arranque de ciclo para continuar. Pulse O para apagar el paro opcional</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Press Cycle Start to run the next block. Press S to switch Single Block off</source>
-      <translation>Pulse arranque de ciclo para correr el bloque siguiente. Pulse S para apagar bloque a bloque</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Reset was pressed and the program was canceled</source>
-      <translation>se pulsó Reset y el programa se canceló</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Single Block is on: each block waits for Cycle Start</source>
-      <translation>bloque a bloque está activo: cada bloque espera el arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>The buttons of the operator station do not work. Check the station's cable and power, then press Cycle Start</source>
-      <translation>Los botones de la estación del operador no funcionan. Revise el cable y la alimentación de la estación, luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>Turn the pot slowly through its range, and replace the pot if its signal is still unstable. Then press Cycle Start</source>
-      <translation>Gire despacio la perilla por todo su rango y cámbiela si su señal sigue inestable. Luego pulse arranque de ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>a fault in the guard switch or its cable</source>
-      <translation>una falla en el interruptor de la guarda o en su cable</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>a fault in the pendant's cable or hub</source>
-      <translation>una falla en el cable o en el concentrador del mando colgante</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>an E-stop button was pressed</source>
-      <translation>se pulsó un botón de paro de emergencia</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>controller in feed hold</source>
-      <translation>controlador en retención de avance</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>feed hold</source>
-      <translation>retención de avance</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>feed hold set by TurnDesk</source>
-      <translation>retención de avance activada por TurnDesk</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>feed hold was pressed</source>
-      <translation>se pulsó la retención de avance</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>guard open</source>
-      <translation>guarda abierta</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>no response from operator station</source>
-      <translation>la estación del operador no responde</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>optional stop</source>
-      <translation>paro opcional</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>override signal unstable</source>
-      <translation>señal de override inestable</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>pendant disconnected</source>
-      <translation>mando colgante desconectado</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>program stop</source>
-      <translation>paro de programa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>single block</source>
-      <translation>bloque a bloque</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>spindle stopped manually</source>
-      <translation>husillo parado a mano</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the controller's own feed hold or safety door input is active</source>
-      <translation>la entrada de retención de avance o de puerta de seguridad del propio controlador está activa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the guard was opened during the cycle</source>
-      <translation>la guarda se abrió durante el ciclo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the operator station's cable is disconnected or damaged</source>
-      <translation>el cable de la estación del operador está suelto o dañado</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the override pot's cable is loose</source>
-      <translation>el cable de la perilla de override está flojo</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the pendant was unplugged</source>
-      <translation>se desenchufó el mando colgante</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the safety circuit has opened</source>
-      <translation>el circuito de seguridad se abrió</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the spindle was stopped manually</source>
-      <translation>el husillo se paró a mano</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the text of this alarm shows the cause</source>
-      <translation>el texto de esta alarma muestra la causa</translation>
-    </message>
-    <message>
-      <location filename="core/alarms/station_alarms.py" />
-      <source>the track of the feed or spindle override pot is worn</source>
-      <translation>la pista de la perilla de avance o de husillo está gastada</translation>
-    </message>
-    <message>
       <location filename="core/drawings/contour_walk.py" />
       <source>the contour crosses itself {distance} mm from the face at a diameter of {diameter} mm. Correct the contour at this point.</source>
       <translation>el contorno se cruza a sí mismo a {distance} mm de la cara, en un diámetro de {diameter} mm. Corrija el contorno en ese punto.</translation>
@@ -17789,16 +17789,6 @@
       <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/executor/changed_offsets.py" />
-      <source>another program is running; changed offsets apply only to the program for which they were entered</source>
-      <translation>hay otro programa en marcha; los correctores cambiados sólo valen para el programa para el que se introdujeron</translation>
-    </message>
-    <message>
-      <location filename="core/executor/changed_offsets.py" />
-      <source>the changed offsets are in effect</source>
-      <translation>los correctores cambiados están en vigor</translation>
-    </message>
-    <message>
       <location filename="core/executor/command_handler.py" />
       <source>a program is running; press feed hold, then Reset to stop the spindle</source>
       <translation>hay un programa en marcha; pulse retención de avance y luego Reset para parar el husillo</translation>
@@ -17949,104 +17939,24 @@
       <translation>{output} encendida a mano</translation>
     </message>
     <message>
-      <location filename="core/executor/commanded_outputs.py" />
-      <source>{name} TURNED OFF</source>
-      <translation>SE APAGÓ {name}</translation>
+      <location filename="core/executor/control_status.py" />
+      <source>NO COUNT is on</source>
+      <translation>SIN CONT está puesto</translation>
     </message>
     <message>
-      <location filename="core/executor/commanded_outputs.py" />
-      <source>{name} TURNED ON</source>
-      <translation>SE ENCENDIÓ {name}</translation>
+      <location filename="core/executor/control_status.py" />
+      <source>a restart skipped part of the program</source>
+      <translation>un rearranque omitió parte del programa</translation>
     </message>
     <message>
-      <location filename="core/executor/controller_motion.py" />
-      <source>line {line} has no feed rate</source>
-      <translation>la línea {line} no tiene avance</translation>
+      <location filename="core/executor/control_status.py" />
+      <source>part {parts} completed in {seconds} s</source>
+      <translation>pieza {parts} terminada en {seconds} s</translation>
     </message>
     <message>
-      <location filename="core/executor/controller_motion.py" />
-      <source>this controller can move only X and Z</source>
-      <translation>este controlador sólo puede mover X y Z</translation>
-    </message>
-    <message>
-      <location filename="core/executor/cycle.py" />
-      <source>CONTROLLER IN FEED HOLD</source>
-      <translation>CONTROLADOR EN RETENCIÓN DE AVANCE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/cycle.py" />
-      <source>SPINDLE BELOW HALF COMMANDED SPEED</source>
-      <translation>HUSILLO POR DEBAJO DE LA MITAD DE LA VELOCIDAD ORDENADA</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>a drive test needs a watchdog time greater than 0</source>
-      <translation>una prueba de accionamiento necesita un tiempo de vigilancia mayor que 0</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>drive tests are not available because the controller plans its own motion and does not accept setpoints</source>
-      <translation>las pruebas de accionamiento no están disponibles porque el controlador planifica su propio movimiento y no admite consignas</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>feed hold is pressed</source>
-      <translation>la retención de avance está pulsada</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>the guard is open</source>
-      <translation>la guarda está abierta</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>the spindle is turning; stop it first</source>
-      <translation>el husillo gira; párelo antes</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>{axis} is a rotary axis; drive tests are only for linear axes</source>
-      <translation>{axis} es un eje rotativo; las pruebas de accionamiento son sólo para ejes lineales</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>{axis} is still moving</source>
-      <translation>{axis} todavía se mueve</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>{axis} must move {distance} mm in the {end} direction for the test, but its travel ends before that point</source>
-      <translation>{axis} debe moverse {distance} mm en la dirección {end} para la prueba, pero su recorrido acaba antes de ese punto</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test.py" />
-      <source>{name} is not homed, so TurnDesk cannot check whether there is enough travel for the test</source>
-      <translation>{name} no está referenciado, así que TurnDesk no puede comprobar si hay recorrido suficiente para la prueba</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test_path.py" />
-      <source>a travel of {size} mm is too short to reach a constant speed of {speed} mm/s</source>
-      <translation>un recorrido de {size} mm es demasiado corto para llegar a una velocidad constante de {speed} mm/s</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test_path.py" />
-      <source>the sine frequency must be from 0.5 to 200 Hz</source>
-      <translation>la frecuencia de la senoide debe ser de 0.5 a 200 Hz</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test_path.py" />
-      <source>the speed of a ramp must be above 0 and at most {top} mm/s, the limit for manual moves</source>
-      <translation>la velocidad de una rampa debe ser mayor que 0 y como máximo {top} mm/s, el límite al mover a mano</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test_path.py" />
-      <source>the travel of this test must be greater than 0 and at most {longest} mm</source>
-      <translation>el recorrido de esta prueba debe ser mayor que 0 y como máximo {longest} mm</translation>
-    </message>
-    <message>
-      <location filename="core/executor/drive_test_path.py" />
-      <source>this driver reports {rate} samples per second, which is not enough for a {fastest} Hz sine</source>
-      <translation>este driver da {rate} muestras por segundo, que no bastan para un seno de {fastest} Hz</translation>
+      <location filename="core/executor/control_status.py" />
+      <source>the cycle was disturbed ({disturbed}); measure the part and, if it is good, add it to the part count on page F10</source>
+      <translation>el ciclo fue perturbado ({disturbed}); mida la pieza y, si es buena, súmela a la cuenta de piezas en la página F10</translation>
     </message>
     <message>
       <location filename="core/executor/executor.py" />
@@ -18079,129 +17989,339 @@
       <translation>la orden {name} llegó demasiado tarde y se ignoró</translation>
     </message>
     <message>
-      <location filename="core/executor/feed_hold.py" />
-      <source>SPINDLE DID NOT RETURN TO SPEED</source>
-      <translation>EL HUSILLO NO VOLVIÓ A SU VELOCIDAD</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>a drive test needs a watchdog time greater than 0</source>
+      <translation>una prueba de accionamiento necesita un tiempo de vigilancia mayor que 0</translation>
     </message>
     <message>
-      <location filename="core/executor/following_error.py" />
-      <source>{angle} degrees</source>
-      <translation>{angle} grados</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>a travel of {size} mm is too short to reach a constant speed of {speed} mm/s</source>
+      <translation>un recorrido de {size} mm es demasiado corto para llegar a una velocidad constante de {speed} mm/s</translation>
     </message>
     <message>
-      <location filename="core/executor/following_error.py" />
-      <source>{axis} has moved by {off} without a command</source>
-      <translation>{axis} se movió {off} sin una orden</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>drive tests are not available because the controller plans its own motion and does not accept setpoints</source>
+      <translation>las pruebas de accionamiento no están disponibles porque el controlador planifica su propio movimiento y no admite consignas</translation>
     </message>
     <message>
-      <location filename="core/executor/following_error.py" />
-      <source>{axis} is {error} off its setpoint</source>
-      <translation>{axis} está a {error} de su consigna</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>feed hold is pressed</source>
+      <translation>la retención de avance está pulsada</translation>
     </message>
     <message>
-      <location filename="core/executor/following_error.py" />
-      <source>{axis} remains {error} off its setpoint</source>
-      <translation>{axis} sigue a {error} de su consigna</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>the guard is open</source>
+      <translation>la guarda está abierta</translation>
     </message>
     <message>
-      <location filename="core/executor/following_error.py" />
-      <source>{axis} was commanded to move {sent}, but its encoder does not count</source>
-      <translation>{axis} recibió orden de moverse {sent}, pero su encoder no cuenta</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>the sine frequency must be from 0.5 to 200 Hz</source>
+      <translation>la frecuencia de la senoide debe ser de 0.5 a 200 Hz</translation>
     </message>
     <message>
-      <location filename="core/executor/geared_thread_pass.py" />
-      <source>the thread moves could not be queued in time</source>
-      <translation>los movimientos de la rosca no se pudieron encolar a tiempo</translation>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>the speed of a ramp must be above 0 and at most {top} mm/s, the limit for manual moves</source>
+      <translation>la velocidad de una rampa debe ser mayor que 0 y como máximo {top} mm/s, el límite al mover a mano</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>the spindle is turning; stop it first</source>
+      <translation>el husillo gira; párelo antes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>the travel of this test must be greater than 0 and at most {longest} mm</source>
+      <translation>el recorrido de esta prueba debe ser mayor que 0 y como máximo {longest} mm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>this driver reports {rate} samples per second, which is not enough for a {fastest} Hz sine</source>
+      <translation>este driver da {rate} muestras por segundo, que no bastan para un seno de {fastest} Hz</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>{axis} is a rotary axis; drive tests are only for linear axes</source>
+      <translation>{axis} es un eje rotativo; las pruebas de accionamiento son sólo para ejes lineales</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>{axis} is still moving</source>
+      <translation>{axis} todavía se mueve</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>{axis} must move {distance} mm in the {end} direction for the test, but its travel ends before that point</source>
+      <translation>{axis} debe moverse {distance} mm en la dirección {end} para la prueba, pero su recorrido acaba antes de ese punto</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/drive_test.py" />
+      <source>{name} is not homed, so TurnDesk cannot check whether there is enough travel for the test</source>
+      <translation>{name} no está referenciado, así que TurnDesk no puede comprobar si hay recorrido suficiente para la prueba</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>a handwheel step must be above 0 and at most {longest}, not {step}</source>
       <translation>un paso del volante debe ser mayor que 0 y como máximo {longest}, no {step}</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>a key and the handwheel cannot be used at the same time</source>
       <translation>una tecla y el volante no se pueden usar a la vez</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>a key or the screen was pressed while the handwheel was turning</source>
       <translation>se pulsó una tecla o la pantalla mientras giraba el volante</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>handwheel: {what}</source>
       <translation>volante: {what}</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the axis selector switch is not set to {axis}</source>
       <translation>el selector de eje no está en {axis}</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the handwheel count jumps; check the handwheel cable</source>
       <translation>la cuenta del volante salta; revise el cable del volante</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the handwheel is being turned faster than {axis} can move, so clicks are lost</source>
       <translation>el volante se gira más deprisa de lo que {axis} puede moverse, así que se pierden clics</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the handwheel needs a watchdog time greater than 0</source>
       <translation>el volante necesita un tiempo de vigilancia mayor que 0</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the handwheel was turned while a key or the screen was pressed</source>
       <translation>se giró el volante mientras se pulsaba una tecla o la pantalla</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the handwheel's enabling switch is not pressed</source>
       <translation>el botón de habilitación del volante no está pulsado</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>the page that uses the handwheel stopped responding</source>
       <translation>la página que usa el volante dejó de responder</translation>
     </message>
     <message>
-      <location filename="core/executor/handwheel.py" />
+      <location filename="core/executor/hand_motion/handwheel.py" />
       <source>this machine has no handwheel</source>
       <translation>esta máquina no tiene volante</translation>
     </message>
     <message>
-      <location filename="core/executor/homing_order.py" />
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>a jog needs a velocity and a watchdog time greater than 0</source>
+      <translation>un movimiento manual necesita una velocidad y un tiempo de vigilancia mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>a jog step must be above 0 and at most {longest_step}, not {distance}</source>
+      <translation>un paso debe ser mayor que 0 y como máximo {longest_step}, no {distance}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>a jog step needs a speed above 0</source>
+      <translation>un paso necesita una velocidad mayor que 0</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>home all axes before jogging in a tilted plane</source>
+      <translation>referencie todos los ejes antes de mover a mano en un plano inclinado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>jogging in a tilted plane needs the axes X, Y and Z and a direction vector of length 1</source>
+      <translation>mover a mano en un plano inclinado necesita los ejes X, Y y Z y un vector de dirección de longitud 1</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the C axis is the spindle, and the spindle is turning; stop the spindle first</source>
+      <translation>el eje C es el husillo, y el husillo está girando; párelo primero</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the controller is still moving the axes</source>
+      <translation>el controlador aún mueve los ejes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the drive test of {axis} is still running</source>
+      <translation>la prueba de accionamiento de {axis} todavía está en marcha</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the drive test of {axis} was stopped before it was finished</source>
+      <translation>la prueba de accionamiento de {axis} se paró antes de terminar</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the jog step of {axis} is not finished</source>
+      <translation>el paso de {axis} no ha terminado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the jog step of {axis} was stopped before it was finished</source>
+      <translation>el paso de {axis} se paró antes de terminar</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>the spindle drive is switching to C-axis mode; release the key or button and jog again in 2 s</source>
+      <translation>el variador del husillo está conmutando al modo de eje C; suelte la tecla o el botón y mueva a mano otra vez dentro de 2 s</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>this machine has no axis {name} to jog</source>
+      <translation>esta máquina no tiene eje {name} que mover a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>{axis} drive test</source>
+      <translation>prueba de accionamiento de {axis}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>{axis} is still being jogged</source>
+      <translation>{axis} todavía se mueve a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>{axis} is still moving; wait until its jog step is finished</source>
+      <translation>{axis} todavía se mueve; espere a que termine su paso</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>{name} is at the end of its travel in the {ending} direction</source>
+      <translation>{name} está al final de su recorrido en la dirección {ending}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/jogging.py" />
+      <source>{name}: the controller can jog only its own axes</source>
+      <translation>{name}: el controlador sólo puede mover a mano sus propios ejes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>a tool cannot be touched off along {axis}</source>
+      <translation>una herramienta no se puede tocar a lo largo de {axis}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>a touch was detected on the return move; check the tool setter</source>
+      <translation>se detectó un toque en el movimiento de regreso; revise el palpador</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
       <source>all axes homed</source>
       <translation>todos los ejes referenciados</translation>
     </message>
     <message>
-      <location filename="core/executor/homing_order.py" />
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>another touch-off direction was selected</source>
+      <translation>se eligió otra dirección de toque</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>button {button} was released</source>
+      <translation>se soltó el botón {button}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>no axis</source>
+      <translation>ningún eje</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>no second touch detected; check whether the tool or the tool setter is loose</source>
+      <translation>no se detectó el segundo toque; vea si está floja la herramienta o el palpador</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>no touch detected within {search}</source>
+      <translation>no se detectó toque en {search}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the axis moved {distance} past the touch point, which is more than the overtravel setting; check the tool setter</source>
+      <translation>el eje pasó {distance} del punto de toque, más que el valor de overtravel; revise el palpador</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the guard is open: close it</source>
+      <translation>la guarda está abierta: ciérrela</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the handwheel is selected; deselect it first</source>
+      <translation>el volante está elegido; desactívelo antes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the key or button was released</source>
+      <translation>se soltó la tecla o el botón</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the machine is in state {state}</source>
+      <translation>la máquina está en el estado {state}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the probe input is already on; check whether the tool setter is touched or its cable is damaged</source>
+      <translation>la entrada probe ya está activa; vea si el palpador está tocado o su cable está dañado</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the probe input is not being read; check its terminal</source>
+      <translation>la entrada probe no se lee; revise su borne</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the probe input is still on after the tool has backed off {distance} from the touch point; check the stylus and the cable</source>
+      <translation>la entrada probe sigue activa después de retroceder {distance} desde el punto de toque; revise la punta y el cable</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the search for the touch point would exceed the travel of {axis} by {distance}; jog the axis back first</source>
+      <translation>la búsqueda del punto de toque saldría del recorrido de {axis} en {distance}; retroceda antes el eje a mano</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>the spindle is turning: stop it first</source>
+      <translation>el husillo gira: párelo antes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/hand_motion/touch_off.py" />
       <source>this machine has no axis {name} to home</source>
       <translation>esta máquina no tiene eje {name} que referenciar</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted_job.py" />
-      <source>CANCELED BY RESET</source>
-      <translation>CANCELADO POR RESET</translation>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>this machine has no tool setter; add [setter] and the input probe to the machine file</source>
+      <translation>esta máquina no tiene palpador de herramientas; agregue [setter] y la entrada probe al archivo de máquina</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted_job.py" />
-      <source>THE CONTROL LOST POWER OR ITS PROCESS WAS KILLED</source>
-      <translation>EL CONTROL PERDIÓ LA CORRIENTE O SU PROCESO FUE TERMINADO A LA FUERZA</translation>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>touch-off: {why}</source>
+      <translation>toque: {why}</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted_job.py" />
-      <source>TURNDESK WAS CLOSED</source>
-      <translation>TURNDESK SE CERRÓ</translation>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>{axis} is not homed, so its position is not valid</source>
+      <translation>{axis} no está referenciado, así que su posición no es válida</translation>
     </message>
     <message>
-      <location filename="core/executor/interrupted_job.py" />
-      <source>{program}, line {line}, {tool}, part {part}: {why}</source>
-      <translation>{program}, línea {line}, {tool}, pieza {part}: {why}</translation>
+      <location filename="core/executor/hand_motion/touch_off.py" />
+      <source>{mm} in</source>
+      <translation>{mm} pulg</translation>
     </message>
     <message>
       <location filename="core/executor/interruption_watch.py" />
@@ -18230,6 +18350,21 @@
     </message>
     <message>
       <location filename="core/executor/job.py" />
+      <source>line {line} moves C while the spindle is turning</source>
+      <translation>la línea {line} mueve C mientras gira el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/job.py" />
+      <source>line {line} moves {axis} beyond its travel, to {distance} {unit} from home</source>
+      <translation>la línea {line} lleva {axis} más allá de su recorrido, a {distance} {unit} de la referencia</translation>
+    </message>
+    <message>
+      <location filename="core/executor/job.py" />
+      <source>line {line} uses feed per revolution</source>
+      <translation>la línea {line} usa avance por vuelta</translation>
+    </message>
+    <message>
+      <location filename="core/executor/job.py" />
       <source>the active unit is now inches</source>
       <translation>la unidad activa es ahora pulgadas</translation>
     </message>
@@ -18242,96 +18377,6 @@
       <location filename="core/executor/job.py" />
       <source>the rapid rate has changed</source>
       <translation>la velocidad de rápido ha cambiado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>a jog needs a velocity and a watchdog time greater than 0</source>
-      <translation>un movimiento manual necesita una velocidad y un tiempo de vigilancia mayor que 0</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>a jog step must be above 0 and at most {longest_step}, not {distance}</source>
-      <translation>un paso debe ser mayor que 0 y como máximo {longest_step}, no {distance}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>a jog step needs a speed above 0</source>
-      <translation>un paso necesita una velocidad mayor que 0</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>home all axes before jogging in a tilted plane</source>
-      <translation>referencie todos los ejes antes de mover a mano en un plano inclinado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>jogging in a tilted plane needs the axes X, Y and Z and a direction vector of length 1</source>
-      <translation>mover a mano en un plano inclinado necesita los ejes X, Y y Z y un vector de dirección de longitud 1</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the C axis is the spindle, and the spindle is turning; stop the spindle first</source>
-      <translation>el eje C es el husillo, y el husillo está girando; párelo primero</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the controller is still moving the axes</source>
-      <translation>el controlador aún mueve los ejes</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the drive test of {axis} is still running</source>
-      <translation>la prueba de accionamiento de {axis} todavía está en marcha</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the drive test of {axis} was stopped before it was finished</source>
-      <translation>la prueba de accionamiento de {axis} se paró antes de terminar</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the jog step of {axis} is not finished</source>
-      <translation>el paso de {axis} no ha terminado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the jog step of {axis} was stopped before it was finished</source>
-      <translation>el paso de {axis} se paró antes de terminar</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>the spindle drive is switching to C-axis mode; release the key or button and jog again in 2 s</source>
-      <translation>el variador del husillo está conmutando al modo de eje C; suelte la tecla o el botón y mueva a mano otra vez dentro de 2 s</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>this machine has no axis {name} to jog</source>
-      <translation>esta máquina no tiene eje {name} que mover a mano</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>{axis} drive test</source>
-      <translation>prueba de accionamiento de {axis}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>{axis} is still being jogged</source>
-      <translation>{axis} todavía se mueve a mano</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>{axis} is still moving; wait until its jog step is finished</source>
-      <translation>{axis} todavía se mueve; espere a que termine su paso</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>{name} is at the end of its travel in the {ending} direction</source>
-      <translation>{name} está al final de su recorrido en la dirección {ending}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/jogging.py" />
-      <source>{name}: the controller can jog only its own axes</source>
-      <translation>{name}: el controlador sólo puede mover a mano sus propios ejes</translation>
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
@@ -18370,11 +18415,6 @@
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
-      <source>the key or button was released</source>
-      <translation>se soltó la tecla o el botón</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
       <source>the palm buttons were pressed too soon after the confirmation: release both buttons, read the prompt, then press both buttons again</source>
       <translation>los pulsadores se pulsaron demasiado pronto tras la confirmación: suelte los dos, lea el aviso, luego púlselos otra vez</translation>
     </message>
@@ -18399,49 +18439,114 @@
       <translation>{source} se canceló</translation>
     </message>
     <message>
-      <location filename="core/executor/parts_made.py" />
-      <source>NO COUNT is on</source>
-      <translation>SIN CONT está puesto</translation>
+      <location filename="core/executor/program_motion/controller_motion.py" />
+      <source>line {line} has no feed rate</source>
+      <translation>la línea {line} no tiene avance</translation>
     </message>
     <message>
-      <location filename="core/executor/parts_made.py" />
-      <source>a restart skipped part of the program</source>
-      <translation>un rearranque omitió parte del programa</translation>
+      <location filename="core/executor/program_motion/controller_motion.py" />
+      <source>this controller can move only X and Z</source>
+      <translation>este controlador sólo puede mover X y Z</translation>
     </message>
     <message>
-      <location filename="core/executor/parts_made.py" />
-      <source>part {parts} completed in {seconds} s</source>
-      <translation>pieza {parts} terminada en {seconds} s</translation>
+      <location filename="core/executor/program_motion/cycle.py" />
+      <source>CONTROLLER IN FEED HOLD</source>
+      <translation>CONTROLADOR EN RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
-      <location filename="core/executor/parts_made.py" />
-      <source>the cycle was disturbed ({disturbed}); measure the part and, if it is good, add it to the part count on page F10</source>
-      <translation>el ciclo fue perturbado ({disturbed}); mida la pieza y, si es buena, súmela a la cuenta de piezas en la página F10</translation>
+      <location filename="core/executor/program_motion/cycle.py" />
+      <source>SPINDLE BELOW HALF COMMANDED SPEED</source>
+      <translation>HUSILLO POR DEBAJO DE LA MITAD DE LA VELOCIDAD ORDENADA</translation>
     </message>
     <message>
-      <location filename="core/executor/path_section.py" />
+      <location filename="core/executor/program_motion/cycle.py" />
+      <source>SPINDLE DID NOT RETURN TO SPEED</source>
+      <translation>EL HUSILLO NO VOLVIÓ A SU VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/path_section.py" />
       <source>no move is active, or all moves of the path are finished</source>
       <translation>no hay ningún movimiento activo, o terminaron todos los movimientos de la trayectoria</translation>
     </message>
     <message>
-      <location filename="core/executor/path_section.py" />
+      <location filename="core/executor/program_motion/path_section.py" />
       <source>the axes are stopped at the end of a block by Single Block</source>
       <translation>los ejes están parados al final de un bloque por bloque a bloque</translation>
     </message>
     <message>
-      <location filename="core/executor/path_section.py" />
+      <location filename="core/executor/program_motion/path_section.py" />
       <source>the axes are stopped because the override is 0</source>
       <translation>los ejes están parados porque el override está en 0</translation>
     </message>
     <message>
-      <location filename="core/executor/path_section.py" />
+      <location filename="core/executor/program_motion/path_section.py" />
       <source>the axes are stopped by an external hold</source>
       <translation>los ejes están parados por una retención externa</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/setpoint_motion.py" />
+      <source>the spindle speed changed faster than the axes could follow; check the thread</source>
+      <translation>la velocidad del husillo cambió más rápido de lo que los ejes podían seguir; revise la rosca</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/standstill.py" />
+      <source>Cycle Repeat switched off by M31</source>
+      <translation>repetir ciclo apagado por M31</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/standstill.py" />
+      <source>SPINDLE ORIENT</source>
+      <translation>ORIENTAR HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/standstill.py" />
+      <source>SPOS or M19 cannot turn the spindle to {angle} degrees while the collet is open</source>
+      <translation>SPOS o M19 no puede girar el husillo a {angle} grados con la pinza abierta</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/standstill.py" />
+      <source>the spindle turns at {measured} rpm</source>
+      <translation>el husillo gira a {measured} rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_pass.py" />
+      <source>the thread moves could not be queued in time</source>
+      <translation>los movimientos de la rosca no se pudieron encolar a tiempo</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_path.py" />
+      <source>the spindle speed dropped to {measured} rpm (commanded: {command} rpm)</source>
+      <translation>la velocidad del husillo cayó a {measured} rpm (ordenada: {command} rpm)</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_path.py" />
+      <source>the spindle turned in the wrong direction at {measured} rpm</source>
+      <translation>el husillo giró en la dirección equivocada a {measured} rpm</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_path.py" />
+      <source>the thread has a length or lead of zero</source>
+      <translation>la rosca tiene largo o paso cero</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_path.py" />
+      <source>{why} during the pull-out: the thread is cut, but the thread runout is shorter than programmed</source>
+      <translation>{why} durante la salida: la rosca está cortada, pero la salida de rosca es más corta que la programada</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/thread_path.py" />
+      <source>{why}: the tool retracted from the thread at Z{position}, and the rest of this thread pass is not cut</source>
+      <translation>{why}: la herramienta se retiró de la rosca en Z{position}, y el resto de esta pasada de roscado no se cortó</translation>
     </message>
     <message>
       <location filename="core/executor/program_run.py" />
       <source>PROVING WITH THE CHANGED OFFSETS</source>
       <translation>COMPROBANDO CON LOS CORRECTORES CAMBIADOS</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_run.py" />
+      <source>another program is running; changed offsets apply only to the program for which they were entered</source>
+      <translation>hay otro programa en marcha; los correctores cambiados sólo valen para el programa para el que se introdujeron</translation>
     </message>
     <message>
       <location filename="core/executor/program_run.py" />
@@ -18457,6 +18562,11 @@
       <location filename="core/executor/program_run.py" />
       <source>the MDI line was canceled by reset</source>
       <translation>la línea de MDI se canceló por reset</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_run.py" />
+      <source>the changed offsets are in effect</source>
+      <translation>los correctores cambiados están en vigor</translation>
     </message>
     <message>
       <location filename="core/executor/program_run.py" />
@@ -18482,21 +18592,6 @@
       <location filename="core/executor/raised_alarm.py" />
       <source>feed hold requested by {name}</source>
       <translation>retención de avance pedida por {name}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/read_ahead.py" />
-      <source>line {line} moves C while the spindle is turning</source>
-      <translation>la línea {line} mueve C mientras gira el husillo</translation>
-    </message>
-    <message>
-      <location filename="core/executor/read_ahead.py" />
-      <source>line {line} moves {axis} beyond its travel, to {distance} {unit} from home</source>
-      <translation>la línea {line} lleva {axis} más allá de su recorrido, a {distance} {unit} de la referencia</translation>
-    </message>
-    <message>
-      <location filename="core/executor/read_ahead.py" />
-      <source>line {line} uses feed per revolution</source>
-      <translation>la línea {line} usa avance por vuelta</translation>
     </message>
     <message>
       <location filename="core/executor/recorder.py" />
@@ -18529,34 +18624,134 @@
       <translation>{folder}: los registros de alarma antiguos no se pueden borrar: {cause}</translation>
     </message>
     <message>
-      <location filename="core/executor/safe_stop.py" />
+      <location filename="core/executor/safety/safe_stop.py" />
       <source>fault while stopping {name}: {error}</source>
       <translation>falla al parar {name}: {error}</translation>
     </message>
     <message>
-      <location filename="core/executor/safe_stop.py" />
+      <location filename="core/executor/safety/safe_stop.py" />
       <source>the axes</source>
       <translation>los ejes</translation>
     </message>
     <message>
-      <location filename="core/executor/safe_stop.py" />
+      <location filename="core/executor/safety/safe_stop.py" />
       <source>the drives</source>
       <translation>los servos</translation>
     </message>
     <message>
-      <location filename="core/executor/safe_stop.py" />
+      <location filename="core/executor/safety/safe_stop.py" />
       <source>the outputs</source>
       <translation>las salidas</translation>
     </message>
     <message>
-      <location filename="core/executor/setpoint_motion.py" />
-      <source>the spindle speed changed faster than the axes could follow; check the thread</source>
-      <translation>la velocidad del husillo cambió más rápido de lo que los ejes podían seguir; revise la rosca</translation>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>DRIVER HOST STOPPED SPINDLE/OUTPUTS</source>
+      <translation>EL PROCESO DE DRIVERS APAGÓ EL HUSILLO O SALIDAS</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>NO SIGNAL FROM CONTROL FOR {away} S, SWITCHED OFF: {off}</source>
+      <translation>SIN SEÑAL DEL CONTROL DURANTE {away} S, SE APAGÓ: {off}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>NO SIGNAL FROM MACHINE FOR {away} S, OUTPUTS FOUND ON AND SWITCHED OFF: {off}</source>
+      <translation>SIN SEÑAL DE LA MÁQUINA DURANTE {away} S, SALIDAS HALLADAS ENCENDIDAS Y APAGADAS: {off}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>no data from the axes</source>
+      <translation>no llegan datos de los ejes</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>output {name}</source>
+      <translation>la salida {name}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{angle} degrees</source>
+      <translation>{angle} grados</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{axis} has moved by {off} without a command</source>
+      <translation>{axis} se movió {off} sin una orden</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{axis} is {error} off its setpoint</source>
+      <translation>{axis} está a {error} de su consigna</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{axis} remains {error} off its setpoint</source>
+      <translation>{axis} sigue a {error} de su consigna</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{axis} was commanded to move {sent}, but its encoder does not count</source>
+      <translation>{axis} recibió orden de moverse {sent}, pero su encoder no cuenta</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{axis}: the drive reports a position that is not a number</source>
+      <translation>{axis}: el servo da una posición que no es un número</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{item} MOVED WITHOUT A COMMAND</source>
+      <translation>{item} SE MOVIÓ SIN ORDEN</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{output} TURNS OFF</source>
+      <translation>SE APAGA {output}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/supervision.py" />
+      <source>{output} TURNS ON</source>
+      <translation>SE ENCIENDE {output}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/watchdog.py" />
+      <source>the software thread of the control has ended</source>
+      <translation>el hilo de software del control terminó</translation>
+    </message>
+    <message>
+      <location filename="core/executor/safety/watchdog.py" />
+      <source>the software thread of the control is stuck</source>
+      <translation>el hilo de software del control está atorado</translation>
     </message>
     <message>
       <location filename="core/executor/signal_lamps.py" />
       <source>{name} CANNOT BE SWITCHED: {error}</source>
       <translation>{name} NO SE PUEDE CONMUTAR: {error}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/signals.py" />
+      <source>NO RESPONSE FROM OPERATOR STATION</source>
+      <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/signals.py" />
+      <source>OVERRIDE SIGNAL UNSTABLE</source>
+      <translation>SEÑAL DE OVERRIDE INESTABLE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/signals.py" />
+      <source>{name} TURNED OFF</source>
+      <translation>SE APAGÓ {name}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/signals.py" />
+      <source>{name} TURNED ON</source>
+      <translation>SE ENCENDIÓ {name}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>CANCELED BY RESET</source>
+      <translation>CANCELADO POR RESET</translation>
     </message>
     <message>
       <location filename="core/executor/snapshot.py" />
@@ -18570,6 +18765,16 @@
     </message>
     <message>
       <location filename="core/executor/snapshot.py" />
+      <source>THE CONTROL LOST POWER OR ITS PROCESS WAS KILLED</source>
+      <translation>EL CONTROL PERDIÓ LA CORRIENTE O SU PROCESO FUE TERMINADO A LA FUERZA</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>TURNDESK WAS CLOSED</source>
+      <translation>TURNDESK SE CERRÓ</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
       <source>back off</source>
       <translation>retroceda</translation>
     </message>
@@ -18577,6 +18782,11 @@
       <location filename="core/executor/snapshot.py" />
       <source>the machine state cannot change from {old} to {new}</source>
       <translation>el estado de la máquina no puede cambiar de {old} a {new}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/snapshot.py" />
+      <source>{program}, line {line}, {tool}, part {part}: {why}</source>
+      <translation>{program}, línea {line}, {tool}, pieza {part}: {why}</translation>
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
@@ -18622,26 +18832,6 @@
       <location filename="core/executor/spindle_orientation.py" />
       <source>this machine cannot orient the spindle to an angle</source>
       <translation>esta máquina no puede orientar el husillo a un ángulo</translation>
-    </message>
-    <message>
-      <location filename="core/executor/standstill.py" />
-      <source>Cycle Repeat switched off by M31</source>
-      <translation>repetir ciclo apagado por M31</translation>
-    </message>
-    <message>
-      <location filename="core/executor/standstill.py" />
-      <source>SPINDLE ORIENT</source>
-      <translation>ORIENTAR HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="core/executor/standstill.py" />
-      <source>SPOS or M19 cannot turn the spindle to {angle} degrees while the collet is open</source>
-      <translation>SPOS o M19 no puede girar el husillo a {angle} grados con la pinza abierta</translation>
-    </message>
-    <message>
-      <location filename="core/executor/standstill.py" />
-      <source>the spindle turns at {measured} rpm</source>
-      <translation>el husillo gira a {measured} rpm</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -18695,11 +18885,6 @@
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
-      <source>output {name}</source>
-      <translation>la salida {name}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
       <source>read this message first: {item}; then start again</source>
       <translation>lea primero este mensaje: {item}; después inicie otra vez</translation>
     </message>
@@ -18737,11 +18922,6 @@
       <location filename="core/executor/start_conditions.py" />
       <source>the first move is being checked against the part: start again in a moment</source>
       <translation>se está comprobando el primer movimiento con la pieza: vuelva a arrancar en un momento</translation>
-    </message>
-    <message>
-      <location filename="core/executor/start_conditions.py" />
-      <source>the guard is open: close it</source>
-      <translation>la guarda está abierta: ciérrela</translation>
     </message>
     <message>
       <location filename="core/executor/start_conditions.py" />
@@ -18814,196 +18994,6 @@
       <translation>{old}, pero el programa no especifica este ajuste; cargue el programa otra vez</translation>
     </message>
     <message>
-      <location filename="core/executor/station_signals.py" />
-      <source>NO RESPONSE FROM OPERATOR STATION</source>
-      <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/station_signals.py" />
-      <source>OVERRIDE SIGNAL UNSTABLE</source>
-      <translation>SEÑAL DE OVERRIDE INESTABLE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>DRIVER HOST STOPPED SPINDLE/OUTPUTS</source>
-      <translation>EL PROCESO DE DRIVERS APAGÓ EL HUSILLO O SALIDAS</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>NO SIGNAL FROM CONTROL FOR {away} S, SWITCHED OFF: {off}</source>
-      <translation>SIN SEÑAL DEL CONTROL DURANTE {away} S, SE APAGÓ: {off}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>NO SIGNAL FROM MACHINE FOR {away} S, OUTPUTS FOUND ON AND SWITCHED OFF: {off}</source>
-      <translation>SIN SEÑAL DE LA MÁQUINA DURANTE {away} S, SALIDAS HALLADAS ENCENDIDAS Y APAGADAS: {off}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>no data from the axes</source>
-      <translation>no llegan datos de los ejes</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>{axis}: the drive reports a position that is not a number</source>
-      <translation>{axis}: el servo da una posición que no es un número</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>{item} MOVED WITHOUT A COMMAND</source>
-      <translation>{item} SE MOVIÓ SIN ORDEN</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>{output} TURNS OFF</source>
-      <translation>SE APAGA {output}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/supervision.py" />
-      <source>{output} TURNS ON</source>
-      <translation>SE ENCIENDE {output}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/thread_path.py" />
-      <source>the spindle speed dropped to {measured} rpm (commanded: {command} rpm)</source>
-      <translation>la velocidad del husillo cayó a {measured} rpm (ordenada: {command} rpm)</translation>
-    </message>
-    <message>
-      <location filename="core/executor/thread_path.py" />
-      <source>the spindle turned in the wrong direction at {measured} rpm</source>
-      <translation>el husillo giró en la dirección equivocada a {measured} rpm</translation>
-    </message>
-    <message>
-      <location filename="core/executor/thread_path.py" />
-      <source>the thread has a length or lead of zero</source>
-      <translation>la rosca tiene largo o paso cero</translation>
-    </message>
-    <message>
-      <location filename="core/executor/thread_path.py" />
-      <source>{why} during the pull-out: the thread is cut, but the thread runout is shorter than programmed</source>
-      <translation>{why} durante la salida: la rosca está cortada, pero la salida de rosca es más corta que la programada</translation>
-    </message>
-    <message>
-      <location filename="core/executor/thread_path.py" />
-      <source>{why}: the tool retracted from the thread at Z{position}, and the rest of this thread pass is not cut</source>
-      <translation>{why}: la herramienta se retiró de la rosca en Z{position}, y el resto de esta pasada de roscado no se cortó</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>a tool cannot be touched off along {axis}</source>
-      <translation>una herramienta no se puede tocar a lo largo de {axis}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>a touch was detected on the return move; check the tool setter</source>
-      <translation>se detectó un toque en el movimiento de regreso; revise el palpador</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>another touch-off direction was selected</source>
-      <translation>se eligió otra dirección de toque</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>button {button} was released</source>
-      <translation>se soltó el botón {button}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>no axis</source>
-      <translation>ningún eje</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>no second touch detected; check whether the tool or the tool setter is loose</source>
-      <translation>no se detectó el segundo toque; vea si está floja la herramienta o el palpador</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>no touch detected within {search}</source>
-      <translation>no se detectó toque en {search}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the axis moved {distance} past the touch point, which is more than the overtravel setting; check the tool setter</source>
-      <translation>el eje pasó {distance} del punto de toque, más que el valor de overtravel; revise el palpador</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the handwheel is selected; deselect it first</source>
-      <translation>el volante está elegido; desactívelo antes</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the machine is in state {state}</source>
-      <translation>la máquina está en el estado {state}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the probe input is already on; check whether the tool setter is touched or its cable is damaged</source>
-      <translation>la entrada probe ya está activa; vea si el palpador está tocado o su cable está dañado</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the probe input is not being read; check its terminal</source>
-      <translation>la entrada probe no se lee; revise su borne</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the probe input is still on after the tool has backed off {distance} from the touch point; check the stylus and the cable</source>
-      <translation>la entrada probe sigue activa después de retroceder {distance} desde el punto de toque; revise la punta y el cable</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the search for the touch point would exceed the travel of {axis} by {distance}; jog the axis back first</source>
-      <translation>la búsqueda del punto de toque saldría del recorrido de {axis} en {distance}; retroceda antes el eje a mano</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>the spindle is turning: stop it first</source>
-      <translation>el husillo gira: párelo antes</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>this machine has no tool setter; add [setter] and the input probe to the machine file</source>
-      <translation>esta máquina no tiene palpador de herramientas; agregue [setter] y la entrada probe al archivo de máquina</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>touch-off: {why}</source>
-      <translation>toque: {why}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>{axis} is not homed, so its position is not valid</source>
-      <translation>{axis} no está referenciado, así que su posición no es válida</translation>
-    </message>
-    <message>
-      <location filename="core/executor/touch_off.py" />
-      <source>{mm} in</source>
-      <translation>{mm} pulg</translation>
-    </message>
-    <message>
-      <location filename="core/executor/watchdog.py" />
-      <source>the software thread of the control has ended</source>
-      <translation>el hilo de software del control terminó</translation>
-    </message>
-    <message>
-      <location filename="core/executor/watchdog.py" />
-      <source>the software thread of the control is stuck</source>
-      <translation>el hilo de software del control está atorado</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/area_clearing.py" />
-      <source>an island touches the edge of its pocket</source>
-      <translation>una isla toca el borde de su cajera</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/area_clearing.py" />
-      <source>clearing needs more than {most_rings} concentric passes</source>
-      <translation>el vaciado necesita más de {most_rings} pasadas concéntricas</translation>
-    </message>
-    <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>no arc of this radius is tangent to both moves within their length</source>
       <translation>ningún arco de ese radio es tangente a los dos movimientos dentro de su longitud</translation>
@@ -19072,6 +19062,16 @@
       <location filename="core/geometry/contour_offset.py" />
       <source>the offset path of another move would cut into this move</source>
       <translation>la trayectoria compensada de otro movimiento cortaría este movimiento</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/pocket_area.py" />
+      <source>an island touches the edge of its pocket</source>
+      <translation>una isla toca el borde de su cajera</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/pocket_area.py" />
+      <source>clearing needs more than {most_rings} concentric passes</source>
+      <translation>el vaciado necesita más de {most_rings} pasadas concéntricas</translation>
     </message>
     <message>
       <location filename="core/geometry/pocket_area.py" />
@@ -27814,36 +27814,6 @@
       <translation>Bloque {row}: {name} no es un número; corrija el bloque.</translation>
     </message>
     <message>
-      <location filename="core/motion/curved_axes.py" />
-      <source>Block {number}: the move needs {needed} degrees of C rotation, but C turns only {turn} degrees.</source>
-      <translation>Bloque {number}: el movimiento necesita {needed} grados de giro de C, pero C gira solo {turn} grados.</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>Block {number}: {why}.</source>
-      <translation>Bloque {number}: {why}.</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>the feed is per revolution, but the spindle is stopped; start the spindle first</source>
-      <translation>el avance es por vuelta, pero el husillo está parado; arranque primero el husillo</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>the feed must be greater than 0; program an F word</source>
-      <translation>el avance debe ser mayor que 0; programe una palabra F</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>the spindle speed has no upper limit at the spindle centerline; program a speed limit, or set rpm_max</source>
-      <translation>la velocidad del husillo no tiene límite superior en la línea de centro del husillo; programe un límite de velocidad o fije rpm_max</translation>
-    </message>
-    <message>
-      <location filename="core/motion/feed_rates.py" />
-      <source>the thread does not advance along Z</source>
-      <translation>la rosca no avanza a lo largo de Z</translation>
-    </message>
-    <message>
       <location filename="core/motion/motion_path.py" />
       <source>Block {number} comes after the end of the path. Begin a new path.</source>
       <translation>El bloque {number} viene después del final de la trayectoria. Empiece otra trayectoria.</translation>
@@ -27857,6 +27827,11 @@
       <location filename="core/motion/motion_path.py" />
       <source>Block {number} starts {max} mm from the end of the previous block. Plan the block from the current machine position.</source>
       <translation>El bloque {number} empieza a {max} mm del final del bloque anterior. Planifique el bloque desde la posición actual de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/motion_path.py" />
+      <source>Block {number}: the move needs {needed} degrees of C rotation, but C turns only {turn} degrees.</source>
+      <translation>Bloque {number}: el movimiento necesita {needed} grados de giro de C, pero C gira solo {turn} grados.</translation>
     </message>
     <message>
       <location filename="core/motion/motion_path.py" />
@@ -27897,6 +27872,31 @@
       <location filename="core/motion/path_pieces.py" />
       <source>Block {number}: the arc starts {radii} mm and ends {radii2} mm from its center. Correct the center or the end point.</source>
       <translation>Bloque {number}: el arco empieza a {radii} mm y termina a {radii2} mm de su centro. Corrija el centro o el punto final.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/speed_limits.py" />
+      <source>Block {number}: {why}.</source>
+      <translation>Bloque {number}: {why}.</translation>
+    </message>
+    <message>
+      <location filename="core/motion/speed_limits.py" />
+      <source>the feed is per revolution, but the spindle is stopped; start the spindle first</source>
+      <translation>el avance es por vuelta, pero el husillo está parado; arranque primero el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/motion/speed_limits.py" />
+      <source>the feed must be greater than 0; program an F word</source>
+      <translation>el avance debe ser mayor que 0; programe una palabra F</translation>
+    </message>
+    <message>
+      <location filename="core/motion/speed_limits.py" />
+      <source>the spindle speed has no upper limit at the spindle centerline; program a speed limit, or set rpm_max</source>
+      <translation>la velocidad del husillo no tiene límite superior en la línea de centro del husillo; programe un límite de velocidad o fije rpm_max</translation>
+    </message>
+    <message>
+      <location filename="core/motion/speed_limits.py" />
+      <source>the thread does not advance along Z</source>
+      <translation>la rosca no avanza a lo largo de Z</translation>
     </message>
     <message>
       <location filename="core/motion/window_planner.py" />
@@ -28119,56 +28119,6 @@
       <translation>{whole}: {text} no es una longitud; escriba 1.25 (pulgadas) o 30mm</translation>
     </message>
     <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>A drill feeds into an existing hole.</source>
-      <translation>Una broca avanza en un agujero ya existente.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>After this rapid alongside the part, the tool retracts without cutting.</source>
-      <translation>Después de este rápido junto a la pieza, la herramienta se retira sin cortar.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>Feed moves between two rapids cut only air.</source>
-      <translation>Los movimientos de avance entre dos rápidos sólo cortan aire.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>This move and the next move feed away from the part and cut nothing.</source>
-      <translation>Este movimiento y el movimiento siguiente avanzan alejándose de la pieza y no cortan nada.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>This move feeds along Z out of the part and past its face, inside the stock diameter.</source>
-      <translation>Este movimiento avanza a lo largo de Z, sale de la pieza y pasa de su cara, dentro del diámetro del material.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>This move feeds backward out of the part, through material.</source>
-      <translation>Este movimiento avanza hacia atrás y sale de la pieza a través del material.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>This move feeds through air for {seconds} s.</source>
-      <translation>Este movimiento avanza en el aire durante {seconds} s.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>This move turns a diameter larger than the stock.</source>
-      <translation>Este movimiento tornea un diámetro mayor que el del material en bruto.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>Threading moves between two rapids cut only air.</source>
-      <translation>Los movimientos de roscado entre dos rápidos sólo cortan aire.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/air_checks.py" />
-      <source>Tools have fed through air for {long_air} s up to this move.</source>
-      <translation>Las herramientas han avanzado en el aire durante {long_air} s hasta este movimiento.</translation>
-    </message>
-    <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>, {width} wide</source>
       <translation>, {width} de ancho</translation>
@@ -28259,1179 +28209,1294 @@
       <translation>{words}, ancho supuesto {width}</translation>
     </message>
     <message>
-      <location filename="core/proving/block_delete.py" />
-      <source>With block delete {switch}: {item}</source>
-      <translation>Con salto de bloque {switch}: {item}</translation>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>A drill feeds into an existing hole.</source>
+      <translation>Una broca avanza en un agujero ya existente.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>After this rapid alongside the part, the tool retracts without cutting.</source>
+      <translation>Después de este rápido junto a la pieza, la herramienta se retira sin cortar.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>Feed moves between two rapids cut only air.</source>
+      <translation>Los movimientos de avance entre dos rápidos sólo cortan aire.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>This move and the next move feed away from the part and cut nothing.</source>
+      <translation>Este movimiento y el movimiento siguiente avanzan alejándose de la pieza y no cortan nada.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>This move feeds along Z out of the part and past its face, inside the stock diameter.</source>
+      <translation>Este movimiento avanza a lo largo de Z, sale de la pieza y pasa de su cara, dentro del diámetro del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>This move feeds backward out of the part, through material.</source>
+      <translation>Este movimiento avanza hacia atrás y sale de la pieza a través del material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>This move feeds through air for {seconds} s.</source>
+      <translation>Este movimiento avanza en el aire durante {seconds} s.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>This move turns a diameter larger than the stock.</source>
+      <translation>Este movimiento tornea un diámetro mayor que el del material en bruto.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>Threading moves between two rapids cut only air.</source>
+      <translation>Los movimientos de roscado entre dos rápidos sólo cortan aire.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
+      <source>Tools have fed through air for {long_air} s up to this move.</source>
+      <translation>Las herramientas han avanzado en el aire durante {long_air} s hasta este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{name} feeds at {value}, which is too high for a cutting edge {width} wide.</source>
       <translation>{name} avanza a {value}, demasiado para un filo de {width} de ancho.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{name} feeds at {value}, which is too high for a diameter of {diameter}.</source>
       <translation>{name} avanza a {value}, demasiado para un diámetro de {diameter}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{name} feeds at {value}, which is too high for a nose radius of {nose_radius}.</source>
       <translation>{name} avanza a {value}, demasiado para un radio de punta de {nose_radius}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{tool} cuts {depth} deep in one pass, but its maximum depth of cut is {largest}.</source>
       <translation>{tool} corta {depth} de profundidad en una pasada, pero su profundidad de corte máxima es {largest}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{tool} cuts {depth} deep in one pass; the usual maximum is {usual}.</source>
       <translation>{tool} corta {depth} de profundidad en una pasada; el máximo usual es {usual}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{tool} cuts {depth} deep, but its cutting edge is only {height} long.</source>
       <translation>{tool} corta {depth} de profundidad, pero su filo mide sólo {height}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cut_sizes.py" />
+      <location filename="core/proving/checks/cut_checks.py" />
       <source>{tool} turns {depth} deep along Z; this type of blade allows at most {limit}.</source>
       <translation>{tool} cilindra {depth} de profundidad a lo largo de Z; este tipo de cuchilla admite como máximo {limit}.</translation>
     </message>
     <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Close the collet with M12 before this move.</source>
-      <translation>Cierre la pinza con M12 antes de este movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Correct S, or write G97 if S is in rpm.</source>
-      <translation>Corrija S, o escriba G97 si S está en rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Correct the number, or define the input under [io.in] in the machine file.</source>
-      <translation>Corrija el número, o defina la entrada en [io.in] del archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm in this move.</source>
-      <translation>G96 no tiene límite de velocidad, así que el husillo alcanza en este movimiento su máximo de {maximum} rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>S sets a speed, but nothing starts the spindle before this cut.</source>
-      <translation>S fija una velocidad, pero nada arranca el husillo antes de este corte.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Start the spindle with M03 or M04 before this cut.</source>
-      <translation>Arranque el husillo con M03 o M04 antes de este corte.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Start the spindle with M3 or M4 before this cut.</source>
-      <translation>Arranque el husillo con M3 o M4 antes de este corte.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Start with a move to X and Z under G90.</source>
-      <translation>Empiece con un movimiento a X y Z en G90.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>The first move is incremental: it starts from the current axis position, but was proved from home.</source>
-      <translation>El primer movimiento es incremental: empieza en la posición actual de los ejes, pero se comprobó desde la referencia.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>The program ends with the collet open, and the next cycle cuts on line {line} before any M12.</source>
-      <translation>El programa termina con la pinza abierta, y el ciclo siguiente corta en la línea {line} antes de un M12.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>The surface speed requires {slowest} rpm in this move, but the spindle maximum is {maximum} rpm.</source>
-      <translation>La velocidad de corte requiere {slowest} rpm en este movimiento, pero el máximo del husillo es {maximum} rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This cutting move follows {after}, so its coordinates are relative to machine home.</source>
-      <translation>Este movimiento de corte sigue a {after}, así que sus coordenadas son relativas a la referencia de la máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This machine has no input {terminal}, so the wait would never end.</source>
-      <translation>Esta máquina no tiene la entrada {terminal}, así que la espera no acabaría nunca.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This machine has no input {terminal}.</source>
-      <translation>Esta máquina no tiene la entrada {terminal}.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts with no tool active, so its coordinates are relative to machine home.</source>
-      <translation>Este movimiento corta sin herramienta activa, así que sus coordenadas son relativas a la referencia de la máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts with no tool active, so no tool length or radius applies.</source>
-      <translation>Este movimiento corta sin herramienta activa, así que no se aplica ninguna longitud ni ningún radio de herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts with the collet open, so the part is not clamped.</source>
-      <translation>Este movimiento corta con la pinza abierta, así que la pieza no está sujeta.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts with the spindle locked as the C axis and no live tool running.</source>
-      <translation>Este movimiento corta con el husillo bloqueado como eje C y sin herramienta motorizada en marcha.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move cuts with the spindle stopped and no live tool running.</source>
-      <translation>Este movimiento corta con el husillo parado y sin herramienta motorizada en marcha.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move feeds with the collet open, but not in a straight line away from the spindle, as a bar pull does.</source>
-      <translation>Este movimiento avanza con la pinza abierta, pero no se aleja del husillo en línea recta, como al jalar la barra.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>This move mills with no live tool running.</source>
-      <translation>Este movimiento fresa sin herramienta motorizada en marcha.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Turn on the live tool with {code} before this move.</source>
-      <translation>Encienda la herramienta motorizada con {code} antes de este movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Write G77Sn, where n is the maximum rpm for this chuck and bar.</source>
-      <translation>Escriba G77Sn, donde n son las rpm máximas para este plato y esta barra.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Write LIMS= with the maximum speed for this chuck and bar.</source>
-      <translation>Escriba LIMS= con la velocidad máxima para este plato y esta barra.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Write M12 at the end or the start of the program.</source>
-      <translation>Escriba M12 al final o al inicio del programa.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Write T and the tool number before this move.</source>
-      <translation>Escriba T y el número de la herramienta antes de este movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>Write TOOL CALL before this move.</source>
-      <translation>Escriba TOOL CALL antes de este movimiento.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/cutting_checks.py" />
-      <source>the tool cancel (T0) on line {tool_off}</source>
-      <translation>la anulación de herramienta (T0) de la línea {tool_off}</translation>
-    </message>
-    <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts a concave arc of radius {radius} into the edge of the face.</source>
       <translation>{tool} corta un arco cóncavo de radio {radius} en el canto de la cara.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts an arc at Z {front}, but the part ends at Z {parted_at}.</source>
       <translation>{tool} corta un arco en Z {front}, pero la pieza termina en Z {parted_at}.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts at Z {z}, but the part ends at Z {parted_at}.</source>
       <translation>{tool} corta en Z {z}, pero la pieza termina en Z {parted_at}.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts into the part at {steep}°, but the trailing edge of its insert clears only {clears}°.</source>
       <translation>{tool} entra cortando en la pieza a {steep}°, pero el filo posterior de su plaquita libra sólo {clears}°.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts on the spindle centerline under G96, so the spindle runs at its maximum speed.</source>
       <translation>{tool} corta en la línea de centro del husillo bajo G96, así que el husillo gira a su velocidad máxima.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts with the spindle turning in the opposite direction to its earlier cuts.</source>
       <translation>{tool} corta con el husillo girando en sentido contrario al de sus cortes anteriores.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts {depth} deep with the trailing edge of its insert.</source>
       <translation>{tool} corta a {depth} de profundidad con el filo posterior de su plaquita.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} cuts {depth} past the spindle centerline, on the side opposite to where the tool is mounted.</source>
       <translation>{tool} corta {depth} más allá de la línea de centro del husillo, en el lado opuesto a donde está montada la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} feeds through the part along an arc of {around}.</source>
       <translation>{tool} avanza a través de la pieza por un arco de {around}.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} feeds to Z {z}, but the stock ends at Z {back}.</source>
       <translation>{tool} avanza hasta Z {z}, pero el material en bruto termina en Z {back}.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} feeds {solid} along Z into solid material.</source>
       <translation>{tool} avanza {solid} a lo largo de Z en material macizo.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} goes {depth} deep, but its cutting length is only {length}.</source>
       <translation>{tool} entra {depth} de profundidad, pero su longitud de corte es sólo {length}.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool} is {off} off the spindle centerline when it cuts.</source>
       <translation>{tool} está a {off} de la línea de centro del husillo cuando corta.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool}, a {hand}-hand tool, cuts while the spindle turns forward.</source>
       <translation>{tool}, una herramienta de mano {hand}, corta mientras el husillo gira hacia delante.</translation>
     </message>
     <message>
-      <location filename="core/proving/edge_checks.py" />
+      <location filename="core/proving/checks/edge_checks.py" />
       <source>{tool}, a {hand}-hand tool, cuts while the spindle turns in reverse.</source>
       <translation>{tool}, una herramienta de mano {hand}, corta mientras el husillo gira en sentido inverso.</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>C moves while the spindle turns, but on this machine C is the spindle itself</source>
       <translation>C se mueve mientras gira el husillo, pero en esta máquina C es el propio husillo</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Close the collet with M12 before this move.</source>
+      <translation>Cierre la pinza con M12 antes de este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Correct S, or write G97 if S is in rpm.</source>
+      <translation>Corrija S, o escriba G97 si S está en rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Correct the number, or define the input under [io.in] in the machine file.</source>
+      <translation>Corrija el número, o defina la entrada en [io.in] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm in this move.</source>
+      <translation>G96 no tiene límite de velocidad, así que el husillo alcanza en este movimiento su máximo de {maximum} rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>S sets a speed, but nothing starts the spindle before this cut.</source>
+      <translation>S fija una velocidad, pero nada arranca el husillo antes de este corte.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Start the spindle with M03 or M04 before this cut.</source>
+      <translation>Arranque el husillo con M03 o M04 antes de este corte.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Start the spindle with M3 or M4 before this cut.</source>
+      <translation>Arranque el husillo con M3 o M4 antes de este corte.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Start with a move to X and Z under G90.</source>
+      <translation>Empiece con un movimiento a X y Z en G90.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>The first move is incremental: it starts from the current axis position, but was proved from home.</source>
+      <translation>El primer movimiento es incremental: empieza en la posición actual de los ejes, pero se comprobó desde la referencia.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>The program ends with the collet open, and the next cycle cuts on line {line} before any M12.</source>
+      <translation>El programa termina con la pinza abierta, y el ciclo siguiente corta en la línea {line} antes de un M12.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>The surface speed requires {slowest} rpm in this move, but the spindle maximum is {maximum} rpm.</source>
+      <translation>La velocidad de corte requiere {slowest} rpm en este movimiento, pero el máximo del husillo es {maximum} rpm.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This cutting move follows {after}, so its coordinates are relative to machine home.</source>
+      <translation>Este movimiento de corte sigue a {after}, así que sus coordenadas son relativas a la referencia de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This machine has no input {terminal}, so the wait would never end.</source>
+      <translation>Esta máquina no tiene la entrada {terminal}, así que la espera no acabaría nunca.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This machine has no input {terminal}.</source>
+      <translation>Esta máquina no tiene la entrada {terminal}.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move cuts with no tool active, so its coordinates are relative to machine home.</source>
+      <translation>Este movimiento corta sin herramienta activa, así que sus coordenadas son relativas a la referencia de la máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move cuts with no tool active, so no tool length or radius applies.</source>
+      <translation>Este movimiento corta sin herramienta activa, así que no se aplica ninguna longitud ni ningún radio de herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move cuts with the collet open, so the part is not clamped.</source>
+      <translation>Este movimiento corta con la pinza abierta, así que la pieza no está sujeta.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move cuts with the spindle locked as the C axis and no live tool running.</source>
+      <translation>Este movimiento corta con el husillo bloqueado como eje C y sin herramienta motorizada en marcha.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move cuts with the spindle stopped and no live tool running.</source>
+      <translation>Este movimiento corta con el husillo parado y sin herramienta motorizada en marcha.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move feeds with the collet open, but not in a straight line away from the spindle, as a bar pull does.</source>
+      <translation>Este movimiento avanza con la pinza abierta, pero no se aleja del husillo en línea recta, como al jalar la barra.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>This move mills with no live tool running.</source>
+      <translation>Este movimiento fresa sin herramienta motorizada en marcha.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Turn on the live tool with {code} before this move.</source>
+      <translation>Encienda la herramienta motorizada con {code} antes de este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Write G77Sn, where n is the maximum rpm for this chuck and bar.</source>
+      <translation>Escriba G77Sn, donde n son las rpm máximas para este plato y esta barra.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Write LIMS= with the maximum speed for this chuck and bar.</source>
+      <translation>Escriba LIMS= con la velocidad máxima para este plato y esta barra.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Write M12 at the end or the start of the program.</source>
+      <translation>Escriba M12 al final o al inicio del programa.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Write T and the tool number before this move.</source>
+      <translation>Escriba T y el número de la herramienta antes de este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>Write TOOL CALL before this move.</source>
+      <translation>Escriba TOOL CALL antes de este movimiento.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>check the {axis} word and all active shifts</source>
       <translation>compruebe la palabra {axis} y todos los desplazamientos activos</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>check the {axis} word and the offset of {tool}</source>
       <translation>compruebe la palabra {axis} y el corrector de {tool}</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>stop the spindle with M5 first, or use a lathe with a separate C drive (sinumerik-modulo)</source>
       <translation>pare primero el husillo con M5, o use un torno con accionamiento C propio (sinumerik-modulo)</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
+      <source>the tool cancel (T0) on line {tool_off}</source>
+      <translation>la anulación de herramienta (T0) de la línea {tool_off}</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>{axis} would move to {position} {unit} from home (X as a radius), {excess} {unit} beyond the travel limit of {limit}</source>
       <translation>{axis} se movería a {position} {unit} de la referencia (X como radio), {excess} {unit} más allá del límite de carrera de {limit}</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>{axis} would move to {position} {unit} from home, {excess} {unit} beyond the travel limit of {limit}</source>
       <translation>{axis} se movería a {position} {unit} de la referencia, {excess} {unit} más allá del límite de carrera de {limit}</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>{place}; also check G54 to G59 and TRANS</source>
       <translation>{place}; compruebe también G54 a G59 y TRANS</translation>
     </message>
     <message>
-      <location filename="core/proving/machine_checks.py" />
+      <location filename="core/proving/checks/machine_checks.py" />
       <source>{place}; also check every G10 and G92</source>
       <translation>{place}; compruebe también cada G10 y G92</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A boring tool enters solid material.</source>
       <translation>Una herramienta de mandrinar entra en material macizo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cut ends more than .1 in (for a drill, .1 in plus its diameter) beyond the end of the specified stock.</source>
       <translation>Un corte termina más de .1 in (con una broca, .1 in más su diámetro) más allá del extremo del material en bruto especificado.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cut under G96 without G77 requires more than the maximum spindle speed, for example at the spindle centerline.</source>
       <translation>Un corte con G96 y sin G77 requiere más que la velocidad máxima del husillo, por ejemplo en el centro del husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move feeds away from the part, so the cut that was probably intended is not made.</source>
       <translation>Un movimiento de corte avanza alejándose de la pieza, así que no se hace el corte que probablemente se quería.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move for milling the face or milling around the part is programmed with no live tool running. If the spindle is locked as the C axis, a cutting move with no live tool running is only a warning.</source>
       <translation>Se programa un movimiento de corte de fresado frontal, o de fresado alrededor de la pieza, sin ninguna herramienta motorizada en marcha. Un movimiento de corte con el husillo bloqueado como eje C y sin herramienta motorizada en marcha es solo un aviso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move is programmed after M13. This is only a warning if the move is a feed move in any direction other than straight out from the spindle (as in a bar pull), or if the next cycle would start with the collet open.</source>
       <translation>Se programa un movimiento de corte tras M13. Es solo un aviso si el movimiento es un avance en una dirección que no sale en línea recta del husillo (como al jalar la barra), o si el ciclo siguiente empezaría con la pinza abierta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move is programmed before the first T or after T0. This is only a warning if the program never calls a tool.</source>
       <translation>Se programa un movimiento de corte antes de la primera T o tras T0. Es solo un aviso si el programa no llama ninguna herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move is programmed with no tool active.</source>
       <translation>Se programa un movimiento de corte sin herramienta activa.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move is programmed with the collet open.</source>
       <translation>Se programa un movimiento de corte con la pinza abierta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A cutting move is programmed with the spindle stopped.</source>
       <translation>Se programa un movimiento de corte con el husillo parado.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A drill cuts on the spindle centerline with constant surface speed active.</source>
       <translation>Una broca corta en la línea de centro del husillo con velocidad de corte constante activa.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A drill goes deeper than its flute length.</source>
       <translation>Una broca entra más que su largo de hélice.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A drill, center drill, reamer or tap cuts at a distance of more than .004 in from the spindle centerline while the spindle turns.</source>
       <translation>Una broca, una broca de centrar, un escariador o un macho corta a una distancia de más de .004 in de la línea de centro del husillo mientras el husillo gira.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A drill, center drill, reamer or tap cuts under G96 without an active speed limit, so the spindle runs at its maximum speed.</source>
       <translation>Una broca, una broca de centrar, un escariador o un macho corta bajo G96 sin límite de velocidad activo, así que el husillo gira a su velocidad máxima.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A drill, reamer or tap is not on the spindle centerline when it cuts.</source>
       <translation>Una broca, un escariador o un macho no está en la línea de centro del husillo cuando corta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A feed move along Z ends on the bar side of the part-off position nearest the chuck, past this position by more than .5 in and by more than the part length.</source>
       <translation>Un avance a lo largo de Z termina del lado de la barra de la posición de tronzado más cercana al plato, más allá de esta posición por más de .5 in y por más del largo de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A feed move of .1 in or more along Z, next to the stock, stays at least .08 in outside the stock.</source>
       <translation>Un avance de .1 in o más a lo largo de Z, junto al material en bruto, queda al menos .08 in por fuera del material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A feed move runs the holder, shank or boring bar into material.</source>
       <translation>Un avance lleva el portaherramientas, el mango o la barra de mandrinar contra el material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A feed move stays more than .08 in away from all material for 5 s and .2 in of travel, or several consecutive feed moves do so for 20 s.</source>
       <translation>Un avance queda a más de .08 in de todo material durante 5 s y .2 in de recorrido, o varios avances consecutivos lo hacen durante 20 s.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A holder, shank or boring bar collides with material during a rapid.</source>
       <translation>Un portaherramientas, un mango o una barra de mandrinar choca con el material en rápido.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A milling move is programmed while the live tool is off.</source>
       <translation>Se programa un movimiento de fresado con la herramienta motorizada apagada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A move in feed per minute is programmed after M05 with no live tool running. With feed per revolution, G33 or G96, this is an error.</source>
       <translation>Se programa un movimiento con avance por minuto tras M05 sin herramienta motorizada en marcha. Con avance por vuelta, G33 o G96, esto es un error.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A parting or grooving blade turns along Z.</source>
       <translation>Una cuchilla de tronzar o ranurar cilindra a lo largo de Z.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A parting tool stops just short of the spindle centerline.</source>
       <translation>Una herramienta de tronzar se detiene justo antes de la línea de centro del husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A rapid directly after a cut removes material at a smaller radius than the cut.</source>
       <translation>Un rápido justo después de un corte arranca material a un radio menor que el corte.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A rapid, or a feed of 100 in/min or more, removes material.</source>
       <translation>Un rápido, o un avance de 100 in/min o más, arranca material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tap is pulled out of its thread instead of being backed out.</source>
       <translation>Un macho se saca de su rosca tirando en lugar de desenroscarlo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tap removes more material than its thread, because the tap hole is missing or the tap goes past the bottom of the hole.</source>
       <translation>Un macho arranca más material que el de su rosca, porque falta el agujero o porque el macho pasa del fondo del agujero.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A thread is too deep for its lead.</source>
       <translation>Una rosca es demasiado profunda para su paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A thread pass does not touch the part.</source>
       <translation>Una pasada de rosca no toca la pieza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A thread starts before the Z axis has reached the speed required for the lead, or ends while the axis decelerates.</source>
       <translation>Una rosca empieza antes de que el eje Z alcance la velocidad que requiere el paso, o termina mientras el eje frena.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool feeds into the part while neither the tool nor the spindle turns.</source>
       <translation>Una herramienta avanza en la pieza mientras no giran ni la herramienta ni el husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool feeds past the far end of the stock.</source>
       <translation>Una herramienta avanza más allá del extremo del material en bruto.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool feeds through air without cutting.</source>
       <translation>Una herramienta avanza en el aire sin cortar.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool or its holder collides with the chuck, jaws or collet.</source>
       <translation>Una herramienta o su portaherramientas choca con el plato, las garras o la pinza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool or its holder collides with the tailstock center or quill.</source>
       <translation>Una herramienta o su portaherramientas choca con el punto o la caña del contrapunto.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool or its holder nearly touches the chuck, jaws or collet.</source>
       <translation>Una herramienta o su portaherramientas casi toca el plato, las garras o la pinza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool outline overlaps the contour that the machine file defines under [clamping], or comes within .001 in of that contour.</source>
       <translation>El perfil de una herramienta se solapa con el contorno que el archivo de máquina define en [clamping], o se acerca a menos de .001 in de ese contorno.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A tool with a cutting insert is fed through the part along a large arc.</source>
       <translation>Una herramienta con plaquita atraviesa la pieza en avance a lo largo de un arco grande.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>A turning tool with a defined shape returns in rapid along Z, by .1 in or more, at the radius that it has just turned.</source>
       <translation>Una herramienta de tornear con forma definida vuelve en rápido a lo largo de Z, .1 in o más, en el radio que acaba de tornear.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An arc cuts a concave shape into the front edge of the part, where the edge is usually rounded.</source>
       <translation>Un arco corta una forma cóncava en el canto delantero de la pieza, donde el canto suele redondearse.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An arc of 90° with a radius of up to .118 in starts in the Z direction at the part face and ends in the X direction, away from the spindle centerline.</source>
       <translation>Un arco de 90° de radio hasta .118 in empieza en dirección Z en la cara de la pieza y termina en dirección X, alejándose del centro del husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An arc of more than 200° cuts material. Not checked for a round insert.</source>
       <translation>Un arco de más de 200° corta material. No se comprueba con una plaquita redonda.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An arc of the contour is missing from the finished part.</source>
       <translation>Falta un arco del contorno en la pieza terminada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An external tool cuts past the spindle centerline.</source>
       <translation>Una herramienta exterior corta más allá de la línea de centro del husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An insert cuts an arc more than .008 in past the part-off position nearest the chuck, on the bar side.</source>
       <translation>Una plaquita corta un arco a más de .008 in de la posición de tronzado más cercana al plato, del lado de la barra.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An insert cuts with its trailing edge.</source>
       <translation>Una plaquita corta con su filo posterior.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>An internal tool feeds .04 in or more into material that has no bore yet.</source>
       <translation>Una herramienta de interiores avanza .04 in o más en material que aún no tiene agujero.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Another tool on the gang plate collides with the stock.</source>
       <translation>Otra herramienta de la placa choca con el material en bruto.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Between the face and the chuck, the tool cuts more than .06 in past the spindle centerline (.004 in when cutting along Z), on the side opposite to where the tool is mounted.</source>
       <translation>Entre la cara y el plato, la herramienta corta más de .06 in más allá de la línea de centro del husillo (.004 in al cortar a lo largo de Z), en el lado opuesto a donde está montada la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check K and the insert. For a partial-profile insert, leave the pitch out of the tool shape.</source>
       <translation>Compruebe K y la plaquita. Para una plaquita de perfil parcial, no ponga el paso en la forma de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check K, the X of the last pass and the X where the thread starts.</source>
       <translation>Compruebe K, la X de la última pasada y la X donde empieza la rosca.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check X and Z of the thread, and check whether X is a diameter.</source>
       <translation>Compruebe X y Z de la rosca, y compruebe si X es un diámetro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check Z, the length of the stock and how far it sticks out of the chuck.</source>
       <translation>Compruebe Z, la longitud del material y cuánto sobresale del plato.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the Z position of the part-off; everything past this position would be missing from the part.</source>
       <translation>Compruebe la posición Z del tronzado; a la pieza le faltaría todo lo que queda más allá de esa posición.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the call, or prove the program again with the inputs that lead to the lines not reached.</source>
       <translation>Revise la llamada, o compruebe de nuevo el programa con las entradas que llevan a las líneas no alcanzadas.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the direction of the arc and the signs of its center coordinates.</source>
       <translation>Compruebe el sentido del arco y los signos de las coordenadas de su centro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the direction of the arc; the opposite direction rounds the edge.</source>
       <translation>Compruebe el sentido del arco; el contrario redondea el canto.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the sign of X, and look for a missing decimal point (X-03 for X-.03).</source>
       <translation>Compruebe el signo de X, y busque un punto decimal que falta (X-03 en vez de X-.03).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the stock size, and check whether X is a radius or a diameter.</source>
       <translation>Compruebe la medida del material en bruto, y compruebe si X es un radio o un diámetro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Check the tool number; widen a groove with adjacent plunges.</source>
       <translation>Compruebe el número de herramienta; ensanche una ranura con penetraciones contiguas.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Close the collet with M12.</source>
       <translation>Cierre la pinza con M12.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Constant surface speed has no speed limit.</source>
       <translation>La velocidad de corte constante no tiene límite de velocidad.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Correct the number, or define the input under [io.in].</source>
       <translation>Corrija el número, o defina la entrada en [io.in].</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Drill the bore first, or check the bore of the stock.</source>
       <translation>Taladre antes el agujero o compruebe el agujero del material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Drill the tap hole, deep enough for the chamfer of the tap.</source>
       <translation>Taladre el agujero para el macho, con profundidad suficiente para el chaflán del macho.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>During a feed move, the non-cutting part of a tool outline overlaps material by more than .001 in.</source>
       <translation>Durante un avance, la parte no cortante del perfil de una herramienta solapa el material en más de .001 in.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Feed to X0 or slightly past it; look for a missing minus sign.</source>
       <translation>Avance hasta X0 o un poco más; busque un signo menos que falta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>G91 is programmed before any absolute move, so the first move starts from the current axis position.</source>
       <translation>G91 está programado antes de cualquier movimiento absoluto, así que el primer movimiento empieza en la posición actual de los ejes.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>If the stock is specified and the spindle is running, the mean depth of cut is more than 2/3 of the cutting edge length of a specified C or S insert, half of the edge length of a W, T or D insert, a quarter of the edge length of a V insert, .4 of a round insert, or half the diameter of a boring bar.</source>
       <translation>Con un material en bruto especificado y el husillo girando, la profundidad media de corte es más de 2/3 del filo de una plaquita C o S especificada, la mitad del filo de una plaquita W, T o D, un cuarto del filo de una plaquita V, .4 de una plaquita redonda, o la mitad del diámetro de una barra de mandrinar.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>If the stock is specified, none of the passes with the same lead and the same Z range cuts any material.</source>
       <translation>Con un material en bruto especificado, ninguna de las pasadas del mismo paso y del mismo tramo de Z corta material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>If the stock is specified, the mean depth of cut is more than .5 of the cutting edge length of a C or S insert, .4 for a W insert, .3 for a T or D insert, or .2 for a V insert (Widia's limits for medium geometries, without the nose radius; CNMG432 if no insert is specified). TurnDesk does not know the stock material; a soft material may allow more.</source>
       <translation>Con un material en bruto especificado, la profundidad media de corte es más de .5 del filo de una plaquita C o S, .4 en una plaquita W, .3 en una T o D, o .2 en una V (límites de Widia para geometrías medias, sin el radio de punta; CNMG432 si no se especifica la plaquita). TurnDesk no conoce el material de la pieza; un material blando puede admitir más.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>If the stock is specified, three or more passes stay outside the material.</source>
       <translation>Con material en bruto especificado, tres o más pasadas quedan fuera del material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Increase the part stick-out, or stop the move earlier.</source>
       <translation>Aumente el voladizo de la pieza, o pare antes el movimiento.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Look for a missing decimal point (Z-3 for Z-.3).</source>
       <translation>Busque un punto decimal que falta (Z-3 en vez de Z-.3).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Look for a missing minus sign (Z.5 for Z-.5) or a missing decimal point (X4 for X.4).</source>
       <translation>Busque un signo menos que falta (Z.5 en vez de Z-.5) o un punto decimal que falta (X4 en vez de X.4).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Look for a missing minus sign or decimal point; use a rapid to move through air.</source>
       <translation>Busque un signo menos o un punto decimal que falta; use un rápido para moverse por el aire.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Lower F, or look for a missing decimal point (F.03 for F.003).</source>
       <translation>Baje F, o busque un punto decimal que falta (F.03 en vez de F.003).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Lower F; look for a missing decimal point, or for millimeters in an inch program.</source>
       <translation>Baje F; busque un punto decimal que falta, o milímetros en un programa en pulgadas.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Lower S, limit the speed under G96, reduce the overhang of the part, or support it.</source>
       <translation>Baje S, limite la velocidad bajo G96, reduzca el voladizo de la pieza o apóyela.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Lower S, or limit the speed under G96.</source>
       <translation>Baje S, o limite la velocidad bajo G96.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>M04 is used with a right-hand drill, reamer or tap, or M03 with a left-hand drill, reamer or tap; M04 is used with a turning or boring tool mounted upright in front of the spindle centerline; or the same cutting edge is used in both spindle directions.</source>
       <translation>Se usa M04 con una broca, un escariador o un macho a derechas, o M03 con uno a izquierdas; se usa M04 con una herramienta de tornear o mandrinar montada derecha delante del centro del husillo; o el mismo filo se usa en ambos sentidos de giro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>M91 to M97 use an input that the machine file does not define.</source>
       <translation>M91 a M97 usan una entrada que el archivo de máquina no define.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Move X away from the part before you move Z.</source>
       <translation>Aparte X de la pieza antes de mover Z.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Move to X0 before drilling, and check the X offset of the tool.</source>
       <translation>Vaya a X0 antes de taladrar y compruebe el corrector X de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>One of these cases applies: a feed move goes away from the part or out past the part face; none of the feed moves between two rapids, or of a live tool, comes near material; the tool moves in and out alongside the part in rapid without a cut; a tool that reaches the part makes no feed moves; a drill feeds into an existing hole.</source>
       <translation>Un avance se aleja de la pieza o sale más allá de su cara; o ningún avance entre dos rápidos, o ningún avance de una herramienta motorizada, se acerca al material; o la herramienta entra y sale en rápido junto a la pieza sin ningún corte; o una herramienta que llega a la pieza no hace ningún avance; o una broca avanza en un agujero ya existente.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>One pass is deeper than the insert or the boring bar can cut.</source>
       <translation>Una pasada es más profunda de lo que puede cortar la plaquita o la barra de mandrinar.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>One pass is deeper than usual for the insert.</source>
       <translation>Una pasada es más profunda de lo habitual para la plaquita.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Program the pitch as F. The pitch is 1 divided by the number of threads per inch.</source>
       <translation>Escriba como F el paso, que es 1 dividido por los hilos por pulgada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Program the speed of a drill in rpm.</source>
       <translation>Programe la velocidad de una broca en rpm.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Remove the offset of the tool that is not mounted.</source>
       <translation>Borre el corrector de la herramienta que no está montada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Retract along X before you move Z; in a bore, retract along Z before you move X.</source>
       <translation>Retírese por X antes de mover Z; en un agujero, retírese por Z antes de mover X.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Reverse the spindle at the bottom of the hole, and feed out at the pitch.</source>
       <translation>Invierta el husillo en el fondo del agujero, y salga avanzando según el paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Reverse the spindle, or correct the hand in the tool shape.</source>
       <translation>Invierta el giro del husillo, o corrija la mano en la forma de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>S is an rpm value where a surface speed is expected.</source>
       <translation>S es un valor en rpm donde se espera una velocidad de corte.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>S under G96 is over 1000 m/min (3280 ft/min) and requires more than twice the maximum spindle speed.</source>
       <translation>S con G96 supera 1000 m/min (3280 ft/min) y requiere más del doble de la velocidad máxima del husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Some lines of the program are not reached during proving.</source>
       <translation>Al comprobar el programa no se llega a algunas líneas.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Start at the diameter of the first pass; check X at the start of the thread.</source>
       <translation>Empiece en el diámetro de la primera pasada; compruebe la X al inicio de la rosca.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Start farther from the material, lower S, end in a groove, or pull out while the tool moves along Z.</source>
       <translation>Empiece más lejos del material, baje S, termine en una ranura o salga mientras la herramienta avanza en Z.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Start the spindle or the live tool before this move.</source>
       <translation>Arranque el husillo o la herramienta motorizada antes de este movimiento.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Start the spindle with M03 or M04.</source>
       <translation>Arranque el husillo con M03 o M04.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Stop short of the material and feed in; look for a rapid that is still active, and for a wrong sign or decimal point.</source>
       <translation>Pare antes del material y entre en avance; busque un rápido que sigue activo, y un signo o un punto decimal equivocado.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Support the part, or part it off in two steps.</source>
       <translation>Apoye la pieza, o trónzela en dos pasos.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The Z clearance between the outline of the tool or holder and the contour that the machine file defines under [clamping] is less than .01 in.</source>
       <translation>La holgura en Z entre el perfil de la herramienta o del portaherramientas y el contorno que el archivo de máquina define en [clamping] es menor de .01 in.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The bar is cut far past the part-off.</source>
       <translation>La barra se corta mucho más allá del tronzado.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The blade turns along Z by more than its width. The depth of cut is more than .01 in for a parting blade, or more than .8 of the blade width for a grooving blade (Ingersoll's limit).</source>
       <translation>La cuchilla cilindra a lo largo de Z más que su ancho. La profundidad de corte es de más de .01 in en una cuchilla de tronzar, o de más de .8 del ancho en una de ranurar (límite de Ingersoll).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The commanded speed is higher than max_rpm under [clamping] in the machine file.</source>
       <translation>La velocidad mandada es mayor que max_rpm en [clamping] del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The cutting edge enters material by more than .001 in, both on the radius and in Z.</source>
       <translation>El filo entra en el material más de .001 in, tanto en el radio como en Z.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The distance from the start of the pass to the material is less than the acceleration distance v²/2a of the Z axis, or the pass stops in material and v²/2a is more than one lead.</source>
       <translation>La distancia desde el inicio de la pasada hasta el material es menor que la distancia de aceleración v²/2a del eje Z, o la pasada se detiene en el material y v²/2a es más que un paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed of a tap does not match its pitch.</source>
       <translation>El avance de un macho no corresponde a su paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed per revolution differs from the pitch in the tool shape or comment by more than .08 of the pitch.</source>
       <translation>El avance por vuelta difiere del paso de la forma de la herramienta o del comentario en más de .08 del paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed per revolution is far too high for the cutting edge.</source>
       <translation>El avance por vuelta es muy superior a lo que admite el filo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed per revolution is more than .8 of the nose radius, .12 of the width of a grooving tool, or .04 of the diameter of a drill (.1 of a reamer).</source>
       <translation>El avance por vuelta es más de .8 del radio de punta, .12 del ancho de una herramienta de ranurar, o .04 del diámetro de una broca (.1 de un escariador).</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed per revolution is more than twice the nose radius of an insert and more than .006 in, or it is more than five times the chip-load limit of a drill, reamer or blade.</source>
       <translation>El avance por vuelta es más del doble del radio de punta de una plaquita y más de .006 in, o es más de cinco veces el límite de carga de viruta de una broca, un escariador o una cuchilla.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The feed per revolution is too high for the cutting edge.</source>
       <translation>El avance por vuelta es demasiado alto para el filo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The first move is incremental.</source>
       <translation>El primer movimiento es incremental.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The first passes of a thread cut nothing.</source>
       <translation>Las primeras pasadas de una rosca no cortan nada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The hole is deeper than the cutting length of the drill. A drill without a defined cutting length is reported.</source>
       <translation>El agujero es más profundo que la longitud de corte de la broca. Se avisa si una broca no tiene longitud de corte definida.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The insert feeds backward at a depth of more than .02 in and more than two nose radii, or into a wall steeper than its trailing edge.</source>
       <translation>La plaquita avanza hacia atrás a una profundidad de más de .02 in y de más de dos radios de punta, o contra una pared más inclinada que su filo posterior.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The lead is not a multiple of the pitch in the tool shape.</source>
       <translation>El avance de la rosca no es múltiplo del paso de la forma de la herramienta.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The lead of a thread does not match the pitch of its insert.</source>
       <translation>El avance de una rosca no corresponde al paso de su plaquita.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The lines were not reached although TurnDesk proves both branches of input-dependent calls, block delete and loops, within its limits.</source>
       <translation>TurnDesk comprueba ambas ramas de las llamadas por entradas, del salto de bloque y de los bucles, dentro de sus límites.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The non-cutting part of a tool outline overlaps material by more than .001 in.</source>
       <translation>La parte no cortante del perfil de una herramienta solapa el material en más de .001 in.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The offsets of two tools with defined shapes are less than .04 in apart.</source>
       <translation>Los correctores de dos herramientas con forma definida distan menos de .04 in.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The outline of a tool or holder overlaps the contour of the quill and center defined under [clamping] in the machine file.</source>
       <translation>El perfil de una herramienta o de su portaherramientas se solapa con el contorno de la caña y el punto definido en [clamping] del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The part is larger than its stock, so a contour is cut in air outside the bar.</source>
       <translation>La pieza es mayor que su material en bruto, así que se corta un contorno en el aire, fuera de la barra.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The parted-off piece is long and unsupported.</source>
       <translation>La pieza tronzada es larga y no tiene apoyo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The parted-off piece is longer than five times its diameter.</source>
       <translation>La pieza tronzada mide más de cinco veces su diámetro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The program uses an input that the machine does not have.</source>
       <translation>El programa usa una entrada que la máquina no tiene.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The spindle speed is more than half the first critical speed of the protruding stock. The critical speed is calculated for a brass bar clamped at one end.</source>
       <translation>La velocidad del husillo supera la mitad de la primera velocidad crítica del material en voladizo. La velocidad crítica se calcula para una barra de latón sujeta por un extremo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The spindle turns faster than the chuck or collet allows.</source>
       <translation>El husillo gira más deprisa de lo que permite el plato o la pinza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The spindle turns in the wrong direction for the cutting edge.</source>
       <translation>El husillo gira en sentido equivocado para el filo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The spindle turns so fast that the stock may whip.</source>
       <translation>El husillo gira tan rápido que el material en bruto puede cabecear.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The tap is retracted at rapid, with the spindle stopped, with the spindle not reversed, or at a feed that differs from the feed into the hole; or the tap travels more than .5 in before the spindle stops. Not checked if the comment says that the holder reverses automatically.</source>
       <translation>El macho se retira en rápido, con el husillo parado, con el husillo sin invertir, o con un avance distinto del de entrada; o el macho recorre más de .5 in antes de que el husillo se pare. No se comprueba si el comentario dice que el portamachos invierte automáticamente.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The thread depth that the tap cuts, measured on the radius, is greater than the pitch.</source>
       <translation>La profundidad de rosca que corta el macho, medida en el radio, es mayor que el paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The thread is deeper than a sharp V thread of the same lead.</source>
       <translation>La rosca es más profunda que una rosca en V aguda del mismo paso.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The tool comes within .04 in of the spindle centerline but does not reach the centerline, and the part is not cut off.</source>
       <translation>La herramienta llega a menos de .04 in de la línea de centro del husillo sin alcanzarla, y la pieza no queda tronzada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The tool retracts through the part.</source>
       <translation>La herramienta se retira a través de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>The tool rubs along the finished surface.</source>
       <translation>La herramienta roza la superficie acabada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Turn on the live tool with its M code from the machine file.</source>
       <translation>Encienda la herramienta motorizada con su código M del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Two tools have the same offset.</source>
       <translation>Dos herramientas tienen el mismo corrector.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a different path or a slimmer holder; retract the quill for work on the face.</source>
       <translation>Use otra trayectoria o un portaherramientas más fino; retire la caña para trabajar en la cara.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a different path, a shorter tool, or another position on the gang plate.</source>
       <translation>Use otra trayectoria, una herramienta más corta u otra posición en la placa.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a longer drill, or peck and check the entered flute length.</source>
       <translation>Use una broca más larga, o taladre por picadas y compruebe el largo de hélice introducido.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a longer or slimmer tool, another cutting direction, or a smaller depth of cut.</source>
       <translation>Use una herramienta más larga o más delgada, otra dirección de corte o menos profundidad de corte.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a longer or slimmer tool, or another cutting direction.</source>
       <translation>Use una herramienta más larga o más delgada, u otra dirección de corte.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use a tool of the opposite hand or a slimmer insert, or cut from the other side.</source>
       <translation>Use una herramienta de la otra mano o una plaquita más fina, o corte desde el otro lado.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Use several passes; look for a missing or wrong digit in X.</source>
       <translation>Use varias pasadas; busque una cifra que falta o equivocada en X.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>With [tooling] kind = "gang", the outline of another tool, positioned by its tool offset, overlaps material.</source>
       <translation>Con [tooling] kind = "gang", el perfil de otra herramienta, situado por su corrector, se solapa con el material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>With no live tool running, a drill, reamer, mill, turning tool or parting blade cuts more than .001 in of material while the spindle is stopped, or while the spindle is clamped as the C axis after turning. Not checked if the machine file has no M code for a live tool.</source>
       <translation>Sin ninguna herramienta motorizada encendida, una broca, un escariador, una fresa, una herramienta de torneado o una cuchilla de tronzar corta más de .001 in de material mientras el husillo está parado, o mientras está sujeto como eje C después de haber girado. No se comprueba si el archivo de máquina no tiene código M para una herramienta motorizada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>Write G77Sn after G96, where n is the maximum rpm for this chuck and bar.</source>
       <translation>Escriba G77Sn después de G96, donde n son las rpm máximas para este plato y esta barra.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>previously drilled holes</source>
       <translation>agujeros taladrados antes</translation>
     </message>
     <message>
-      <location filename="core/proving/part_checks.py" />
+      <location filename="core/proving/checks/part_checks.py" />
       <source>tool type</source>
       <translation>tipo de herramienta</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>A feed move at rapid speed retracts through the part after a cut, {depth}.</source>
       <translation>Un avance a velocidad de rápido se retira a través de la pieza tras un corte, {depth}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>A feed move at rapid speed runs into material, {depth}.</source>
       <translation>Un avance a velocidad de rápido choca con el material, {depth}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>A live tool runs into material in rapid at {place}.</source>
       <translation>Una herramienta motorizada choca en rápido con el material en {place}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>A rapid retracts through the part after a cut, {depth}.</source>
       <translation>Un rápido se retira a través de la pieza tras un corte, {depth}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>A rapid runs into material, {depth}.</source>
       <translation>Un rápido choca con el material, {depth}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>Live tool {tool} feeds but never touches material.</source>
       <translation>La herramienta motorizada {tool} avanza pero nunca toca material.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>The holder of {tool} collides with material, {struck}.</source>
       <translation>El portaherramientas de {tool} choca con el material, {struck}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>The parted-off piece is {length} times as long as its diameter.</source>
       <translation>La pieza tronzada es {length} veces más larga que su diámetro.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>The spindle turns at {rpm} rpm; the chuck allows at most {highest} rpm.</source>
       <translation>El husillo gira a {rpm} rpm; el plato admite como máximo {highest} rpm.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>The stock sticks out so far that it whips at {whip} rpm; the spindle turns at {rpm} rpm.</source>
       <translation>El material en bruto sobresale tanto que latiguea a {whip} rpm; el husillo gira a {rpm} rpm.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>This check is turned off: {why}</source>
       <translation>Esta comprobación está desactivada: {why}</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>at a depth of {depth}, from Z {front} to Z {back}</source>
       <translation>a una profundidad de {depth}, de Z {front} a Z {back}</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{one} and {other} have the same offset, so neither is checked for collision while the other cuts.</source>
       <translation>{one} y {other} tienen el mismo corrector, así que ninguna se comprueba contra choques mientras corta la otra.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{other}, next to {tool} on the gang plate, collides with the stock.</source>
       <translation>{other}, junto a {tool} en la placa, choca con el material en bruto.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{remedy} Assumed: {assumed}.</source>
       <translation>{remedy} Supuesto: {assumed}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} collides with the chuck, {what}.</source>
       <translation>{tool} choca con el plato, {what}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} collides with the tailstock, {what}.</source>
       <translation>{tool} choca con el contrapunto, {what}.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} cuts while neither the tool nor the spindle turns.</source>
       <translation>{tool} corta mientras no giran ni la herramienta ni el husillo.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} moves across the spindle centerline through the part.</source>
       <translation>{tool} cruza la línea de centro del husillo a través de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} nearly touches the chuck.</source>
       <translation>{tool} casi toca el plato.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} parts off down to {thick}, but the part is not cut off.</source>
       <translation>{tool} tronza hasta {thick}, pero la pieza no queda tronzada.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} returns in rapid along the surface it has just turned.</source>
       <translation>{tool} vuelve en rápido a lo largo de la superficie que acaba de tornear.</translation>
     </message>
     <message>
-      <location filename="core/proving/part_findings.py" />
+      <location filename="core/proving/checks/part_findings.py" />
       <source>{tool} touches the chuck.</source>
       <translation>{tool} toca el plato.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>The Z axis needs {needed} to stop from the speed for the lead, but the material ends {left} before the end of the pass, so the last turns of the thread have a different lead.</source>
+      <translation>El eje Z necesita {needed} para pararse desde la velocidad del paso, pero el material termina {left} antes del final de la pasada, así que las últimas vueltas de la rosca tienen otro paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>The first {idle} passes of this thread do not touch any material.</source>
+      <translation>Las primeras {idle} pasadas de esta rosca no tocan material.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>The insert of {tool} has a pitch of {pitch}, but the lead is {per_rev}.</source>
+      <translation>La plaquita de {tool} tiene un paso de {pitch}, pero el avance de rosca es {per_rev}.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>The material begins {before} after the start of the pass, but the Z axis needs {needed} to reach the speed for the lead.</source>
+      <translation>El material empieza {before} después del inicio de la pasada, pero el eje Z necesita {needed} para alcanzar la velocidad del paso.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>The thread is {depth} deep, but with a lead of {per_rev} and {angle}° its flanks meet at a depth of {sharp}.</source>
+      <translation>La rosca tiene {depth} de profundidad, pero con un paso de {per_rev} y {angle}° sus flancos se cortan a {sharp} de profundidad.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} cuts a thread {depth} deep on the radius, but its pitch is only {pitch}.</source>
+      <translation>{tool} corta una rosca de {depth} de profundidad en el radio, pero su paso es solo {pitch}.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} does not touch the part in any pass of this thread.</source>
+      <translation>{tool} no toca la pieza en ninguna pasada de esta rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} feeds in at {into} per revolution, but feeds out at {file}.</source>
+      <translation>{tool} entra con un avance de {into} por vuelta, pero sale con {file}.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} feeds {feed} per revolution, but its pitch is {pitch}.</source>
+      <translation>{tool} avanza {feed} por vuelta, pero su paso es {pitch}.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} retracts from the thread at rapid.</source>
+      <translation>{tool} se retira de la rosca en rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} retracts from the thread while the spindle still turns in the tapping direction.</source>
+      <translation>{tool} sale de la rosca mientras el husillo gira todavía en el sentido de roscado.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} retracts from the thread with the spindle stopped.</source>
+      <translation>{tool} se retira de la rosca con el husillo parado.</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{tool} travels {revolutions} farther before the spindle stops</source>
+      <translation>{tool} recorre todavía {revolutions} antes de que se pare el husillo</translation>
+    </message>
+    <message>
+      <location filename="core/proving/checks/thread_checks.py" />
+      <source>{words}, which is more than a tap holder can compensate for.</source>
+      <translation>{words}, que es más de lo que puede compensar un portamachos.</translation>
     </message>
     <message>
       <location filename="core/proving/part_history.py" />
@@ -29445,13 +29510,38 @@
     </message>
     <message>
       <location filename="core/proving/part_making.py" />
+      <source>collisions with the chuck and jaws, and stock whip (these checks require a diameter in [clamping] and a stick-out)</source>
+      <translation>choques con plato y garras, y cabeceo del material en bruto (estas comprobaciones requieren un diámetro en [clamping] y un voladizo)</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_making.py" />
       <source>cuts made by {tool} with the spindle stopped, from line {line} on</source>
       <translation>cortes de {tool} con el husillo parado, a partir de la línea {line}</translation>
     </message>
     <message>
       <location filename="core/proving/part_making.py" />
+      <source>maximum chuck speed (unknown: no max_rpm in [clamping])</source>
+      <translation>velocidad máxima del plato (desconocida: sin max_rpm en [clamping])</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_making.py" />
       <source>no stock could be assumed: feed moves cut in front of Z0, so the stock face cannot be at Z0</source>
       <translation>no se pudo suponer un material en bruto: hay avances que cortan delante de Z0, así que la cara del material no puede estar en Z0</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_making.py" />
+      <source>{short}: maximum tool depth (unknown: no flute length defined)</source>
+      <translation>{short}: profundidad máxima de la herramienta (desconocida: sin largo de hélice definido)</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_making.py" />
+      <source>{tools}: collisions on the gang plate while a neighboring tool cuts (no tool shape defined)</source>
+      <translation>{tools}: choques en la placa mientras corta una herramienta vecina (sin forma de herramienta definida)</translation>
+    </message>
+    <message>
+      <location filename="core/proving/part_making.py" />
+      <source>{without}: tool holder, edge length and hand of the tool not defined</source>
+      <translation>{without}: portaherramientas, largo de filo y mano de la herramienta sin definir</translation>
     </message>
     <message>
       <location filename="core/proving/part_proof.py" />
@@ -29524,99 +29614,9 @@
       <translation>{hint} Supuesto: {assumed}; nada después de este punto está comprobado.</translation>
     </message>
     <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>The Z axis needs {needed} to stop from the speed for the lead, but the material ends {left} before the end of the pass, so the last turns of the thread have a different lead.</source>
-      <translation>El eje Z necesita {needed} para pararse desde la velocidad del paso, pero el material termina {left} antes del final de la pasada, así que las últimas vueltas de la rosca tienen otro paso.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>The first {idle} passes of this thread do not touch any material.</source>
-      <translation>Las primeras {idle} pasadas de esta rosca no tocan material.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>The insert of {tool} has a pitch of {pitch}, but the lead is {per_rev}.</source>
-      <translation>La plaquita de {tool} tiene un paso de {pitch}, pero el avance de rosca es {per_rev}.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>The material begins {before} after the start of the pass, but the Z axis needs {needed} to reach the speed for the lead.</source>
-      <translation>El material empieza {before} después del inicio de la pasada, pero el eje Z necesita {needed} para alcanzar la velocidad del paso.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>The thread is {depth} deep, but with a lead of {per_rev} and {angle}° its flanks meet at a depth of {sharp}.</source>
-      <translation>La rosca tiene {depth} de profundidad, pero con un paso de {per_rev} y {angle}° sus flancos se cortan a {sharp} de profundidad.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} cuts a thread {depth} deep on the radius, but its pitch is only {pitch}.</source>
-      <translation>{tool} corta una rosca de {depth} de profundidad en el radio, pero su paso es solo {pitch}.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} does not touch the part in any pass of this thread.</source>
-      <translation>{tool} no toca la pieza en ninguna pasada de esta rosca.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} feeds in at {into} per revolution, but feeds out at {file}.</source>
-      <translation>{tool} entra con un avance de {into} por vuelta, pero sale con {file}.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} feeds {feed} per revolution, but its pitch is {pitch}.</source>
-      <translation>{tool} avanza {feed} por vuelta, pero su paso es {pitch}.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} retracts from the thread at rapid.</source>
-      <translation>{tool} se retira de la rosca en rápido.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} retracts from the thread while the spindle still turns in the tapping direction.</source>
-      <translation>{tool} sale de la rosca mientras el husillo gira todavía en el sentido de roscado.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} retracts from the thread with the spindle stopped.</source>
-      <translation>{tool} se retira de la rosca con el husillo parado.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{tool} travels {revolutions} farther before the spindle stops</source>
-      <translation>{tool} recorre todavía {revolutions} antes de que se pare el husillo</translation>
-    </message>
-    <message>
-      <location filename="core/proving/thread_checks.py" />
-      <source>{words}, which is more than a tap holder can compensate for.</source>
-      <translation>{words}, que es más de lo que puede compensar un portamachos.</translation>
-    </message>
-    <message>
-      <location filename="core/proving/unchecked_parts.py" />
-      <source>collisions with the chuck and jaws, and stock whip (these checks require a diameter in [clamping] and a stick-out)</source>
-      <translation>choques con plato y garras, y cabeceo del material en bruto (estas comprobaciones requieren un diámetro en [clamping] y un voladizo)</translation>
-    </message>
-    <message>
-      <location filename="core/proving/unchecked_parts.py" />
-      <source>maximum chuck speed (unknown: no max_rpm in [clamping])</source>
-      <translation>velocidad máxima del plato (desconocida: sin max_rpm en [clamping])</translation>
-    </message>
-    <message>
-      <location filename="core/proving/unchecked_parts.py" />
-      <source>{short}: maximum tool depth (unknown: no flute length defined)</source>
-      <translation>{short}: profundidad máxima de la herramienta (desconocida: sin largo de hélice definido)</translation>
-    </message>
-    <message>
-      <location filename="core/proving/unchecked_parts.py" />
-      <source>{tools}: collisions on the gang plate while a neighboring tool cuts (no tool shape defined)</source>
-      <translation>{tools}: choques en la placa mientras corta una herramienta vecina (sin forma de herramienta definida)</translation>
-    </message>
-    <message>
-      <location filename="core/proving/unchecked_parts.py" />
-      <source>{without}: tool holder, edge length and hand of the tool not defined</source>
-      <translation>{without}: portaherramientas, largo de filo y mano de la herramienta sin definir</translation>
+      <location filename="core/proving/prove_program.py" />
+      <source>With block delete {switch}: {item}</source>
+      <translation>Con salto de bloque {switch}: {item}</translation>
     </message>
     <message>
       <location filename="core/quality/availability.py" />
@@ -29889,27 +29889,27 @@
       <translation>la hora de inicio del registro, {started} s después del 1 de enero de 1970, no es válida</translation>
     </message>
     <message>
-      <location filename="core/records/record_errors.py" />
+      <location filename="core/records/record.py" />
       <source>{path} is damaged ({error}); open another scope record</source>
       <translation>{path} está dañado ({error}); abra otro registro del osciloscopio</translation>
     </message>
     <message>
-      <location filename="core/records/record_errors.py" />
+      <location filename="core/records/record.py" />
       <source>{path} is damaged; open another scope record</source>
       <translation>{path} está dañado; abra otro registro del osciloscopio</translation>
     </message>
     <message>
-      <location filename="core/records/record_errors.py" />
+      <location filename="core/records/record.py" />
       <source>{path}: file not found</source>
       <translation>{path}: no se encontró el archivo</translation>
     </message>
     <message>
-      <location filename="core/records/record_errors.py" />
+      <location filename="core/records/record.py" />
       <source>{path}: the disk is full; free up disk space</source>
       <translation>{path}: el disco está lleno; libere espacio en el disco</translation>
     </message>
     <message>
-      <location filename="core/records/record_errors.py" />
+      <location filename="core/records/record.py" />
       <source>{path}: {cause}, so the file is not a scope record; check the file name</source>
       <translation>{path}: {cause}; por eso el archivo no es un registro del osciloscopio; compruebe el nombre del archivo</translation>
     </message>
@@ -31210,8 +31210,38 @@
     </message>
     <message>
       <location filename="core/store/backup.py" />
+      <source>part counts</source>
+      <translation>contadores de piezas</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>secondary offsets</source>
+      <translation>correctores secundarios</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
       <source>the file is damaged: {text}</source>
       <translation>el archivo está dañado: {text}</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>tool lives</source>
+      <translation>vidas de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>tool offsets</source>
+      <translation>correctores de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>tool shapes</source>
+      <translation>formas de herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/backup.py" />
+      <source>zero offsets</source>
+      <translation>decalajes de origen</translation>
     </message>
     <message>
       <location filename="core/store/backup.py" />
@@ -31249,36 +31279,6 @@
       <translation>{which} no coincide con su suma de comprobación</translation>
     </message>
     <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>part counts</source>
-      <translation>contadores de piezas</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>secondary offsets</source>
-      <translation>correctores secundarios</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>tool lives</source>
-      <translation>vidas de herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>tool offsets</source>
-      <translation>correctores de herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>tool shapes</source>
-      <translation>formas de herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/store/backup_verdict.py" />
-      <source>zero offsets</source>
-      <translation>decalajes de origen</translation>
-    </message>
-    <message>
       <location filename="core/store/damaged_rows.py" />
       <source>clear the job from the queue ('turndesk jobs clear') and enter the job again</source>
       <translation>quite el trabajo de la cola ('turndesk jobs clear') e introdúzcalo otra vez</translation>
@@ -31300,8 +31300,98 @@
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
+      <source>entry {key} of the offset history</source>
+      <translation>la entrada {key} del historial de correctores</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the PIN entry</source>
+      <translation>la entrada de PIN</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
       <source>the database schema differs from the schema that TurnDesk created</source>
       <translation>el esquema de la base de datos difiere del que creó TurnDesk</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the event</source>
+      <translation>el evento</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the insert-change record</source>
+      <translation>el registro de cambio de plaquita</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the job</source>
+      <translation>el trabajo</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the measured feature</source>
+      <translation>la característica medida</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the part-count record</source>
+      <translation>el registro de cuenta de piezas</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the part-cycle record</source>
+      <translation>el registro de ciclo de pieza</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the production-stop record</source>
+      <translation>el registro de parada de producción</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the program record</source>
+      <translation>el registro de programa</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the program-run record</source>
+      <translation>el historial de corridas</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the program-version record</source>
+      <translation>el registro de versión de programa</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the reading</source>
+      <translation>la lectura</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the setting</source>
+      <translation>el ajuste</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the shared program</source>
+      <translation>el programa compartido</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the shared version</source>
+      <translation>la versión compartida</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the tool shape of {key}</source>
+      <translation>la forma de herramienta de {key}</translation>
+    </message>
+    <message>
+      <location filename="core/store/damaged_rows.py" />
+      <source>the tool-life record</source>
+      <translation>el registro de vida de herramienta</translation>
     </message>
     <message>
       <location filename="core/store/damaged_rows.py" />
@@ -31335,18 +31425,8 @@
     </message>
     <message>
       <location filename="core/store/database.py" />
-      <source> (process {owner})</source>
-      <translation> (proceso {owner})</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
       <source>an index of the stored data was damaged; TurnDesk rebuilt the index from its table, and no data was lost</source>
       <translation>un índice de los datos guardados estaba dañado; TurnDesk reconstruyó el índice a partir de su tabla y no se perdió ningún dato</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>malformed database schema</source>
-      <translation>esquema de la base de datos dañado</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -31355,28 +31435,8 @@
     </message>
     <message>
       <location filename="core/store/database.py" />
-      <source>the data store in {folder} is in use by another TurnDesk{who}; close that TurnDesk, or make the entry there</source>
-      <translation>otro TurnDesk{who} usa el almacén de datos en {folder}; ciérrelo, o haga la entrada allí</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
       <source>the folder {folder} cannot be created ({cause}); set TURNDESK_HOME to a folder that you own</source>
       <translation>no se puede crear la carpeta {folder} ({cause}); ponga TURNDESK_HOME en una carpeta suya</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>the last saved change</source>
-      <translation>el último cambio guardado</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>the last {count} saved changes</source>
-      <translation>los últimos {count} cambios guardados</translation>
-    </message>
-    <message>
-      <location filename="core/store/database.py" />
-      <source>the log of the data store was damaged and lost {lost} made before the control shut down. Check offsets, counts and settings before you make a part; the log is saved as {saved}</source>
-      <translation>la bitácora del almacén de datos estaba dañada y perdió {lost} de antes de que se cerrara el control. Revise correctores, contadores y ajustes antes de hacer una pieza; la bitácora está guardada como {saved}</translation>
     </message>
     <message>
       <location filename="core/store/database.py" />
@@ -31419,264 +31479,124 @@
       <translation>{path} fue escrito por un TurnDesk más nuevo (versión de almacén {version}, este admite {newest}) y no se cambió. Use el TurnDesk más nuevo</translation>
     </message>
     <message>
-      <location filename="core/store/database.py" />
-      <source>{path}: the log of this database is damaged, and {lost} cannot be read. Start turndesk once to save a copy of the log and continue with the earlier data, or restore a backup</source>
-      <translation>{path}: la bitácora de esta base de datos está dañada y no se puede leer {lost}. Inicie turndesk una vez para guardar una copia de la bitácora y continuar con los datos anteriores, o restaure un respaldo</translation>
-    </message>
-    <message>
       <location filename="core/store/event_log.py" />
       <source>the setting {key} cannot be stored: {error}</source>
       <translation>el ajuste {key} no se puede guardar: {error}</translation>
     </message>
     <message>
-      <location filename="core/store/job_queue.py" />
-      <source>a job must have 1 to {most_parts} parts, not {expected}</source>
-      <translation>un trabajo debe tener de 1 a {most_parts} piezas, no {expected}</translation>
+      <location filename="core/store/log_damage.py" />
+      <source>the last saved change</source>
+      <translation>el último cambio guardado</translation>
     </message>
     <message>
-      <location filename="core/store/job_queue.py" />
-      <source>a job note can have at most {note_longest} characters, on one line</source>
-      <translation>la nota de un trabajo puede tener como máximo {note_longest} caracteres, en una línea</translation>
+      <location filename="core/store/log_damage.py" />
+      <source>the last {count} saved changes</source>
+      <translation>los últimos {count} cambios guardados</translation>
     </message>
     <message>
-      <location filename="core/store/job_queue.py" />
-      <source>that job is not in the queue anymore</source>
-      <translation>ese trabajo ya no está en la cola</translation>
+      <location filename="core/store/log_damage.py" />
+      <source>the log of the data store was damaged and lost {lost} made before the control shut down. Check offsets, counts and settings before you make a part; the log is saved as {saved}</source>
+      <translation>la bitácora del almacén de datos estaba dañada y perdió {lost} de antes de que se cerrara el control. Revise correctores, contadores y ajustes antes de hacer una pieza; la bitácora está guardada como {saved}</translation>
     </message>
     <message>
-      <location filename="core/store/job_queue.py" />
-      <source>the data of this job does not match its checksum; clear the job from the queue and enter the job again</source>
-      <translation>los datos de este trabajo no coinciden con su suma de comprobación; quite el trabajo de la cola e introdúzcalo otra vez</translation>
+      <location filename="core/store/log_damage.py" />
+      <source>{path}: the log of this database is damaged, and {lost} cannot be read. Start turndesk once to save a copy of the log and continue with the earlier data, or restore a backup</source>
+      <translation>{path}: la bitácora de esta base de datos está dañada y no se puede leer {lost}. Inicie turndesk una vez para guardar una copia de la bitácora y continuar con los datos anteriores, o restaure un respaldo</translation>
     </message>
     <message>
-      <location filename="core/store/job_queue.py" />
-      <source>the queue is full ({most_jobs} jobs); remove finished jobs</source>
-      <translation>la cola está llena ({most_jobs} trabajos); quite los trabajos terminados</translation>
-    </message>
-    <message>
-      <location filename="core/store/measured_parts.py" />
-      <source>a reading must be a number; measure again</source>
-      <translation>una lectura debe ser un número; mida otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/store/measured_parts.py" />
-      <source>that reading has already been deleted</source>
-      <translation>esa lectura ya está borrada</translation>
-    </message>
-    <message>
-      <location filename="core/store/measured_parts.py" />
-      <source>the feature of this reading is not in the list of measured features anymore; nothing was saved</source>
-      <translation>la característica de esta lectura ya no está en la lista de características medidas; no se guardó nada</translation>
-    </message>
-    <message>
-      <location filename="core/store/measured_parts.py" />
-      <source>{program} already has a feature named {row}; give this feature another name</source>
-      <translation>{program} ya tiene una característica llamada {row}; dé otro nombre a esta</translation>
-    </message>
-    <message>
-      <location filename="core/store/measured_parts.py" />
-      <source>{row} is not in the list of measured features anymore; enter the feature again</source>
-      <translation>{row} ya no está en la lista de características medidas; introduzca la característica otra vez</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>up to {high} characters on one line</source>
-      <translation>hasta {high} caracteres en una línea</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>whole number</source>
-      <translation>número entero</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>yes or no</source>
-      <translation>sí o no</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_fields.py" />
-      <source>{low}…{high} in</source>
-      <translation>{low}…{high} pulg</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>G{number} does not exist; settable offsets are G54…G59</source>
-      <translation>G{number} no existe; los ceros ajustables son G54…G59</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>entry {entry} of the offset history is damaged; the offsets themselves are verified by separate checksums. Restore a backup to recover the history</source>
-      <translation>la entrada {entry} del historial de correctores está dañada; los correctores mismos se verifican con sumas propias. Restaure un respaldo para recuperar el historial</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>entry {key} of the offset history</source>
-      <translation>la entrada {key} del historial de correctores</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>no G54…G59 change to undo</source>
-      <translation>no hay cambio de G54…G59 que deshacer</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>no offset change to undo</source>
-      <translation>no hay cambio de corrector que deshacer</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>no preset change to undo</source>
-      <translation>no hay cambio de preset que deshacer</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>no tool data change to undo</source>
-      <translation>no hay cambio de datos de herramienta que deshacer</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>no tool shape change to undo</source>
-      <translation>no hay cambio de forma de herramienta que deshacer</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the PIN entry</source>
-      <translation>la entrada de PIN</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the event</source>
-      <translation>el evento</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the insert-change record</source>
-      <translation>el registro de cambio de plaquita</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the job</source>
-      <translation>el trabajo</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the measured feature</source>
-      <translation>la característica medida</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the offset of {number} has never been set, so the offsets of other tools cannot be relative to this tool; touch off this tool first</source>
-      <translation>el corrector de {number} nunca se fijó, así que los correctores de otras herramientas no pueden ser relativos a esta; tome antes la referencia de esta herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the offset of {number} has never been set; set cutting edge D1 of this tool before {number2}</source>
-      <translation>el corrector de {number} nunca se fijó; fije el filo D1 de esta herramienta antes de {number2}</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the part-count record</source>
-      <translation>el registro de cuenta de piezas</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the part-cycle record</source>
-      <translation>el registro de ciclo de pieza</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the production-stop record</source>
-      <translation>el registro de parada de producción</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the program record</source>
-      <translation>el registro de programa</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the program-run record</source>
-      <translation>el historial de corridas</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the program-version record</source>
-      <translation>el registro de versión de programa</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the reading</source>
-      <translation>la lectura</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the setting</source>
-      <translation>el ajuste</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the shared program</source>
-      <translation>el programa compartido</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the shared version</source>
-      <translation>la versión compartida</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the tool shape of {key}</source>
-      <translation>la forma de herramienta de {key}</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>the tool-life record</source>
-      <translation>el registro de vida de herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>{details} is out of range; enter {accepted}</source>
-      <translation>{details} está fuera de rango; introduzca {accepted}</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>{letter}{number} does not exist; offsets are {letter2}1…32</source>
-      <translation>{letter}{number} no existe; los correctores son {letter2}1…32</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>{letter}{number} does not exist; use 1 to {last}</source>
-      <translation>{letter}{number} no existe; use de 1 a {last}</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>{number} does not have a tool shape yet; enter the tool type first: {range}</source>
-      <translation>{number} aún no tiene forma de herramienta; introduzca primero el tipo de herramienta: {range}</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>{number} has other cutting edges; clear {edges} first</source>
-      <translation>{number} tiene otros filos; borre antes {edges}</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_tables.py" />
-      <source>{number} is an additional cutting edge; set cutting edge D1 of this tool as the master</source>
-      <translation>{number} es un filo adicional; haga maestro el filo D1 de esta herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/store/offset_undo.py" />
+      <location filename="core/store/offsets/offset_history.py" />
       <source>cutting edge {orphans} would be left without a tool; clear this cutting edge first</source>
       <translation>el filo {orphans} quedaría sin herramienta; borre antes ese filo</translation>
     </message>
     <message>
-      <location filename="core/store/offset_undo.py" />
+      <location filename="core/store/offsets/offset_history.py" />
       <source>offset {changed_since} was changed later; undo that change first</source>
       <translation>el corrector {changed_since} se cambió después; deshaga antes ese cambio</translation>
     </message>
     <message>
-      <location filename="core/store/offset_undo.py" />
+      <location filename="core/store/offsets/offset_history.py" />
       <source>{masters} would both be master tools; clear the current master first</source>
       <translation>{masters} serían maestras a la vez; quite antes la maestra actual</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>G{number} does not exist; settable offsets are G54…G59</source>
+      <translation>G{number} no existe; los ceros ajustables son G54…G59</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>entry {entry} of the offset history is damaged; the offsets themselves are verified by separate checksums. Restore a backup to recover the history</source>
+      <translation>la entrada {entry} del historial de correctores está dañada; los correctores mismos se verifican con sumas propias. Restaure un respaldo para recuperar el historial</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>no G54…G59 change to undo</source>
+      <translation>no hay cambio de G54…G59 que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>no offset change to undo</source>
+      <translation>no hay cambio de corrector que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>no preset change to undo</source>
+      <translation>no hay cambio de preset que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>no tool data change to undo</source>
+      <translation>no hay cambio de datos de herramienta que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>no tool shape change to undo</source>
+      <translation>no hay cambio de forma de herramienta que deshacer</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>the offset of {number} has never been set, so the offsets of other tools cannot be relative to this tool; touch off this tool first</source>
+      <translation>el corrector de {number} nunca se fijó, así que los correctores de otras herramientas no pueden ser relativos a esta; tome antes la referencia de esta herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>the offset of {number} has never been set; set cutting edge D1 of this tool before {number2}</source>
+      <translation>el corrector de {number} nunca se fijó; fije el filo D1 de esta herramienta antes de {number2}</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>{details} is out of range; enter {accepted}</source>
+      <translation>{details} está fuera de rango; introduzca {accepted}</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>{letter}{number} does not exist; offsets are {letter2}1…32</source>
+      <translation>{letter}{number} no existe; los correctores son {letter2}1…32</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>{letter}{number} does not exist; use 1 to {last}</source>
+      <translation>{letter}{number} no existe; use de 1 a {last}</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>{number} does not have a tool shape yet; enter the tool type first: {range}</source>
+      <translation>{number} aún no tiene forma de herramienta; introduzca primero el tipo de herramienta: {range}</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>{number} has other cutting edges; clear {edges} first</source>
+      <translation>{number} tiene otros filos; borre antes {edges}</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/offset_tables.py" />
+      <source>{number} is an additional cutting edge; set cutting edge D1 of this tool as the master</source>
+      <translation>{number} es un filo adicional; haga maestro el filo D1 de esta herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/store/offsets/touch_off.py" />
+      <source>the offset of {number} has never been set; touch off both X and Z</source>
+      <translation>el corrector de {number} nunca se fijó; tome referencia en X y Z</translation>
     </message>
     <message>
       <location filename="core/store/people.py" />
@@ -31692,6 +31612,61 @@
       <location filename="core/store/people.py" />
       <source>{name} is not in the list of users</source>
       <translation>{name} no está en la lista de usuarios</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/job_queue.py" />
+      <source>a job must have 1 to {most_parts} parts, not {expected}</source>
+      <translation>un trabajo debe tener de 1 a {most_parts} piezas, no {expected}</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/job_queue.py" />
+      <source>a job note can have at most {note_longest} characters, on one line</source>
+      <translation>la nota de un trabajo puede tener como máximo {note_longest} caracteres, en una línea</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/job_queue.py" />
+      <source>that job is not in the queue anymore</source>
+      <translation>ese trabajo ya no está en la cola</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/job_queue.py" />
+      <source>the data of this job does not match its checksum; clear the job from the queue and enter the job again</source>
+      <translation>los datos de este trabajo no coinciden con su suma de comprobación; quite el trabajo de la cola e introdúzcalo otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/job_queue.py" />
+      <source>the queue is full ({most_jobs} jobs); remove finished jobs</source>
+      <translation>la cola está llena ({most_jobs} trabajos); quite los trabajos terminados</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/measured_parts.py" />
+      <source>a reading must be a number; measure again</source>
+      <translation>una lectura debe ser un número; mida otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/measured_parts.py" />
+      <source>that reading has already been deleted</source>
+      <translation>esa lectura ya está borrada</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/measured_parts.py" />
+      <source>the feature of this reading is not in the list of measured features anymore; nothing was saved</source>
+      <translation>la característica de esta lectura ya no está en la lista de características medidas; no se guardó nada</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/measured_parts.py" />
+      <source>{program} already has a feature named {row}; give this feature another name</source>
+      <translation>{program} ya tiene una característica llamada {row}; dé otro nombre a esta</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/measured_parts.py" />
+      <source>{row} is not in the list of measured features anymore; enter the feature again</source>
+      <translation>{row} ya no está en la lista de características medidas; introduzca la característica otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/store/production/tool_lives.py" />
+      <source>tool T{number} does not exist; tools are T{numbers} to T{numbers2}</source>
+      <translation>la herramienta T{number} no existe; las herramientas son T{numbers} a T{numbers2}</translation>
     </message>
     <message>
       <location filename="core/store/program_records.py" />
@@ -31727,6 +31702,21 @@
       <location filename="core/store/store.py" />
       <source>{path} is open read-only; nothing can be stored</source>
       <translation>{path} está abierto solo para lectura; no se puede guardar nada</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_connection.py" />
+      <source> (process {owner})</source>
+      <translation> (proceso {owner})</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_connection.py" />
+      <source>malformed database schema</source>
+      <translation>esquema de la base de datos dañado</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_connection.py" />
+      <source>the data store in {folder} is in use by another TurnDesk{who}; close that TurnDesk, or make the entry there</source>
+      <translation>otro TurnDesk{who} usa el almacén de datos en {folder}; ciérrelo, o haga la entrada allí</translation>
     </message>
     <message>
       <location filename="core/store/store_errors.py" />
@@ -31844,6 +31834,26 @@
       <translation>cuadrante de punta</translation>
     </message>
     <message>
+      <location filename="core/store/store_rows.py" />
+      <source>up to {high} characters on one line</source>
+      <translation>hasta {high} caracteres en una línea</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>whole number</source>
+      <translation>número entero</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>yes or no</source>
+      <translation>sí o no</translation>
+    </message>
+    <message>
+      <location filename="core/store/store_rows.py" />
+      <source>{low}…{high} in</source>
+      <translation>{low}…{high} pulg</translation>
+    </message>
+    <message>
       <location filename="core/store/store_writer.py" />
       <source>not saved: {error}</source>
       <translation>sin guardar: {error}</translation>
@@ -31872,16 +31882,6 @@
       <location filename="core/store/store_writer.py" />
       <source>{dropped} events were lost because memory was full while no data could be saved</source>
       <translation>{dropped} eventos se perdieron porque la memoria estaba llena mientras no se podían guardar datos</translation>
-    </message>
-    <message>
-      <location filename="core/store/tool_lives.py" />
-      <source>tool T{number} does not exist; tools are T{numbers} to T{numbers2}</source>
-      <translation>la herramienta T{number} no existe; las herramientas son T{numbers} a T{numbers2}</translation>
-    </message>
-    <message>
-      <location filename="core/store/touch_off.py" />
-      <source>the offset of {number} has never been set; touch off both X and Z</source>
-      <translation>el corrector de {number} nunca se fijó; tome referencia en X y Z</translation>
     </message>
   </context>
 </TS>

@@ -17,17 +17,17 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from core.part.clamping import Clamping
 from core.part.cutter import Cutter
+from core.part.stock import Clamping
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import NOTHING, Cut
-from core.proving.air_checks import AirChecks
-from core.proving.edge_checks import EdgeChecks
-from core.proving.part_findings import PartFindings
+from core.proving.checks.cut_checks import AirChecks
+from core.proving.checks.edge_checks import EdgeChecks
+from core.proving.checks.part_findings import PartFindings
+from core.proving.checks.thread_checks import ThreadChecks
 from core.proving.part_proof import prove_with_part
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 from core.proving.prove_program import prove
-from core.proving.thread_checks import ThreadChecks
 
 ROUNDS = 15
 SHAPES = {

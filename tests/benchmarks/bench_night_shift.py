@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from app.desk.data_folder import HOME, data_folder
-from core.store import part_cycles
+from core.store.production import part_cycles
 from core.store.store import Store
 from tests.benchmarks.footprint import Footprint, footprint, keep_result, plain
 from tests.benchmarks.night_operator import Operator

@@ -15,10 +15,10 @@ from app.quality.readings_section import ReadingsSection
 from app.quality.tool_life_section import ToolLifeSection
 from core.executor.commands import ForceOutput
 from core.executor.snapshot import State
-from core.store import measured_parts, tool_lives
-from core.store.measured_parts import FeatureRow
+from core.store.production import measured_parts, tool_lives
+from core.store.production.measured_parts import FeatureRow
+from core.store.production.tool_lives import LifeRow
 from core.store.store_rows import Kind
-from core.store.tool_lives import LifeRow
 from tests.benchmarks.night_shift import FRAME, INCH, NAME, PATIENCE, TICK, TOOLS, NightShift
 
 PINS, INSERT = 40, 1500  # pins of a bar, parts of an insert

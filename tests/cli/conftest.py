@@ -11,7 +11,7 @@ import pytest
 
 from app.cli.main import main
 from app.compose import headless_run
-from core.coded_error import CodedError
+from core.message import CodedError
 from drivers.waiting import StepClock
 from tests.coded import recorded_refusals
 from tests.worked import worked

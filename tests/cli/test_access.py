@@ -17,7 +17,7 @@ import pytest
 import resources
 from app.cli.main import build_parser, main
 from core.access import pins
-from core.coded_error import CodedError
+from core.message import CodedError
 from core.store.store import Store
 from tests.texts import text as wording
 

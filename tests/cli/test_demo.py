@@ -15,9 +15,9 @@ from app.compose.stored_offsets import book_of, stored_offsets
 from app.desk.command_errors import CommandError
 from app.desk.desk import LAST_PROGRAM
 from app.desk.first_job import FirstJob
-from core.coded_error import CodedError
 from core.language.diagnostics import Severity
 from core.language.source import load_source
+from core.message import CodedError
 from core.proving.prove_program import prove
 from core.store.store import Store
 from core.store.store_rows import Kind

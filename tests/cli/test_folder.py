@@ -21,7 +21,7 @@ from app.cli.proof_pool import KILLED, Proving, Workers
 from app.cli.proof_work import Proof
 from app.compose.machine_setup import read_machine, setup_for
 from core.language.source import Source
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 from tests.benchmarks.bench_folder import program
 from tests.cli.conftest import Turndesk
 from tests.texts import text as wording

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from core.store import job_queue
+from core.store.production import job_queue
 from core.store.store import Store
 from tests.cli.conftest import Turndesk
 

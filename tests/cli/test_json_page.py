@@ -17,9 +17,10 @@ from app.shopfloor import json_keys as floor_keys
 from core.access.access_table import Level
 from core.access.pins import hashed
 from core.json_key import keys, row_keys
-from core.store import measured_parts, part_cycles, people, tool_lives
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow, StopRow
+from core.store import people
+from core.store.production import measured_parts, part_cycles, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_export import EVENTS, RUNS, TABLES
 from core.store.store_rows import EventRow, Kind, utc

@@ -11,7 +11,7 @@ import pytest
 
 import resources
 from app.cli.main import main
-from core.coded_error import CodedError
+from core.message import CodedError
 
 Captured = pytest.CaptureFixture[str]
 CAN = resources.machine_file("gt75-canopen.toml")

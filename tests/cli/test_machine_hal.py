@@ -9,7 +9,7 @@ import pytest
 
 import resources
 from app.cli.main import main
-from core.coded_error import CodedError
+from core.message import CodedError
 
 Captured = pytest.CaptureFixture[str]
 

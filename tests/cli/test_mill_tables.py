@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from core.store import tool_lives
+from core.store.production import tool_lives
+from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
 from core.store.store_rows import Kind, MillRow, PresetRow
-from core.store.tool_lives import LifeRow
 from tests.cli.conftest import Turndesk
 from tests.texts import shows
 

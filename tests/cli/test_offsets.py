@@ -15,7 +15,7 @@ from app.compose.journal import Journal
 from app.compose.machine_in_use import remember_machine
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
-from core.coded_error import CodedError
+from core.message import CodedError
 from core.store.store import Store
 from core.store.store_rows import SecondaryRow, ToolRow
 from drivers.waiting import StepClock

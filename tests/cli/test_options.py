@@ -13,8 +13,7 @@ import pytest
 
 from app.cli.command_parser import BEFORE
 from app.cli.main import build_parser, main
-from core.coded_error import CodedError
-from core.message import Message
+from core.message import CodedError, Message
 from tests.cli.conftest import Turndesk
 from tests.texts import text as wording
 

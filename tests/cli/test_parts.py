@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from core.store import measured_parts, part_cycles, tool_lives
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow, StopRow
+from core.store.production import measured_parts, part_cycles, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
-from core.store.tool_lives import LifeRow
 from tests.cli.conftest import Turndesk
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from core.store import part_cycles, tool_lives
+from core.store.production import part_cycles, tool_lives
+from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
-from core.store.tool_lives import LifeRow
 from tests.cli.conftest import Turndesk
 from tests.texts import shows
 

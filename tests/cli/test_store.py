@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from core.coded_error import CodedError
+from core.message import CodedError
 from core.store import database
 from core.store.store import Store
 from core.store.store_rows import SecondaryRow, ToolRow

@@ -11,11 +11,10 @@ import pytest
 from app.cli.main import main
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_rows, read_shape_rows, read_tool_shapes
-from core.coded_error import CodedError
+from core.message import CodedError
 from core.part.tool_shape import Hand, ToolKind, ToolShape
-from core.store.offset_fields import HANDS, TOOL_KINDS
 from core.store.store import Store
-from core.store.store_rows import Kind, ShapeRow, ToolRow
+from core.store.store_rows import HANDS, TOOL_KINDS, Kind, ShapeRow, ToolRow
 from tests.coded import recorded_refusals
 
 Captured = pytest.CaptureFixture[str]

@@ -43,13 +43,13 @@ from core.access.pins import Hashed, PinError, WrongPins, check_pin, hashed, is_
 from core.executor.executor import Executor
 from core.executor.snapshot import State
 from core.store import database
+from core.store.offsets.touch_off import Touch
 from core.store.people import PersonRow
+from core.store.production.tool_lives import insert_changes
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind
-from core.store.tool_lives import insert_changes
-from core.store.touch_off import Touch
 from drivers.waiting import StepClock
 from tests.texts import begins, pattern, shows
 from tests.texts import text as wording

@@ -16,8 +16,7 @@ from app.desk.screen_settings import Units
 from app.programs.copy_rename_delete import RENAME
 from app.programs.program_list import ProgramList
 from core.executor.commands import ConfirmStart, LoadJob
-from core.executor.interrupted_job import CONTROL_LOST
-from core.executor.snapshot import Snapshot, Starts, State
+from core.executor.snapshot import CONTROL_LOST, Snapshot, Starts, State
 from core.language.source import Dialect, Source
 from tests.interrupted import broken_off
 from tests.screen.desks import desk_on

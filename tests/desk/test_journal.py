@@ -12,8 +12,7 @@ import pytest
 from app.compose.journal import UNDER_WAY, Journal
 from app.desk.persistence import Persistence
 from app.offsets.offset_values import not_set
-from core.executor.interrupted_job import plain
-from core.executor.snapshot import Event
+from core.executor.snapshot import Event, plain
 from core.store.store import Store
 from core.store.store_errors import Cause, StoreError
 from core.store.store_file import FILE_NAME

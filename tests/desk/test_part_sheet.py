@@ -25,7 +25,7 @@ from core.executor.commands import Command
 from core.executor.snapshot import Snapshot, State
 from core.language.diagnostics import Diagnostic, Severity
 from core.part.stock_spec import stock_spec
-from core.proving.part_checks import CHECKS
+from core.proving.checks.part_checks import CHECKS
 from core.store.store_errors import StoreError
 from tests.desk.test_part_found import LIMIT, SHAFT, SLIP, TOOLS, TURNING
 from tests.texts import begins, shows

@@ -15,7 +15,7 @@ from core.interpreter.job_setup import MillTool, ToolOffset
 from core.language.source import Source
 from core.part.stock import Stock, bar
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 from tests.texts import begins
 from tests.texts import text as wording
 

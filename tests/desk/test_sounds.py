@@ -20,7 +20,7 @@ from app.desk.persistence import Persistence
 from app.desk.sounds import Sounds, play_aloud, tune
 from app.special.lamps_and_sound import DeskSounds
 from core.executor.snapshot import Snapshot, State
-from core.machine.signal_table import SIGNALS
+from core.machine.hardware_model import SIGNALS
 from tests.texts import text as wording
 
 REST = Snapshot(state=State.IDLE)

@@ -13,10 +13,9 @@ from app.compose.workshop import samples, workshop
 from app.desk.latest import AbandonedError
 from app.desk.program_loading import Proved
 from app.desk.start_verdict import KnownPart, StartJudge, StartQuestion, with_verdict
-from core.executor.interrupted_job import ESTOP, InterruptedJob
+from core.executor.commands import CROSSES, INSIDE
 from core.executor.job import Proof
-from core.executor.snapshot import Starts
-from core.executor.start_clearance import CROSSES, INSIDE
+from core.executor.snapshot import ESTOP, InterruptedJob, Starts
 from core.language.source import Source, load_source
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_history import PartHistory

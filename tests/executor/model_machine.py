@@ -15,8 +15,7 @@ from typing import Any
 
 from core.executor.commands import Command
 from core.executor.executor import Executor
-from core.executor.job import Job
-from core.executor.read_ahead import ProgramPass
+from core.executor.job import Job, ProgramPass
 from core.executor.snapshot import ACTIVE, BY_HAND, CYCLE, STOPPED, Snapshot, State
 from core.executor.start_conditions import TIME_TO_READ
 from core.interpreter.elementary_blocks import Block, Kind

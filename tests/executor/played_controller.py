@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 
 from app.compose.machine_files import load_machine
 from app.compose.simulated_backend import simulated
-from core.executor.commanded_outputs import CommandedOutputs
 from core.executor.machine_context import MachineContext
+from core.executor.signals import CommandedOutputs, StationSignals
 from core.executor.snapshot import Event
 from core.executor.spindle_control import SpindleControl
-from core.executor.station_signals import StationSignals
 from core.machine.machine_model import Machine
 from core.ports import BlockOp, BlockState
 from drivers.waiting import StepClock

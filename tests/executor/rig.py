@@ -12,10 +12,8 @@ from app.compose.machine_setup import control_limits
 from app.compose.simulated_backend import simulated
 from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
-from core.executor.interrupted_job import InterruptedJob
-from core.executor.job import Job, Proof, interpret, make_job
-from core.executor.read_ahead import ProgramPass
-from core.executor.snapshot import Event, Snapshot, State
+from core.executor.job import Job, ProgramPass, Proof, interpret, make_job
+from core.executor.snapshot import Event, InterruptedJob, Snapshot, State
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import Setup, ToolOffset
 from core.language.source import Source

@@ -7,8 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from core.executor.commands import CycleStart, LoadJob, SetSwitch
-from core.executor.job import Job, Proof, interpret, make_job
-from core.executor.read_ahead import ProgramPass
+from core.executor.job import Job, ProgramPass, Proof, interpret, make_job
 from core.executor.snapshot import State
 from core.interpreter.actions import Dwell, ProgramEnd
 from core.interpreter.dialects import interpretation

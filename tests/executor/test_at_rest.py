@@ -10,8 +10,7 @@ import pytest
 from app.compose.machine_files import load_machine
 from app.compose.simulated_backend import sim_config
 from core.executor.commands import EnableDrives, ForceOutput, Jog, SetSwitch
-from core.executor.executor import Executor
-from core.executor.rest import RESTS
+from core.executor.executor import RESTS, Executor
 from core.executor.snapshot import State
 from core.ports import DriverError, Stop
 from drivers.simulated.simulated_machine import build_simulation

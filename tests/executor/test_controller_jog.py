@@ -6,8 +6,8 @@ import dataclasses
 
 import pytest
 
-from core.executor.jog_line import LIMIT_MARGIN, JogLine
-from core.executor.jogging import BlockJogger, Jogger, jogger_of
+from core.executor.hand_motion.jog_line import LIMIT_MARGIN, JogLine
+from core.executor.hand_motion.jogging import BlockJogger, Jogger, jogger_of
 from core.executor.machine_context import MachineContext
 from tests.executor.played_controller import PlayedController, context_of
 from tests.texts import text

@@ -7,10 +7,10 @@ import math
 
 import pytest
 
-from core.executor.controller_motion import LONGEST, ControllerMotion, Turning, parts_of
-from core.executor.path_section import Progress
+from core.executor.job import ProgramPass, ReadAhead
+from core.executor.program_motion.controller_motion import LONGEST, ControllerMotion, Turning, parts_of
+from core.executor.program_motion.path_section import Progress
 from core.executor.raised_alarm import AlarmError
-from core.executor.read_ahead import ProgramPass, ReadAhead
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.machine_requirements import first_needs, needs_of
 from core.interpreter.modal_state import Modal

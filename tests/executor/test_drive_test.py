@@ -18,7 +18,16 @@ from core.executor.commands import (
     Reset,
     Wheel,
 )
-from core.executor.drive_test_path import PAUSE, DriveTestPath, Limits, Shape, braking, cut, reach, seconds
+from core.executor.hand_motion.drive_test import (
+    PAUSE,
+    DriveTestPath,
+    Limits,
+    Shape,
+    braking,
+    cut,
+    reach,
+    seconds,
+)
 from core.executor.snapshot import State
 from tests.executor.rig import FINE, INCH, TICK, Rig
 from tests.executor.test_jog_steps import nothing_homed

@@ -12,7 +12,7 @@ import pytest
 from core.executor.commands import CycleStart, ForceOutput
 from core.executor.executor import Executor
 from core.executor.snapshot import State
-from core.ports import Trip
+from core.faults import Trip
 from tests.executor.rig import Rig
 from tests.executor.test_signal_lamps import with_lamps
 from tests.texts import text

@@ -6,10 +6,19 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from core.executor.commands import CycleStart, GiveClearance, JogStep, Prepare, SetSwitch
+from core.executor.commands import (
+    CROSSES,
+    INSIDE,
+    UNCHECKED,
+    Clearance,
+    CycleStart,
+    GiveClearance,
+    JogStep,
+    Prepare,
+    SetSwitch,
+)
 from core.executor.job import Job
 from core.executor.snapshot import Starts, State
-from core.executor.start_clearance import CROSSES, INSIDE, UNCHECKED, Clearance
 from tests.executor.lines import TOOLS
 from tests.executor.rig import Rig
 from tests.executor.test_restart import PART

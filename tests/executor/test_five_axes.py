@@ -10,8 +10,8 @@ import pytest
 from app.compose.machine_files import parse_machine
 from core.executor.commands import FeedHold
 from core.executor.snapshot import Snapshot, State
-from core.geometry.machine_travel import Travel
 from core.geometry.rotary_axes import Kinematics, PivotMove, Rotary, Slide
+from core.geometry.working_plane import Travel
 from core.interpreter.actions import ProgramEnd
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal

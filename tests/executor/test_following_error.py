@@ -8,8 +8,8 @@ import pytest
 
 from app.compose.machine_files import load_machine
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Jog, Reset, SetSwitch
-from core.executor.following_error import FollowingErrorWatch
 from core.executor.raised_alarm import AlarmError
+from core.executor.safety.supervision import FollowingErrorWatch
 from core.executor.snapshot import State
 from core.ports import AxisSample
 from tests.coded import raises_code

@@ -20,7 +20,7 @@ from core.executor.commands import (
     Wheel,
     WheelOff,
 )
-from core.executor.handwheel import WheelClicks
+from core.executor.hand_motion.handwheel import WheelClicks
 from core.executor.snapshot import State
 from core.machine.hardware_model import AnalogModel
 from core.machine.machine_model import InputModel, Machine

@@ -19,8 +19,7 @@ from core.executor.commands import (
     Reset,
     SetSwitch,
 )
-from core.executor.interrupted_job import CLOSED, CONTROL_LOST, ESTOP, GIVEN_UP, of_plain, plain
-from core.executor.snapshot import Starts, State
+from core.executor.snapshot import CLOSED, CONTROL_LOST, ESTOP, GIVEN_UP, Starts, State, of_plain, plain
 from tests.executor.lines import TOOLS, mdi, press
 from tests.executor.rig import INCH, Rig
 from tests.executor.test_restart import PART, broken_off, restart

@@ -10,19 +10,16 @@ import re
 import pytest
 
 from app.compose.machine_files import load_machine
-from core.executor.attempt import ReportedAttempt
-from core.executor.changed_offsets import ChangedOffsets
-from core.executor.drive_test import DriveTester
-from core.executor.drive_test_path import DriveTestPath, Shape
-from core.executor.job import Job, Proof, make_job, outdated
-from core.executor.jogging import Jogger
-from core.executor.path_section import PathSection
-from core.executor.raised_alarm import AlarmError
-from core.executor.read_ahead import check_block
+from core.executor.hand_motion.drive_test import DriveTester, DriveTestPath, Shape
+from core.executor.hand_motion.jogging import Jogger
+from core.executor.job import Job, Proof, check_block, make_job, outdated
+from core.executor.program_motion.path_section import PathSection
+from core.executor.program_run import ChangedOffsets
+from core.executor.raised_alarm import AlarmError, ReportedAttempt
+from core.executor.signals import StationSignals
 from core.executor.snapshot import State
 from core.executor.spindle_control import SpindleAngle, SpindleControl, SpindleDemand
 from core.executor.start_conditions import hindrance, lacking
-from core.executor.station_signals import StationSignals
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import Setup
 from core.interpreter.machine_requirements import ARC, THREAD, Need

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.executor.jog_line import Ramp
-from core.executor.jogging import reach_ramps
+from core.executor.hand_motion.jog_line import Ramp
+from core.executor.hand_motion.jogging import reach_ramps
 
 A = 3048.0
 SPEEDS = st.floats(-42.0, 42.0)

@@ -18,7 +18,7 @@ from core.executor.recorder import KEPT, Recorder, recorded_of, rotate
 from core.executor.snapshot import Event, State, Tick
 from core.machine.hardware_model import AnalogModel
 from core.ports import ALL_UNKNOWN, DriverError, FloatArray, SampleSource, Unknown
-from core.records.record_errors import RecordError
+from core.records.record import RecordError
 from core.records.record_file import open_record
 from core.records.ring_file import NOW, read_ring
 from tests.executor.rig import FINE, INCH, Rig

@@ -10,8 +10,8 @@ from app.compose.workshop import proof_of
 from app.searchto.searchto_model import WAY_OUT
 from app.searchto.searchto_plan import way_out_of
 from core.executor.commands import CycleStart, FeedHold, LoadJob, Prepare, Reset
+from core.executor.control_status import Workpiece
 from core.executor.job import Job, Proof, make_job
-from core.executor.parts_made import Workpiece
 from core.executor.snapshot import Snapshot, Starts, State
 from core.interpreter.checkpoint import Leg
 from core.interpreter.restart.restart_approach import Choices

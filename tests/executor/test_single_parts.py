@@ -19,16 +19,16 @@ from core.executor.commands import (
     SetSwitch,
     SpindleLimit,
 )
-from core.executor.drive_test_path import DriveTestPath, Limits, Shape
-from core.executor.homing_order import Homing
-from core.executor.jogging import jog_ramps
+from core.executor.hand_motion.drive_test import DriveTestPath, Limits, Shape
+from core.executor.hand_motion.jogging import jog_ramps
+from core.executor.hand_motion.touch_off import Homing
 from core.executor.machine_context import MachineContext
+from core.executor.program_motion.standstill import at_speed
+from core.executor.program_motion.thread_path import ThreadPath
 from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import State
 from core.executor.spindle_control import SpindleAngle, SpindleDemand
 from core.executor.spindle_orientation import Orientation
-from core.executor.standstill import at_speed
-from core.executor.thread_path import ThreadPath
 from core.ports import AxisSample, Stop
 from tests.coded import raises_code
 from tests.executor.played_controller import context_of

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from core.executor.station_signals import StationWatch
+from core.executor.signals import StationWatch
 from core.ports import StationState
 from tests.texts import text
 

@@ -7,7 +7,7 @@ import pytest
 
 from app.compose.machine_files import shipped_machine
 from app.compose.machine_setup import setup_for
-from core.executor.path_section import Overrides, PathSection
+from core.executor.program_motion.path_section import Overrides, PathSection
 from core.executor.snapshot_publisher import _feed
 from core.interpreter.dialects import interpretation
 from core.interpreter.job_setup import ToolOffset

@@ -9,11 +9,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from core.executor.program_motion.setpoint_motion import SetpointMotion
+from core.executor.program_motion.thread_curve import curve_of
+from core.executor.program_motion.thread_path import ThreadPath, ThreadRetract
 from core.executor.raised_alarm import AlarmError
-from core.executor.setpoint_motion import SetpointMotion
 from core.executor.spindle_control import SpindleDemand
-from core.executor.thread_curve import curve_of
-from core.executor.thread_path import ThreadPath, ThreadRetract
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from core.motion.axis_limits import MotionLimits

@@ -10,8 +10,7 @@ import pytest
 
 from core.executor.commands import EnableDrives
 from core.executor.executor import Executor
-from core.executor.snapshot import State
-from core.executor.watchdog import (
+from core.executor.safety.watchdog import (
     AGAIN,
     OTHERS,
     PATIENT,
@@ -22,6 +21,7 @@ from core.executor.watchdog import (
     WatchdogWatch,
     running,
 )
+from core.executor.snapshot import State
 from drivers.grblhal import grblhal_codes
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.grbl import Grblhal

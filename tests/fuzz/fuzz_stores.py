@@ -12,14 +12,15 @@ from functools import cache, partial
 from pathlib import Path
 
 from app.quality.parts_book import parts_data
-from core.store import backup, measured_parts, tool_lives
-from core.store.measured_parts import FeatureRow, ReadingRow
+from core.store import backup
+from core.store.production import measured_parts, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind
-from core.store.tool_lives import LifeRow
 from tests.fuzz.fuzz_target import Target
 
 _EDIT = 6  # bytes of one change

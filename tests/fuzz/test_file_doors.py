@@ -16,14 +16,14 @@ from app.compose.setup_file import check_setup
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_rows, read_tool_shapes
 from app.programs.whole_file import FileError, present
-from core.coded_error import CodedError
 from core.drawings.drawing import DrawingError
 from core.drawings.drawing_file import read_drawing
 from core.input_file import NotAFileError, TooLargeError, failures_as, input_bytes, open_input
 from core.language.source import SourceError, load_source
 from core.machine.machine_file import text_of
+from core.message import CodedError
 from core.ports import DriverError
-from core.records.record_errors import RecordError
+from core.records.record import RecordError
 from core.records.record_file import open_record
 from core.store import backup
 from core.store.store_errors import StoreError

@@ -15,8 +15,7 @@ from core.geometry.chamfer_and_rounding import (
     chamfer,
     rounding,
 )
-from core.geometry.intersections import distance
-from core.geometry.lines_and_arcs import Line, turn
+from core.geometry.lines_and_arcs import Line, distance, turn
 from tests.coded import raises_code
 from tests.geometry.contours import follow
 

@@ -10,8 +10,7 @@ from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
 from core.geometry.contour_offset import JOINED, WINDOW, GougeError, Offset, offset_element, pieces_beside
-from core.geometry.intersections import clearance, distance
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, clearance, distance
 from tests.geometry.contours import CONTOURS, arc, follow, polyline, sampled
 
 pytestmark = pytest.mark.long

@@ -8,8 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from core.geometry.intersections import distance
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, distance
 from core.geometry.pocket_area import AreaError, Loop, Winding, boundary, goes_round, inset
 
 

@@ -9,10 +9,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from core.geometry.contour_offset import TrimError, trimmed_offset
-from core.geometry.intersections import distance
-from core.geometry.lines_and_arcs import Arc, Element, Line
-from core.geometry.roughing_area import Area
+from core.geometry.contour_offset import Area, TrimError, trimmed_offset
+from core.geometry.lines_and_arcs import Arc, Element, Line, distance
 from tests.geometry.contours import arc, polyline, sampled
 
 STEP = polyline((10, 1), (6, 1), (6, 20), (2, 20))

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
-from core.geometry.intersections import distance
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between, distance
 from core.interpreter.elementary_blocks import Block, Kind
 
 

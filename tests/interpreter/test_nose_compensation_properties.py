@@ -9,8 +9,7 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
-from core.geometry.intersections import distance
-from core.geometry.lines_and_arcs import Element, Point, centre_from_radius
+from core.geometry.lines_and_arcs import Element, Point, centre_from_radius, distance
 from core.interpreter.adjusted_moves import element_of
 from core.interpreter.elementary_blocks import Block, Kind
 from tests.geometry.contours import sampled

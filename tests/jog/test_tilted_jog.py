@@ -12,7 +12,7 @@ from app.compose.kinematics_chain import kinematics_of
 from app.compose.machine_files import parse_machine, shipped_machine
 from app.jog.tilted_jog import JogFrame, TiltedJog, jog_frame
 from core.executor.commands import Jog, JogStep, JogStop
-from core.executor.jog_line import JogLine
+from core.executor.hand_motion.jog_line import JogLine
 from core.executor.snapshot import Snapshot, State
 from core.geometry.rotation_frames import IDENTITY, X_AXIS, turned
 from core.interpreter.working_plane import PlaneSystem, Swivel

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from core.geometry.plane_arcs import HelixMove
+from core.geometry.working_plane import HelixMove
 from core.interpreter.elementary_blocks import Block, Kind
 from tests.klartext.running import Ran, run
 

@@ -8,7 +8,7 @@ import pytest
 
 import resources
 from app.compose.machine_files import parse_machine
-from core.machine.machine_changes import ABSENT, changes
+from core.machine.machine_file import ABSENT, changes
 from core.table_schema import HIDDEN, MachineFileError
 
 SHIPPED = resources.machine_file("gt75.toml")

@@ -8,7 +8,7 @@ import pytest
 
 import resources
 from app.compose.machine_files import load_machine, parse_machine
-from core.machine.serial_table import DncModel
+from core.machine.desk_tables import DncModel
 from core.table_schema import Finding, MachineFileError
 from drivers.canopen.canopen_nodes import CanTerminal, can_terminal
 from drivers.canopen.canopen_table import CanopenTable

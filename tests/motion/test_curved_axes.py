@@ -15,8 +15,7 @@ from core.geometry.virtual_mill import Face, PlaneMove, Side, Spot
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from core.motion.axis_limits import OVERRIDE_MAX, FloatArray, MotionError, MotionLimits
-from core.motion.curved_axes import CHORD_ERROR, chords
-from core.motion.motion_path import Path
+from core.motion.motion_path import CHORD_ERROR, Path, chords
 from core.motion.motion_plan import plan
 from core.motion.motion_profile import Profile
 from core.motion.window_planner import sample_positions

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.geometry.machine_travel import Travel
 from core.geometry.surface_speed import surface_rpm
+from core.geometry.working_plane import Travel
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.modal_state import Modal
 from core.motion.axis_limits import MotionError
 from core.motion.block_table import read_blocks
-from core.motion.feed_rates import surface_rpms
 from core.motion.motion_plan import plan
+from core.motion.speed_limits import surface_rpms
 from tests.coded import raises_code
 from tests.motion.moves import LIMITS, A, Point, arc, line
 from tests.motion.paths import build_path

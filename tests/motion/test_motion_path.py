@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from core.motion.axis_limits import MotionError
-from core.motion.chord_smoothing import ends_in_chord
 from core.motion.motion_path import PathBuilder
 from core.motion.motion_plan import plan
+from core.motion.path_pieces import ends_in_chord
 from tests.coded import raises_code
 from tests.motion.moves import LIMITS, arc, line, polyline
 from tests.motion.paths import build_path

@@ -11,9 +11,9 @@ import pytest
 from core.interpreter.elementary_blocks import Block, Kind
 from core.motion.axis_limits import FloatArray, IntArray, MotionError, MotionLimits
 from core.motion.block_table import table_of
-from core.motion.chord_smoothing import unrounded
 from core.motion.motion_path import PathBuilder
 from core.motion.motion_plan import plan, reachable_forward, settled_joints
+from core.motion.path_pieces import unrounded
 from core.motion.speed_limits import JointDemand, demand_over_intervals
 from core.motion.window_planner import ChunkPlanner
 from tests.coded import raises_code

@@ -7,8 +7,7 @@ import pytest
 from app.offsets.tool_shapes import ToolShapes
 from core.executor.snapshot import State
 from core.part.tool_shape import ToolKind
-from core.store.offset_fields import TOOL_KINDS
-from core.store.store_rows import Kind, ShapeRow
+from core.store.store_rows import TOOL_KINDS, Kind, ShapeRow
 from tests.offsets.conftest import LIMIT, Room
 from tests.screen.yes import read
 from tests.texts import shows, text

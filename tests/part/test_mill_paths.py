@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from core.geometry.virtual_mill import Face, PlaneMove, Side
-from core.part.mill_paths import CHORD, axial_path, locked_path, plane_path, radial_path
 from core.part.milled_part import MilledPart
 from core.part.polar_field import turned_field
+from core.part.ray_cuts import CHORD, axial_path, locked_path, plane_path, radial_path
 
 
 def bar() -> MilledPart:

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from core.part.milled_part import MilledPart
-from core.part.part_errors import PartError
 from core.part.polar_field import turned_field
 from core.part.ray_cuts import FloatArray
+from core.part.tool_polygons import PartError
 from tests.coded import raises_code
 
 R, LENGTH = 10.0, 20.0

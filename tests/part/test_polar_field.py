@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from core.part.part_errors import PartError
 from core.part.polar_field import PolarField, in_order, turned_field
+from core.part.tool_polygons import PartError
 from tests.coded import raises_code
 
 ALL = slice(None)

@@ -11,7 +11,7 @@ from core.part.stock import Stock
 from core.part.tool_outline import outline
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Cut, TurnedPart
-from core.proving.part_findings import RAPID
+from core.proving.checks.part_findings import RAPID
 
 NOSE = 0.4
 TOOL = ToolShape(ToolKind.TURNING, tip=3, nose_radius=NOSE, insert="VNMG160404")

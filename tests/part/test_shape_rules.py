@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from core.part.holder_codes import Holder, holder_of
+from core.part.insert_codes import Holder, holder_of
 from core.part.shape_rules import FIELDS_OF, shape_mistakes
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 

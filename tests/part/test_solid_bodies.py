@@ -7,11 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from core.part.clamping import Clamping
 from core.part.solid_bodies import Round, ToolBody, chuck_solid
 from core.part.solid_picture import Colours, Image, Scene, SolidPicture
 from core.part.solid_view import SolidView
-from core.part.stock import bar
+from core.part.stock import Clamping, bar
 from core.part.surface_points import Solid, turned_solid
 
 WIDTH, HEIGHT = 400, 300

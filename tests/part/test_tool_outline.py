@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from core.part.insert_codes import InsertCodeError
-from core.part.part_errors import PartError
 from core.part.tool_outline import ToolOutline, nose_circle, outline
-from core.part.tool_polygons import FloatArray, area
+from core.part.tool_polygons import FloatArray, PartError, area
 from core.part.tool_shape import ROUND_TOOLS, Hand, ToolKind, ToolShape
 from core.tool_edges import TIP_DIRECTIONS
 from tests.coded import raises_code

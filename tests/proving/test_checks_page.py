@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
-from core.proving import air_checks, cut_sizes, edge_checks, part_findings, thread_checks
+from core.proving.checks import cut_checks, edge_checks, part_findings, thread_checks
+from core.proving.checks.part_checks import CHECKS, PROGRAM_CHECKS
 from core.proving.checks_page import main, page
-from core.proving.part_checks import CHECKS, PROGRAM_CHECKS
 
-MODULES = (part_findings, air_checks, cut_sizes, edge_checks, thread_checks)
+MODULES = (part_findings, cut_checks, cut_checks, edge_checks, thread_checks)
 ROOT = Path(__file__).parents[2]
 
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from core.part.clamping import Clamping
-from core.part.stock import bar, tube
+from core.part.stock import Clamping, bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.cut_sizes import depth_limit
+from core.proving.checks.cut_checks import depth_limit
 from tests.proving.test_edge_checks import part_of
 from tests.proving.test_part_proof import WAYS, text
 from tests.proving.test_sound_programs import part_of as assumed_part_of

@@ -8,12 +8,11 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
-from core.part.clamping import Clamping
-from core.part.stock import Stock, bar, tube
+from core.part.stock import Clamping, Stock, bar, tube
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.proving.part_proof import prove_with_part
-from core.proving.part_report import PartReport
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
+from core.proving.proof_report import PartReport
 from tests.proving.test_part_proof import WAYS, text
 from tests.texts import text as text_of
 

@@ -11,8 +11,7 @@ from core.part.cutter import Cutter, Side
 from core.part.stock import bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import TurnedPart
-from core.proving.mill_moves import MillMove
-from core.proving.milling import Milling
+from core.proving.milling import Milling, MillMove
 
 DRILL = ToolShape(ToolKind.END_MILL, tip=8, diameter=4.0)
 BLOCK = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 30.0], [0.0, 30.0]])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.part.turned_part import Piece, Profile
-from core.proving.part_features import Feature, FeatureKind, Pair, features, matched
+from core.proving.other_offsets import Feature, FeatureKind, Pair, features, matched
 
 STEPPED: Profile = [(0.0, 10.0), (-20.0, 10.0), (-20.0, 15.0), (-40.0, 15.0)]
 

@@ -12,16 +12,14 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
-from core.part.clamping import Clamping
 from core.part.solid_bodies import Round
-from core.part.stock import bar
+from core.part.stock import Clamping, bar
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving import part_copies, part_history
+from core.proving import part_history, part_instant
 from core.proving.part_history import PartGathering, PartHistory, PartMoves, share_along
 from core.proving.part_instant import PartInstant
 from core.proving.part_making import PartMaking
-from core.proving.part_setting import PartSetting
-from core.proving.program_tools import ProgramTools
+from core.proving.program_tools import PartSetting, ProgramTools
 from core.proving.prove_program import prove
 from core.proving.tip_moves import LiveStep
 
@@ -59,7 +57,7 @@ def straight_through(seen: PartHistory, blocks: int) -> PartMaking:
 def test_any_block_in_any_order_is_as_made_straight_through(
     every: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(part_copies, "_EVERY", every)
+    monkeypatch.setattr(part_instant, "_EVERY", every)
     seen = history(SHAFT)
     count = len(seen.steps)
     for block in [count, 3, 7, 2, count - 1, 0, 5, 5, 6, count]:
@@ -132,8 +130,8 @@ def test_a_parted_piece_is_gone() -> None:
 
 
 def test_copies_stay_within_their_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(part_copies, "_EVERY", 1)
-    monkeypatch.setattr(part_copies, "_MOST_COPIES", 4)
+    monkeypatch.setattr(part_instant, "_EVERY", 1)
+    monkeypatch.setattr(part_instant, "_MOST_COPIES", 4)
     seen = history(SHAFT)
     seen.at(len(seen.steps))
     assert len(seen._kept._copies) <= 4
@@ -212,7 +210,7 @@ MILLED = HEAD + (
 
 
 def test_what_is_milled_is_replayed_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(part_copies, "_EVERY", 2)
+    monkeypatch.setattr(part_instant, "_EVERY", 2)
     seen = history(MILLED, MILL)
     count = len(seen.steps)
     for block in [count, 4, count - 4, count - 3, 0, count]:
@@ -290,7 +288,7 @@ def test_what_a_live_tool_hits_at_a_rapid_has_its_place() -> None:
 
 
 def test_copies_of_a_milled_part_share_what_nothing_has_touched(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(part_copies, "_EVERY", 1)
+    monkeypatch.setattr(part_instant, "_EVERY", 1)
     seen = history(MILLED, MILL)
     seen.at(len(seen.steps))
     kept = [field for _, field, _ in seen._kept._copies.values() if field is not None]

@@ -16,15 +16,13 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
-from core.part.clamping import Clamping
-from core.part.stock import Stock, bar, tube
+from core.part.stock import Clamping, Stock, bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_proof
 from core.proving.assumed_tools import edge_width
 from core.proving.part_proof import prove_with_part
-from core.proving.part_report import PartReport
-from core.proving.part_setting import PartSetting
-from core.proving.proof_report import Report
+from core.proving.program_tools import PartSetting
+from core.proving.proof_report import PartReport, Report
 from tests.texts import shows
 from tests.texts import text as text_of
 from tests.worked import FOLDER, worked

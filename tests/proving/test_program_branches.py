@@ -19,7 +19,7 @@ from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.language.diagnostics import Severity
 from core.language.source import Source, load_source
 from core.proving import program_branches
-from core.proving.machine_checks import travel_findings
+from core.proving.checks.machine_checks import travel_findings
 from core.proving.proof_report import Report
 from core.proving.prove_program import prove
 from tests.screen.desks import SAMPLES

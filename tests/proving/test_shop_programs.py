@@ -20,8 +20,7 @@ from core.language.source import Source
 from core.machine.machine_model import ClampingModel
 from core.part.stock_spec import stock_spec
 from core.proving.part_proof import prove_with_part
-from core.proving.part_report import PartReport
-from core.proving.proof_report import Report
+from core.proving.proof_report import PartReport, Report
 
 FOLDER = Path(__file__).parent / "shop_programs"
 JOBS: dict[str, dict[str, Any]] = tomllib.loads((FOLDER / "jobs.toml").read_text())

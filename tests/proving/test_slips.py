@@ -17,9 +17,9 @@ from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Source
-from core.proving.part_checks import is_serious
+from core.proving.checks.part_checks import is_serious
 from core.proving.part_proof import prove_with_part
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 
 PROGRAMS = Path(__file__).parents[2] / "resources" / "programs"
 _FEED = re.compile(r"(G9[45])?F\.?\d[\d.]*|G01")

@@ -9,8 +9,8 @@ from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.source import Source
 from core.proving.part_proof import prove_with_part
-from core.proving.part_report import PartReport
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
+from core.proving.proof_report import PartReport
 
 PROGRAMS = {
     "a spindle switched by hand, and no G00": """G90G94F300G72

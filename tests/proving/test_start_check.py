@@ -15,11 +15,10 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.job_setup import ToolOffset
 from core.interpreter.modal_state import Modal
 from core.language.source import Source
-from core.part.clamping import Clamping
-from core.part.stock import bar
+from core.part.stock import Clamping, bar
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_history import PartGathering, PartHistory
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 from core.proving.prove_program import prove
 from core.proving.start_check import Body, FirstMove, Passes, StartCheck, StartNow
 

@@ -12,14 +12,13 @@ from app.compose.machine_setup import setup_for
 from core.interpreter.job_setup import ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import Source
-from core.part.clamping import Clamping
-from core.part.stock import Stock, bar, tube
+from core.part.stock import Clamping, Stock, bar, tube
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.part_checks import CHECKS
+from core.proving.checks.part_checks import CHECKS
+from core.proving.checks.thread_checks import Drives
 from core.proving.part_proof import prove_with_part
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 from core.proving.prove_program import prove
-from core.proving.thread_checks import Drives
 from core.tool_edges import edge_key
 from tests.proving import test_edge_checks, test_part_proof, test_thread_checks
 from tests.proving.test_part_proof import text

@@ -17,9 +17,9 @@ from core.language.source import Source
 from core.part.stock import Stock, bar, tube
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.proving.assumed_tools import groove_width, tap_size
+from core.proving.checks.thread_checks import Drives
 from core.proving.part_proof import prove_with_part
-from core.proving.part_setting import PartSetting
-from core.proving.thread_checks import Drives
+from core.proving.program_tools import PartSetting
 from core.proving.tip_moves import TipMove
 from tests.proving.test_part_proof import WAYS, text
 

@@ -11,8 +11,8 @@ from app.quality.cycle_recorder import BETWEEN, COMPLETE, GIVEN_UP, RESTARTED, U
 from core.executor.commands import CycleStart, FeedHold, PartsMade, Renew, Reset, SetSwitch
 from core.executor.job import Proof
 from core.executor.snapshot import Event, State
-from core.store import part_cycles
-from core.store.part_cycles import CycleRow, StopRow
+from core.store.production import part_cycles
+from core.store.production.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from tests.executor.rig import Rig
 from tests.executor.test_changed_offsets import corrected, running

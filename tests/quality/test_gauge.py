@@ -14,7 +14,7 @@ import pytest
 
 from app.compose.gauge_wire import SILENT, GaugeWire
 from app.quality.gauge_line import LONGEST, GaugeError, LineReader, NoGauge, Reading, reading_of
-from core.machine.serial_table import GaugeModel
+from core.machine.desk_tables import GaugeModel
 from tests.coded import raises_code
 from tests.texts import pattern, text
 

@@ -15,13 +15,13 @@ from app.cli.main import main
 from app.quality.shift_figures import ShiftFigures, shift_figures
 from app.quality.shift_page import shift_html
 from app.quality.shift_times import Shift, ShiftTimesError, between, moment_of, shift_of
-from core.store import measured_parts, part_cycles, tool_lives
 from core.store.event_log import log
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow, StopRow
+from core.store.production import measured_parts, part_cycles, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
 from core.store.store_rows import EventRow
-from core.store.tool_lives import LifeRow
 from tests.coded import raises_code, recorded_refusals
 from tests.texts import text
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.records.derived_figures import acceleration, ripple, velocity
+from core.records.record import acceleration, ripple, velocity
 
 T = np.arange(4000) / 1000.0
 

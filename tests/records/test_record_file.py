@@ -13,8 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.records.record import Channel, Record
-from core.records.record_errors import MOST_BYTES, RecordError
+from core.records.record import MOST_BYTES, Channel, Record, RecordError
 from core.records.record_file import ENDING, open_record, save_csv, save_record, write_csv
 from tests.coded import raises_code
 

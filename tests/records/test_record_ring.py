@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.records.record import FloatArray
-from core.records.record_errors import RecordError
+from core.records.record import FloatArray, RecordError
 from core.records.record_ring import Recorded, Ring, Rows, bits_of
 from core.records.ring_file import LAST, NOW, RingFile, new_ring, read_ring
 from tests.coded import raises_code

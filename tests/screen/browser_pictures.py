@@ -35,13 +35,13 @@ from app.shopfloor.status_file import Status
 from app.shopfloor.status_page import OtherDesk, StatusPage
 from core.executor.job import make_job
 from core.language.source import load_source
-from core.store import measured_parts, part_cycles, tool_lives
 from core.store.event_log import log
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow, StopRow
+from core.store.production import measured_parts, part_cycles, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
 from core.store.store_rows import EventRow, utc
-from core.store.tool_lives import LifeRow
 from tests.screen.pictures import lean
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")

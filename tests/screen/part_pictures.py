@@ -31,7 +31,7 @@ from core.part.surface_points import Solid, turned_solid
 from core.part.turned_part import Piece
 from core.proving.part_history import PartGathering, PartHistory
 from core.proving.part_proof import prove_with_part
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 from tests.screen.pictures import lean
 
 WIDE, HIGH, HEAD = 210, 150, 20  # pixels

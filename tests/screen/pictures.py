@@ -35,13 +35,13 @@ from app.screen.main_window import MainWindow
 from app.screen.theme import PALETTES
 from core.access.access_table import Level
 from core.executor.snapshot import State
-from core.store import job_queue, measured_parts, part_cycles, tool_lives
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow, StopRow
 from core.store.people import PersonRow
+from core.store.production import job_queue, measured_parts, part_cycles, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
 from core.store.store_rows import Kind
-from core.store.tool_lives import LifeRow
 from drivers.waiting import StepClock
 from tests.screen.picture_shop import put_drawing
 

@@ -9,8 +9,8 @@ import pytest
 from app.mdi.mdi_view import MdiPage
 from app.screen.station_dock import StationDock
 from app.searchto.searchto_model import SearchtoModel, SearchtoStage
+from core.executor.commands import CROSSES
 from core.executor.snapshot import Starts, State
-from core.executor.start_clearance import CROSSES
 from tests.attached import attached
 from tests.screen.lathe import Key, Operator
 from tests.screen.yes import twist_out

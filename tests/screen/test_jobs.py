@@ -17,9 +17,9 @@ from app.programs.programs_view import ProgramsPage
 from app.screen import page_table
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import State
-from core.store import tool_lives
+from core.store.production import tool_lives
+from core.store.production.tool_lives import LifeRow
 from core.store.store_rows import Kind, utc_now
-from core.store.tool_lives import LifeRow
 from tests.screen.day import SHIFT, Day, Key, begun
 from tests.screen.yes import yes
 from tests.texts import begins, pattern, shows

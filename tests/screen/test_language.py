@@ -153,7 +153,7 @@ def test_an_event_of_an_older_store_stays_english() -> None:
 @pytest.mark.usefixtures("spanish")
 def test_every_kind_of_the_log_has_its_word() -> None:
     kinds = {
-        kind for file in (HOUSE / "core/executor").glob("*.py") for kind in _LOGGED.findall(file.read_text())
+        kind for file in (HOUSE / "core/executor").rglob("*.py") for kind in _LOGGED.findall(file.read_text())
     }
     assert len(kinds) > 15
     assert {kind for kind in kinds if tr(kind) == kind} <= {"mdi", "override"}  # the same word in Spanish

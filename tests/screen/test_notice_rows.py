@@ -16,8 +16,7 @@ from app.screen.look import Look, load_fonts
 from app.screen.theme import DARK
 from app.screen.window_bars import NoticeRows
 from app.screen.window_layout import FINGER
-from core.executor.interrupted_job import CONTROL_LOST
-from core.executor.snapshot import State
+from core.executor.snapshot import CONTROL_LOST, State
 from core.ports import ALL_UNKNOWN, Unknown
 from tests.interrupted import broken_off
 from tests.screen.hands import Hands, Key

@@ -18,7 +18,7 @@ from app.path.path_view import PathView
 from app.path.solid_pane_view import quarter
 from app.screen.look import Look
 from app.screen.theme import DARK, LIGHT
-from core.part.clamping import Clamping
+from core.part.stock import Clamping
 from tests.path.test_part_player import RAPID, SHAFT, Clock, picture
 from tests.screen.hands import LIMIT
 

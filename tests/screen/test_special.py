@@ -18,7 +18,7 @@ from app.special.special_view import SpecialPage
 from core.access.pins import hashed
 from core.executor.commands import FeedHold, ForceOutput, SetSwitch, SpindleLimit
 from core.executor.snapshot import Alarm, Event, State
-from core.store.backup_verdict import Verdict
+from core.store.backup import Verdict
 from core.store.people import PersonRow
 from core.store.store_errors import StoreError
 from tests.screen.desks import desk_on

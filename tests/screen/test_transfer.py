@@ -19,7 +19,7 @@ from app.transfer.line_transfer import Received
 from app.transfer.serial_transfer import SerialTransfer
 from core.executor.commands import FeedHold
 from core.executor.snapshot import State
-from core.machine.serial_table import DncModel
+from core.machine.desk_tables import DncModel
 from core.ports import DriverError
 from tests.attached import attached
 from tests.screen.desks import desk_on

@@ -7,9 +7,8 @@ from dataclasses import replace
 import pytest
 
 from app.searchto.searchto_plan import jog_words, way_out_of
-from core.executor.interrupted_job import CONTROL_LOST, InterruptedJob
 from core.executor.job import make_job
-from core.executor.snapshot import Snapshot
+from core.executor.snapshot import CONTROL_LOST, InterruptedJob, Snapshot
 from core.interpreter.modal_state import Modal
 from core.interpreter.restart.restart_approach import Choices, MachineNow, retract_from_work
 from core.interpreter.restart.restart_point import Interruption

@@ -14,9 +14,8 @@ from core.machine.machine_model import Machine
 from core.part.stock_spec import stock_spec
 from core.part.tool_shape import ToolShape
 from core.proving.part_proof import prove_with_part
-from core.proving.part_report import PartReport
-from core.proving.part_setting import PartSetting
-from core.proving.proof_report import Report
+from core.proving.program_tools import PartSetting
+from core.proving.proof_report import PartReport, Report
 from core.shapes.shape_setting import Shop
 
 _NAMED = {"⏎": "Enter", "↓": "Down", "↑": "Up", "→": "Right", "←": "Left", "⌫": "Back"}

@@ -17,7 +17,7 @@ from core.interpreter.job_setup import ToolOffset
 from core.language.diagnostics import Severity
 from core.language.source import Dialect, Source
 from core.machine.machine_model import Machine
-from core.part.mill_paths import plane_path
+from core.part.ray_cuts import plane_path
 from core.proving.prove_program import prove
 from core.shapes.pieces import pieces, setting_at, with_shape
 from core.shapes.shape import filled

@@ -17,7 +17,7 @@ from core.language.source import Dialect, Source
 from core.part.stock_spec import stock_spec
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_proof import prove_with_part
-from core.proving.part_setting import PartSetting
+from core.proving.program_tools import PartSetting
 from core.shapes.contour import Row
 from core.shapes.pieces import pieces, renewed, setting_at, with_shape
 from core.shapes.shape import filled

@@ -13,8 +13,8 @@ from core.language.source import Source
 from core.part.stock_spec import stock_spec
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_history import PartGathering, PartHistory
-from core.proving.part_setting import PartSetting
 from core.proving.program_timeline import MotionSpan, RestSpan
+from core.proving.program_tools import PartSetting
 from core.proving.prove_program import prove
 from tests.shapes.hand import Programmer, bad, machine, proved, setup_of
 from tests.worked import worked

@@ -14,9 +14,8 @@ from app.shopfloor.json_keys import EVENT, FILE, OFFICE
 from app.shopfloor.office_status import OfficeLook
 from app.shopfloor.status_file import Status, StatusFile, status_of
 from core.alarms import CATALOGUE
-from core.executor.interrupted_job import InterruptedJob
-from core.executor.snapshot import Alarm, Snapshot, State
-from core.store.part_cycles import StopRow
+from core.executor.snapshot import Alarm, InterruptedJob, Snapshot, State
+from core.store.production.part_cycles import StopRow
 from tests.cli.json_output import declared_alone
 
 INTERRUPTED = InterruptedJob(

@@ -40,7 +40,7 @@ from core.executor.snapshot import Snapshot, State
 from core.machine.shop_network_tables import StatusPageTable, broker_of
 from core.ports import DriverError
 from core.records.record import Record, channels_of
-from core.store.part_cycles import StopRow
+from core.store.production.part_cycles import StopRow
 from core.table_schema import MachineFileError
 from resources import machine_file
 from tests.coded import raises_code

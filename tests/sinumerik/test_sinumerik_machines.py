@@ -9,8 +9,8 @@ import pytest
 import resources
 from app.compose.machine_files import load_machine, parse_machine
 from app.compose.machine_setup import control_limits
+from core.executor.job import check_block
 from core.executor.raised_alarm import AlarmError
-from core.executor.read_ahead import check_block
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
 from core.table_schema import MachineFileError

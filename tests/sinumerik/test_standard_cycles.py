@@ -9,8 +9,7 @@ from math import radians, sqrt, tan
 import numpy as np
 import pytest
 
-from core.geometry.intersections import distance
-from core.geometry.lines_and_arcs import Arc
+from core.geometry.lines_and_arcs import Arc, distance
 from core.interpreter.actions import Dwell
 from core.interpreter.adjusted_moves import element_of
 from core.interpreter.elementary_blocks import Block, Kind

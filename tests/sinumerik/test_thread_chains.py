@@ -7,8 +7,8 @@ from math import radians, sqrt, tan
 import numpy as np
 import pytest
 
-from core.executor.thread_curve import curve_of
-from core.executor.thread_path import ThreadPath
+from core.executor.program_motion.thread_curve import curve_of
+from core.executor.program_motion.thread_path import ThreadPath
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.path_sections import SectionEnds
 from core.motion.axis_limits import MotionLimits

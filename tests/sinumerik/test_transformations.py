@@ -13,7 +13,7 @@ from core.interpreter.actions import Output, SpindleLock
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import Setup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Severity
-from core.part.mill_paths import plane_path
+from core.part.ray_cuts import plane_path
 from core.proving.prove_program import prove
 from tests.sinumerik.lathe import Passed, refused, run, setup, source
 

@@ -7,8 +7,7 @@ from math import cos, radians, sin, tan
 
 import pytest
 
-from core.geometry.intersections import distance
-from core.geometry.lines_and_arcs import Point
+from core.geometry.lines_and_arcs import Point, distance
 from core.interpreter.adjusted_moves import element_of
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.job_setup import Setup, ToolOffset

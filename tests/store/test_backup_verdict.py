@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from core.store import backup, database
-from core.store.backup_verdict import Verdict, verdict
+from core.store import backup, store_connection
+from core.store.backup import Verdict, verdict
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_rows import Kind
@@ -17,7 +17,7 @@ from tests.coded import raises_code
 
 
 def judged(folder: Path, path: Path) -> Verdict:
-    with closing(database.connect(folder / "turndesk.db", read_only=True)) as now:
+    with closing(store_connection.connect(folder / "turndesk.db", read_only=True)) as now:
         return verdict(now, path)
 
 

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from core.store import backup, database, offset_tables
+from core.store import backup, database
+from core.store.offsets import offset_tables
 from core.store.store import Store, StoreError
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from app.offsets.offsets_file import read_rows
-from core.store import database, offset_tables
-from core.store.offset_tables import Reason
+from core.store import database
+from core.store.offsets import offset_tables
+from core.store.offsets.offset_tables import Reason
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export

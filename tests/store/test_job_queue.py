@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from core.store import database, job_queue
-from core.store.job_queue import JobRow
-from core.store.offset_tables import named
+from core.store import database
+from core.store.damaged_rows import named
+from core.store.production import job_queue
+from core.store.production.job_queue import JobRow
 from core.store.store import Store, StoreError
 from core.store.store_file import FILE_NAME
 from tests.coded import raises_code
@@ -181,7 +182,7 @@ def test_an_older_store_gets_its_queue(tmp_path: Path) -> None:
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from core.store import job_queue
+from core.store.production import job_queue
 from core.store.store import Store
 
 store = Store.open(Path(sys.argv[1]))

@@ -17,7 +17,8 @@ ACKNOWLEDGED = 25  # of each process before it is killed; the next transactions 
 WRITER = """
 import sys
 from pathlib import Path
-from core.store import offset_tables, program_records
+from core.store import program_records
+from core.store.offsets import offset_tables
 from core.store.store_rows import Kind
 from core.store.store import Store
 

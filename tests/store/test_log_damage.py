@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from core.store import backup, database
+from core.store import backup, store_connection
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
@@ -114,10 +114,10 @@ def test_whoever_reads_beside_a_desk_that_runs_is_not_kept_from_it(killed: Path)
         torn = struct.pack(">II", 2, 9) + bytes(log[16:24]) + bytes(FRAME - 16)
         with (killed / LOG).open("ab") as file:
             file.write(torn)
-        assert database.in_use(killed)
+        assert store_connection.in_use(killed)
         with Store.open(killed, read_only=True) as beside:
             assert beside.tools()[3].wear_x == -0.05
-    assert not database.in_use(killed)
+    assert not store_connection.in_use(killed)
 
 
 # --- a power cut within a write that was never acknowledged ---------------------------------------------

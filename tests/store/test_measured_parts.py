@@ -12,15 +12,16 @@ from pathlib import Path
 import pytest
 
 from app.quality.parts_book import parts_data
-from core.store import backup, database, measured_parts, part_cycles, tool_lives
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow, StopRow
+from core.store import backup, database, store_connection
+from core.store.production import measured_parts, part_cycles, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import utc
-from core.store.tool_lives import LifeRow
 from tests.coded import raises_code
 
 SPIGOT = FeatureRow(0, "pin.nc", "SPIGOT", "diameter", 12.7, -0.02, 0.02, "tool", 3, 1, 10, 1)
@@ -211,7 +212,7 @@ def test_an_export_and_a_backup_have_it(store: Store, folder: Path, tmp_path: Pa
 def test_a_reading_without_its_feature_is_found(store: Store, folder: Path) -> None:
     read(store, feature(store), 1, 12.7)
     store.close()
-    with database.connect(folder / FILE_NAME, read_only=False) as connection:
+    with store_connection.connect(folder / FILE_NAME, read_only=False) as connection:
         connection.execute("PRAGMA foreign_keys = OFF")
         connection.execute("DELETE FROM part_features")
     assert any("part_readings" in problem for problem in backup.problems(folder / FILE_NAME))
@@ -231,9 +232,9 @@ def test_a_migration_that_is_put_in_between_is_refused(
 WRITER = """
 import sys
 from pathlib import Path
-from core.store import measured_parts, part_cycles
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.part_cycles import CycleRow
+from core.store.production import measured_parts, part_cycles
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow
 from core.store.store import Store
 
 store = Store.open(Path(sys.argv[1]))

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from core.store.offsets.touch_off import Touch
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_rows import Kind
-from core.store.touch_off import Touch
 from core.tool_edges import edge_key
 from tests.coded import raises_code
 

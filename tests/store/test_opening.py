@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 
 from core import file_placing
-from core.store import backup, database
-from core.store.database import WriterLock, in_use
+from core.store import backup, database, store_connection
 from core.store.store import Store, StoreError
+from core.store.store_connection import WriterLock, in_use
 from core.store.store_errors import Cause
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import ToolRow
@@ -154,7 +154,7 @@ def test_reader_refuses_a_bad_file_too(closed: Path, spoil: Callable[[Path], Non
 
 
 def test_log_without_its_database_is_not_poured_into_a_new_one(closed: Path) -> None:
-    log, _ = database.companions(closed)
+    log, _ = store_connection.companions(closed)
     closed.unlink()
     log.write_bytes(b"something")
     with raises_code(StoreError, "database-gone"):
@@ -203,11 +203,11 @@ def test_folder_that_cannot_be_made(tmp_path: Path) -> None:
 
 def test_migration_is_whole_or_not_at_all() -> None:
     first, *_ = scripts = (*database.migrations(), "CREATE TABLE extra (a); SELECT nonsense;")
-    connection = database.configured(sqlite3.connect(":memory:", isolation_level=None))
+    connection = store_connection.configured(sqlite3.connect(":memory:", isolation_level=None))
     with raises_code(StoreError, "migration-failed", f"version {len(scripts)}"):
         database.migrate(connection, scripts)
     assert first
-    assert database.version_of(connection) == len(scripts) - 1
+    assert store_connection.version_of(connection) == len(scripts) - 1
     tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_master")}
     assert "programs" in tables
     assert "extra" not in tables

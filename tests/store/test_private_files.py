@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from core.private_files import restrict, restrict_folder
+from core.file_placing import restrict, restrict_folder
 from core.store import backup
 from core.store.store import Store
 from core.store.store_file import FILE_NAME

@@ -11,8 +11,9 @@ from app.compose.journal import Journal
 from app.desk.program_folder import ProgramFolders
 from app.programs.program_rows import Program, list_programs
 from core.language.source import load_source
-from core.store import job_queue, program_records
+from core.store import program_records
 from core.store import store as store_module
+from core.store.production import job_queue
 from core.store.store import Store
 
 GOOD, BAD = "G90G94\nX.5F10\nM30\n", "G90G94\nX1.5F10\nQ\nM30\n"

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from core.store import backup, database, job_queue, measured_parts, row_sums
-from core.store.damaged_rows import TABLES_CHANGED
-from core.store.measured_parts import FeatureRow, ReadingRow
-from core.store.offset_tables import named
+from core.store import backup, database, row_sums
+from core.store.damaged_rows import TABLES_CHANGED, named
+from core.store.production import job_queue, measured_parts
+from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME

@@ -13,11 +13,11 @@ import pytest
 from app.compose.stored_offsets import stored_offsets
 from app.desk.command_errors import CommandError
 from core.store import backup, database, program_records, row_sums
-from core.store.offset_tables import named
+from core.store.damaged_rows import named
+from core.store.production.tool_lives import LifeRow, lives, set_use
 from core.store.store import Store
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import ToolRow
-from core.store.tool_lives import LifeRow, lives, set_use
 from tests.coded import raises_code
 
 FILE = FILE_NAME

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from core.store import backup
-from core.store.offset_tables import named
+from core.store.damaged_rows import named
 from core.store.store import Store, StoreError
 from core.store.store_export import export
 from core.store.store_file import FILE_NAME

@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.store import database, offset_tables, touch_off
-from core.store.offset_tables import Reason
+from core.store import database
+from core.store.offsets import offset_history, offset_tables, touch_off
+from core.store.offsets.offset_tables import Reason
+from core.store.offsets.touch_off import Touch
 from core.store.store_rows import Kind, ToolRow
-from core.store.touch_off import Touch
 
 WHY = Reason("try", "test")
 START = {
@@ -85,5 +86,5 @@ def test_any_order_of_touches_and_masters(steps: list[tuple[str, object]]) -> No
             assert sum(row.master for row in offset_tables.tools(connection).values()) <= 1
         made = connection.execute("SELECT max(step) FROM offset_changes").fetchone()[0] - len(START)
         for _ in range(made):
-            offset_tables.undo(connection, WHY)
+            offset_history.undo(connection, WHY)
         assert offset_tables.tools(connection) == START

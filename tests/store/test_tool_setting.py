@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 
 from core.store import database
+from core.store.offsets.touch_off import Touch
 from core.store.store import Store, StoreError
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind, SecondaryRow, ToolRow
-from core.store.touch_off import Touch
 from tests.coded import raises_code
 
 

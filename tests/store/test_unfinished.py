@@ -11,16 +11,16 @@ from pathlib import Path
 import pytest
 
 from app.programs.whole_file import write_new, write_whole
+from core.file_lock import forget_killed, unfinished_file, unfinished_folder
 from core.store import backup, database
 from core.store.store import Store, StoreError
 from core.store.store_export import export
-from core.unfinished import forget_killed, unfinished_file, unfinished_folder
 from tests.coded import raises_code
 
 _KILLED = """
 import os, signal, sys
 from pathlib import Path
-from core.unfinished import {how}
+from core.file_lock import {how}
 with {how}(Path(sys.argv[1])) as place:
     (place / "half.nc" if place.is_dir() else place).write_bytes(b"half")
     if not place.is_dir():

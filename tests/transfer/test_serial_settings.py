@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from app.transfer.serial_settings import ROWS, settings_of, stored_form
-from core.machine.serial_table import DncModel
+from core.machine.desk_tables import DncModel
 from tests.texts import text
 
 DEFAULT = DncModel("/dev/ttyUSB0", 9600, 7, "E", 1, "xonxoff", "%", "\r\n")

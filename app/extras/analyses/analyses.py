@@ -37,8 +37,7 @@ from core.extras.analyses.path_error import PathError, WorstPlace, of_samples, w
 from core.extras.analyses.thread_passes import Thread, fastest, find_thread
 from core.machine.machine_model import Axis, SpindleModel
 from core.message import Message
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record
 
 FloatArray = npt.NDArray[np.float64]
 MOST_POINTS = 6000  # that are drawn of a path

@@ -28,9 +28,7 @@ from core.extras.analyses.step_response import (
 )
 from core.machine.machine_model import Axis
 from core.message import Message
-from core.records.derived_figures import velocity
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record, velocity
 
 FloatArray = npt.NDArray[np.float64]
 _BEFORE, _BEHIND = 0.2, 1.0  # s of rest that belong to a move

@@ -18,7 +18,7 @@ from app.desk import formats
 from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.extras.analyses.axis_response import SHARES, Moved, Units, moved, step_rows, stretches, window_rows
-from core.executor.drive_test_path import PAUSE, DriveTestPath, Shape
+from core.executor.hand_motion.drive_test import PAUSE, DriveTestPath, Shape
 from core.extras.analyses.step_response import (
     RampResponse,
     SineResponse,
@@ -30,8 +30,7 @@ from core.extras.analyses.step_response import (
 )
 from core.machine.machine_model import Axis
 from core.message import Message
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record
 
 FloatArray = npt.NDArray[np.float64]
 TESTED = "drive test"  # of a record's words

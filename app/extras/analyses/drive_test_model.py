@@ -33,15 +33,14 @@ from app.jog.jog_model import LEASE, why_no_jog
 from app.jog.jog_speeds import JogDirection, JogSpeeds, directions_of
 from app.scope.record_shelf import INSTANT
 from app.scope.scope_model import Scope
-from core.executor import drive_test_path
 from core.executor.commands import Command, DriveTest, DriveTestOn, JogStop
-from core.executor.drive_test_path import DriveTestPath, Limits, Shape
-from core.executor.jog_line import room_to_limit
+from core.executor.hand_motion import drive_test
+from core.executor.hand_motion.drive_test import DriveTestPath, Limits, Shape
+from core.executor.hand_motion.jog_line import room_to_limit
 from core.executor.snapshot import BY_HAND, Snapshot, State
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record
 
 SHAPES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
 INCH_SIZES, MM_SIZES = (0.002, 0.005, 0.01, 0.02, 0.05, 0.1), (0.05, 0.1, 0.2, 0.5, 1.0, 2.5)
@@ -209,7 +208,7 @@ class DriveTests:
         path, limits = self.path(axis, sign), self._limits(axis)
         if why := path.refusal(limits):
             return why
-        low, high = drive_test_path.reach(path.ramps(limits))
+        low, high = drive_test.reach(path.ramps(limits))
         here = snapshot.demand[index]
         if max(high, 1e-9) > room_to_limit(model, here, 1.0) or max(-low, 1e-9) > room_to_limit(
             model, here, -1.0
@@ -223,14 +222,14 @@ class DriveTests:
         units, snapshot = Units(self.metric), self.desk.snapshot()
         path, limits = self.path(axis, sign), self._limits(axis)
         ramps, here = path.ramps(limits), snapshot.demand[snapshot.axes.index(axis)]
-        low, high = drive_test_path.reach(ramps)
+        low, high = drive_test.reach(ramps)
         return tr(
             Message(
                 "{axis} FROM {position} TO {present} AND BACK IN {seconds} S",
                 axis=axis,
                 position=units.way(here),
                 present=units.way(here + (high if sign > 0 else low)),
-                seconds=formats.fixed(drive_test_path.seconds(ramps), 1),
+                seconds=formats.fixed(drive_test.seconds(ramps), 1),
             )
         )
 
@@ -272,7 +271,7 @@ class DriveTests:
             self._begun = None
             return
         path, began = self._begun[0], told.began
-        ends = began + drive_test_path.seconds(path.ramps(self._limits(path.axis)))
+        ends = began + drive_test.seconds(path.ramps(self._limits(path.axis)))
         if snapshot.t < ends + _SETTLED or live.last < ends - _SETTLED:
             return
         self._begun = None

@@ -18,8 +18,7 @@ from app.extras.analyses.drawing import Drawing
 from core.extras.analyses.step_response import StepResponse, step_response
 from core.machine.machine_model import SpindleModel
 from core.message import Message
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record
 
 FloatArray = npt.NDArray[np.float64]
 _CHANGE = 1.0  # rpm by which a command differs from the one before

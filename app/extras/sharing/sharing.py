@@ -15,14 +15,13 @@ from pathlib import Path
 
 from app.extras.sharing.program_files import FilesOfMachine, SharedFile
 from app.programs.whole_file import FileError, write_new, write_whole
-from core.coded_error import CodedError, error_code
 from core.extras.sharing import shared_versions
 from core.extras.sharing.shared_place import Found, Published, SharedPlace
 from core.extras.sharing.shared_versions import Family, SharedVersion, key_of
 from core.extras.sharing.sharing_errors import Cause, SharingError
 from core.extras.sharing.version_record import MOST_BYTES, DeskState, new_version
 from core.input_file import input_bytes
-from core.message import Message
+from core.message import CodedError, Message, error_code
 from core.store import program_records
 from core.store.store import Store
 from core.store.store_errors import StoreError

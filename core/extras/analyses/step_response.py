@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.message import Message
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
 LEAST = 20  # samples

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError
 
 FloatArray = npt.NDArray[np.float64]
 LEAST_TURNS = 2.0

@@ -5,9 +5,8 @@ from __future__ import annotations
 import errno
 from enum import Enum
 
-from core.coded_error import CodedError
 from core.input_file import NotAFileError, TooLargeError
-from core.message import Message
+from core.message import CodedError, Message
 
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 _NO_RIGHT = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})

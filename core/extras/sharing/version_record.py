@@ -7,9 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from hashlib import sha256
 
-from core.coded_error import CodedError
 from core.extras.sharing.shared_versions import SharedVersion
-from core.message import Message
+from core.message import CodedError, Message
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
 

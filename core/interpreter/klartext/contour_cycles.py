@@ -10,10 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 
-from core.geometry.area_clearing import Cut, begun_at, clearing, walked
 from core.geometry.contour_offset import GougeError, pieces_beside
 from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Point, left_of
-from core.geometry.pocket_area import AreaError, Loop, Within, follows, inset
+from core.geometry.pocket_area import AreaError, Cut, Loop, Within, begun_at, clearing, follows, inset, walked
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext.contour_figures import OPEN, ContourFigure, area_of
 from core.interpreter.klartext.cycle_moves import CycleTool

@@ -12,8 +12,7 @@ from collections.abc import Callable, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 
-from core.geometry.intersections import intersections
-from core.geometry.lines_and_arcs import Element, Point
+from core.geometry.lines_and_arcs import Element, Point, intersections
 from core.geometry.pocket_area import AreaError, Loop, Winding, boundary, follows, goes_round
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.path_elements import PathElement

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from core.geometry.lines_and_arcs import Arc, Point
-from core.geometry.plane_arcs import HelixMove
+from core.geometry.working_plane import HelixMove
 from core.interpreter.actions import Coolant, Dwell, ProgramStop, SpindleOrient, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.klartext.feed_rates import per_minute

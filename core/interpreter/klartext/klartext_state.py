@@ -6,10 +6,9 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from core.geometry.machine_travel import CurvedMove, Travel
-from core.geometry.plane_figure import XY, Figure, Order
 from core.geometry.rotary_axes import Kinematics, Place, Rotary
 from core.geometry.rotation_frames import IDENTITY, Matrix, Vector, applied, plus, product, transposed
+from core.geometry.working_plane import XY, CurvedMove, Figure, Order, Travel
 from core.interpreter.actions import Action, Dwell, ProgramStop
 from core.interpreter.diagnostic_log import Log
 from core.interpreter.elementary_blocks import Block, Kind

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from core.geometry.plane_figure import Figure
+from core.geometry.working_plane import Figure
 from core.interpreter import actions
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext import word_values

@@ -19,8 +19,8 @@ from core.geometry.lines_and_arcs import (
     arc_between,
     centre_from_radius,
 )
-from core.geometry.plane_figure import XY, YZ, ZX, Order, seen, unseen
 from core.geometry.rotation_frames import Vector
+from core.geometry.working_plane import XY, YZ, ZX, Order, seen, unseen
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
 from core.language.klartext.klartext_faults import ARC_END, DIRECTION, NO_POLE, PREVIOUS

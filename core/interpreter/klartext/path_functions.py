@@ -12,9 +12,8 @@ from dataclasses import dataclass, replace
 
 from core.geometry.chamfer_and_rounding import CornerError, chamfer, rounding
 from core.geometry.lines_and_arcs import Arc, Element, Point
-from core.geometry.plane_arcs import HelixMove
-from core.geometry.plane_figure import seen
 from core.geometry.rotation_frames import Vector
+from core.geometry.working_plane import HelixMove, seen
 from core.interpreter.elementary_blocks import Block, Kind
 from core.interpreter.klartext import word_values
 from core.interpreter.klartext.feed_rates import per_minute, plunged, rotary_feed
@@ -23,13 +22,7 @@ from core.interpreter.klartext.path_elements import PathElement, elements, goal,
 from core.interpreter.klartext.radius_compensation import Contour, Entry, way_in, way_out
 from core.interpreter.klartext.tip_control import swivelled
 from core.language.diagnostics import ProgramError
-from core.language.klartext.klartext_faults import (
-    COMPENSATION,
-    PREVIOUS,
-    ROUNDING,
-    WRONG_AXIS,
-    unsupported,
-)
+from core.language.klartext.klartext_faults import COMPENSATION, PREVIOUS, ROUNDING, WRONG_AXIS, unsupported
 from core.language.klartext.klartext_nodes import AxisWord, Corner, Move, Pole
 from core.message import Message
 

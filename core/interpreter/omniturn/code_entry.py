@@ -8,8 +8,8 @@ from enum import Enum, auto
 from math import inf
 from typing import NamedTuple
 
-from core.coded_error import CodedError
 from core.interpreter import units
+from core.message import CodedError
 
 HEAD = "G90G94F300\nT1\nM03S1000\nX.6Z.1\nG95F.004\n"
 """Before every example: radius mode, the tool at X.6 Z.1, .004 in/rev at 1000 rpm."""

@@ -8,8 +8,7 @@ from math import dist
 from typing import NamedTuple
 
 from core.geometry.contour_offset import WINDOW
-from core.geometry.intersections import distance
-from core.geometry.lines_and_arcs import SAME_POINT, Element, Line, Point
+from core.geometry.lines_and_arcs import SAME_POINT, Element, Line, Point, distance
 from core.interpreter.actions import ToolChange
 from core.interpreter.adjusted_moves import AdjustedMoves, element_of
 from core.interpreter.contour_stage import FOLLOWED, STRAIGHT, ContourMove, ContourStage, cuts_in

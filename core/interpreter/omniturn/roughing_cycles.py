@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import ceil
 
-from core.geometry.contour_offset import TrimError
+from core.geometry.contour_offset import Area, TrimError
 from core.geometry.lines_and_arcs import Element
-from core.geometry.roughing_area import Area
 from core.interpreter.contour_passes import ContourView, Move, Rougher, StartNearError, view_from
 from core.interpreter.omniturn.canned_cycles import LIFT, check_count, length, name
 from core.interpreter.omniturn.code_rules import number

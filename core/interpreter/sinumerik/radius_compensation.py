@@ -10,8 +10,7 @@ from collections.abc import Iterator, Sequence
 from math import cos, dist, pi, sin
 from typing import NamedTuple
 
-from core.geometry.intersections import clearance
-from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, Point, touching, turn
+from core.geometry.lines_and_arcs import SAME_POINT, Arc, Element, Line, Point, clearance, touching, turn
 from core.interpreter.actions import ProgramEnd, ToolChange
 from core.interpreter.adjusted_moves import element_of
 from core.interpreter.contour_stage import FOLLOWED, STRAIGHT, ContourMove, ContourStage, cuts_in

@@ -12,9 +12,8 @@ from itertools import pairwise
 from math import ceil
 from typing import NamedTuple
 
-from core.geometry.contour_offset import TrimError
+from core.geometry.contour_offset import Area, TrimError
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, shifted
-from core.geometry.roughing_area import Area
 from core.interpreter.actions import Dwell
 from core.interpreter.contour_passes import ContourView, Move, Rougher, StartNearError, view_from
 from core.interpreter.elementary_blocks import Block

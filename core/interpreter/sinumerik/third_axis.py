@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from math import inf
 
-from core.coded_error import CodedError
 from core.language.sinumerik.sinumerik_words import Form
-from core.message import Message
+from core.message import CodedError, Message
 
 TURN = 360.0
 TURNS = (-TURN, TURN)

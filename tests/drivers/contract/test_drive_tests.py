@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.executor.commands import DriveTest, DriveTestOn
-from core.executor.drive_test import PLANS
-from core.executor.drive_test_path import DriveTestPath, Shape
+from core.executor.hand_motion.drive_test import PLANS, DriveTestPath, Shape
 from core.executor.snapshot import State
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL

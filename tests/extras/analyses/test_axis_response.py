@@ -8,7 +8,7 @@ import pytest
 from app.compose.machine_files import load_machine
 from app.extras.analyses.analyses import Kind, analysed
 from app.extras.analyses.axis_response import last_move, response_sheet
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError
 from tests.coded import raises_code
 from tests.scope.played_record import record_of, seconds
 from tests.texts import text

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.extras.analyses.ball_bar import arcs_in, ball_bar, circle_of
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError
 from tests.coded import raises_code
 
 R = 25.0

@@ -19,10 +19,9 @@ from app.extras.analyses.drive_test_figures import (
     shown_words,
     words_of,
 )
-from core.executor.drive_test_path import DriveTestPath, Limits, Shape
+from core.executor.hand_motion.drive_test import DriveTestPath, Limits, Shape
 from core.extras.analyses.step_response import bandwidth, narrowest_window, sine_response, speed_of_window
-from core.records.record import Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, Record
 from tests.coded import raises_code
 from tests.scope.played_record import RATE, record_of, seconds
 from tests.texts import text

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.extras.analyses.path_error import of_samples, path_error, worst_places
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError
 from tests.coded import raises_code
 
 

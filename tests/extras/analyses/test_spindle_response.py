@@ -11,8 +11,7 @@ import pytest
 from app.compose.machine_files import load_machine
 from app.extras.analyses.analyses import Analyses, Kind, analysed, scaled
 from app.extras.analyses.spindle_response import SpindleResponse, last_run_up
-from core.records.record import FloatArray, Record
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError, FloatArray, Record
 from tests.coded import raises_code
 from tests.scope.played_record import record_of, seconds
 from tests.texts import text

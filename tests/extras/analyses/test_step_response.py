@@ -14,7 +14,7 @@ from core.extras.analyses.step_response import (
     step_response,
     would_trip,
 )
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError
 from tests.coded import raises_code
 
 T = np.arange(4001) / 1000.0 - 0.5

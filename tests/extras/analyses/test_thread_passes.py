@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.extras.analyses.thread_passes import Thread, fastest, find_thread
-from core.records.record_errors import AnalysisError
+from core.records.record import AnalysisError
 from tests.coded import raises_code
 
 RATE, RPM, LEAD = 1000.0, 1200.0, 1.5

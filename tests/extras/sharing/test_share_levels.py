@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import resources
-from core.coded_error import CodedError
+from core.message import CodedError
 from core.store.store import Store
 from tests.cli.conftest import refusals
 from tests.cli.test_access import Say, codes, home, people, say

@@ -1,0 +1,235 @@
+"""Handwheel: clicks move one selected axis, as long as somebody asks and nothing speaks against it.
+
+The slide follows the wheel a tenth of a second behind, and what is queued is never more than that and the
+braking: clicks that come faster than the axis goes are dropped. Any end that was not asked for lasts until
+the wheel is selected anew.
+"""
+
+from __future__ import annotations
+
+import math
+
+from core.executor.commands import Wheel
+from core.executor.hand_motion import jogging
+from core.executor.hand_motion.jog_line import LIMIT_MARGIN, Ramp
+from core.executor.hand_motion.jogging import LONGEST_LEASE, Jogger, at_the_end
+from core.executor.machine_context import MachineContext
+from core.executor.snapshot import State
+from core.machine.machine_model import Axis
+from core.machine.station_rules import ENABLE, WHEEL, selector
+from core.message import Message
+
+# --- counts and clicks ----------------------------------------------------------------------------------
+
+
+_FASTEST = 1000.0  # clicks a second and
+_AT_ONCE = 10  # clicks more are what a hand can do; 300 a second is a hard spin
+_AWAY = 0.1  # s between two looks; what was turned in a longer one is old
+LONGEST_CLICK = 0.254  # mm (.01 in)
+LONGEST_TURN = 0.5  # degrees
+_BEHIND = 0.1  # s by which the slide follows the wheel
+_STILL = 0.1  # s for which the wheel must stand when it is selected
+_APART = 0.5  # s between the last of two at once and the next jog
+_ROUNDING = 1e-9
+
+
+class WheelClicks:
+    """Turns counts into clicks: ``per`` counts are one; a negative number reverses the wheel."""
+
+    def __init__(self, per: int) -> None:
+        self._per = per
+        self._last: tuple[float, int] | None = None  # time and counts of the last look
+        self._base = 0  # counts that have become clicks
+        self.still = 0.0  # s since it has last moved
+        self.leapt = False  # this look: a leap that no hand makes
+
+    def take(self, counts: int, now: float) -> int:
+        """Clicks since the last look, signed. Half a click waits: a wheel that rests on its edge is still."""
+        before, self._last = self._last, (now, counts)
+        if before is None:
+            self._base = counts
+            return 0
+        passed, moved = now - before[0], abs(counts - before[1])
+        self.leapt = moved > abs(self._per) * (_FASTEST * passed + _AT_ONCE)
+        if self.leapt or passed > _AWAY:
+            self._base, self.still = counts, 0.0
+            return 0
+        clicks = int((counts - self._base) / self._per)  # towards 0
+        self._base += clicks * self._per
+        self.still = 0.0 if clicks else self.still + passed
+        return clicks
+
+
+class Handwheel:
+    """Moves ``axis``, empty while it moves nothing; ``ended`` says why the control has taken it away."""
+
+    def __init__(self, context: MachineContext, jogger: Jogger) -> None:
+        model = context.machine.hardware.analog.get(WHEEL)
+        self._context = context
+        self._jogger = jogger
+        self._there = model is not None and context.ports.blocks is None
+        self._clicks = WheelClicks(model.counts_per_click if model else 1)
+        self.axis = ""
+        self.ended = ""
+        self._step = 0.0
+        self._until = 0.0
+        self._ready = False  # it has stood still since it was selected
+        self._reported = ""  # what was said once of this motion
+        self._apart = -math.inf  # until then no key jogs: it came together with the wheel
+
+    def select(self, command: Wheel, state: State) -> None:
+        """Select axis and step, or renew. Raises DriverError."""
+        if self.ended:
+            return
+        if why := self._refusal(command) or self._lost(state, command.axis):
+            self.end(why, state)
+        elif (command.axis, command.step) != (self.axis, self._step):
+            self._stop(state)
+            self.axis, self._step, self._ready = command.axis, command.step, False
+        self._until = self._context.now + min(command.lease, LONGEST_LEASE)
+
+    def off(self, state: State) -> None:
+        """The page no longer asks for the handwheel: what it moves stops. Raises DriverError."""
+        self._stop(state)
+        self.axis = self.ended = ""
+
+    def end(self, why: str, state: State) -> None:
+        """Take the handwheel away, and log why. Raises DriverError."""
+        self._stop(state)
+        self.axis, self.ended = "", why
+        self._context.log("refused", Message("handwheel: {what}", what=why))
+
+    def turn(self, state: State) -> bool:
+        """Called once a tick: follow the clicks; returns whether the axis moves. Raises DriverError."""
+        context, jogger = self._context, self._jogger
+        clicks = self._clicks.take(context.signals.wheel, context.now)
+        if not self.axis:
+            return False
+        if why := self._lost(state, self.axis):
+            self.end(why, state)
+            return False
+        if state is State.IDLE:
+            jogger.forget()
+            self._reported = ""
+        self._ready = self._ready or self._clicks.still >= _STILL
+        if not clicks or not self._ready or jogger.ending:
+            return False
+        if jogger.axis and jogger.goal is None:
+            self._together("the handwheel was turned while a key or the screen was pressed", state)
+            return False
+        return self._follow(clicks)
+
+    def bars(self, state: State) -> str:
+        """Why a jog by key is refused because of the handwheel; empty when it is not."""
+        if self._jogger.goal is not None:
+            self._together("a key or the screen was pressed while the handwheel was turning", state)
+        if self._context.now >= self._apart:
+            return ""
+        self._apart = self._context.now + _APART
+        return "a key and the handwheel cannot be used at the same time"
+
+    def _together(self, why: str, state: State) -> None:
+        self._jogger.stop()
+        self._apart = self._context.now + _APART
+        self.end(why, state)
+
+    def _stop(self, state: State) -> None:
+        if state is State.JOG and self._jogger.goal is not None:
+            self._jogger.stop()
+
+    def _refusal(self, command: Wheel) -> str:
+        context = self._context
+        if not self._there:
+            return "this machine has no handwheel"
+        if why := self._jogger.missing(command.axis):
+            return why
+        longest = LONGEST_TURN if context.machine.axis(command.axis).rotary else LONGEST_CLICK
+        if not 0.0 < command.step <= longest + _ROUNDING:
+            return Message(
+                "a handwheel step must be above 0 and at most {longest}, not {step}",
+                longest=f"{longest:g}",
+                step=f"{command.step:g}",
+            )
+        if not 0.0 < command.lease < math.inf:
+            return "the handwheel needs a watchdog time greater than 0"
+        return ""
+
+    def _lost(self, state: State, axis: str) -> str:
+        """What takes the wheel away in this tick."""
+        context, signals, inputs = self._context, self._context.signals, self._context.inputs
+        reasons = (
+            (
+                state not in {State.IDLE, State.JOG},
+                Message("not available in state {state}", state=state.value),
+            ),
+            (signals.trouble != "", signals.trouble.lower()),
+            (signals.wheel_trouble != "", signals.wheel_trouble),
+            (signals.hold, "feed hold"),
+            (self._clicks.leapt, "the handwheel count jumps; check the handwheel cable"),
+            (
+                self.axis != "" and context.now > self._until,
+                ("the page that uses the handwheel stopped responding"),
+            ),
+            (not inputs.get(ENABLE, True), "the handwheel's enabling switch is not pressed"),
+            (
+                not inputs.get(selector(axis), True),
+                Message("the axis selector switch is not set to {axis}", axis=axis),
+            ),
+        )
+        found = next((why for so, why in reasons if so), "")
+        return found or self._jogger.spinning(axis) or self._jogger.uncoupled(axis)
+
+    def _follow(self, clicks: int) -> bool:
+        context, jogger = self._context, self._jogger
+        index = context.ports.axes.axes.index(self.axis)
+        start = context.sample.demand[index] if jogger.goal is None else jogger.goal
+        wanted = self._within(index, start + clicks * self._step)
+        found = _Chase(context.machine.axes[index], self._top(index), self._step, wanted)
+        jogger.chase(self.axis, found.pieces, wanted)
+        if jogger.goal is not None and found.goal != wanted:
+            jogger.goal = found.goal
+            self._refuse_once(
+                Message(
+                    "the handwheel is being turned faster than {axis} can move, so clicks are lost",
+                    axis=self.axis,
+                )
+            )
+        return jogger.goal is not None
+
+    def _top(self, index: int) -> float:
+        return self._jogger.top(self._context.machine.axes[index], self._context.sample.homed[index])
+
+    def _within(self, index: int, wanted: float) -> float:
+        """Up to the soft limit, and no click kept beyond it."""
+        axis = self._context.machine.axes[index]
+        if axis.travel is None or not self._context.sample.homed[index]:
+            return wanted
+        here = self._context.sample.demand[index]
+        low, high = axis.travel[0] + LIMIT_MARGIN, axis.travel[1] - LIMIT_MARGIN
+        allowed = min(max(wanted, min(low, here)), max(high, here))
+        if allowed != wanted:
+            self._refuse_once(at_the_end(axis.name, wanted - allowed))
+        return allowed
+
+    def _refuse_once(self, what: str) -> None:
+        if what != self._reported:
+            self._reported = what
+            self._context.log("refused", Message("handwheel: {what}", what=what))
+
+
+class _Chase:
+    """The way to ``wanted``, or as much of it as is not too far behind; ``goal`` is where it ends."""
+
+    def __init__(self, axis: Axis, top: float, step: float, wanted: float) -> None:
+        self._amax, self._top, self._step, self._wanted = axis.amax, top, step, wanted
+        self.goal = wanted
+
+    def pieces(self, _start: float, p: float, v: float) -> list[Ramp]:
+        """For ``Jogger.chase``: as fast as is needed to be a tenth of a second behind."""
+        way = self._wanted - p
+        longest = max(self._top * _BEHIND + v * v / (2.0 * self._amax), self._step)
+        if abs(way) > longest:
+            way = math.copysign(longest, way)
+            self.goal = p + way
+        least = max(abs(way), v * v / (2.0 * self._amax))
+        return jogging.reach_ramps(v, way, min(self._top, least / _BEHIND), self._amax)

@@ -1,0 +1,341 @@
+"""Homing of the axes in their order, and touch-off of a tool against a tool setter or probe.
+
+Whatever ends the holding stops the slide, as in a jog. The place of the second touch is what is told, with
+how much it may be off; nothing is changed by it here.
+"""
+
+from __future__ import annotations
+
+from core.executor.commands import Touch
+from core.executor.hand_motion.jogging import LONGEST_LEASE, Jogger
+from core.executor.machine_context import MachineContext
+from core.executor.snapshot import State, Touched, TouchPhase
+from core.executor.start_conditions import guard_open
+from core.key_declaration import INCH
+from core.machine.setter_table import SetterModel
+from core.message import Message
+from core.ports import PROBE, Latch, Stop, Unknown
+
+_SETTLED = 0.1  # s at rest until the input is believed to be off
+_RENEWED = 0.03  # s between two renewals of the way
+_THERE = 0.003  # mm or two counts: nearer than that it is where it was sent
+_NONE = -1
+_SETTLES = 1.0  # s that the slides may take to stand before the next axis looks for home
+
+
+class TouchOff:
+    """``phase`` is what is done now, None for nothing; ``touched`` how the last one ended."""
+
+    def __init__(self, context: MachineContext, jogger: Jogger) -> None:
+        self._context = context
+        self._jogger = jogger
+        self._model = context.machine.hardware.table(SetterModel)
+        self.phase: TouchPhase | None = None
+        self.touched: Touched | None = None
+        self._ended = _NONE  # the press whose touch-off is over
+        self._command = Touch("", 0, 0.0, _NONE)
+        self._until = 0.0  # end of the lease
+        self._start = self._first = 0.0  # where the axis stood at the beginning, and at the first touch
+        self._target = 0.0
+        self._was_made = False  # the input, a tick ago
+        self._braking = False  # it has touched, and comes to rest
+        self._renewed = self._rested = 0.0
+        self._seen = (0.0, 0.0)  # time and place of the last look
+        self._latch: Latch | None = None
+        self._failed = ""  # what was found wrong, to be told when it is back
+
+    def asked(self, command: Touch, state: State, wheel: str) -> bool:
+        """Begin or renew; True when it begins. Raises DriverError."""
+        if command.press == self._ended:
+            return False  # the key is still held, and it is over
+        if self.phase is None:
+            return self._begin(command, state, wheel)
+        if (command.axis, command.sign, command.press) != (
+            self._command.axis,
+            self._command.sign,
+            self._command.press,
+        ):
+            self.end("another touch-off direction was selected")
+            self._ended = command.press
+            return False
+        self._until = self._context.now + min(command.lease, LONGEST_LEASE)
+        return False
+
+    def end(self, why: str) -> None:
+        """It is over, and why; what moves stops. Raises DriverError."""
+        if self.phase is None:
+            return
+        self._jogger.stop()
+        self._over(why)
+
+    def mind(self, state: State) -> bool:
+        """Once a tick: whatever has stopped the machine has ended it too. True when a jog runs into the
+        setter: that has to stop, and the next one leads away.
+        """
+        before, self._was_made = self._was_made, self._made
+        if self.phase is not None and state is not State.JOG:
+            self._over(Message("the machine is in state {state}", state=state.value))
+        runs_in = self._was_made and not before and self._model is not None
+        return runs_in and self.phase is None and state is State.JOG
+
+    def step(self) -> None:
+        """Once a tick. Raises DriverError."""
+        assert self.phase is not None
+        if why := self._broken():
+            self.end(why)
+            return
+        here = self._here
+        if self._braking:
+            if self._jogger.over():
+                self._braking = False
+                self._at_rest(here)
+        elif self._made and self.phase in {TouchPhase.SEARCH, TouchPhase.SLOW}:
+            self._touch(here)
+        elif self._made and self.phase is TouchPhase.RETURN:
+            self.end("a touch was detected on the return move; check the tool setter")
+        elif self._arrives(here):
+            self._arrived()
+        self._seen = (self._context.sample.t, here)
+
+    # --- whether it may -------------------------------------------------------------------------------------
+
+    def _begin(self, command: Touch, state: State, wheel: str) -> bool:
+        if why := self._refusal(command, state, wheel):
+            self._ended = command.press
+            self._context.log("refused", Message("touch-off: {why}", why=why))
+            return False
+        self._command, self._failed, self._latch = command, "", None
+        self._until = self._context.now + min(command.lease, LONGEST_LEASE)
+        self._start = self._here
+        self._seen = (self._context.sample.t, self._start)
+        self._jogger.forget()
+        assert self._model is not None
+        if self._context.ports.touch is not None:
+            self._context.ports.touch.arm()
+        self._go(TouchPhase.SEARCH, self._start + command.sign * self._model.search)
+        return True
+
+    def _refusal(self, command: Touch, state: State, wheel: str) -> str:
+        """Why nothing is touched off now; empty when it may be."""
+        axis, inputs = command.axis, self._context.inputs
+        if self._model is None or PROBE not in self._context.machine.inputs:
+            return "this machine has no tool setter; add [setter] and the input probe to the machine file"
+        if axis not in {"X", "Z"} or command.sign not in {-1, 1}:
+            return Message("a tool cannot be touched off along {axis}", axis=axis or "no axis")
+        reasons = (
+            (state is not State.IDLE, Message("not available in state {state}", state=state.value)),
+            (
+                not self._context.sample.homed[self._index(axis)],
+                Message("{axis} is not homed, so its position is not valid", axis=axis),
+            ),
+            (
+                inputs.get(PROBE, False),
+                (
+                    "the probe input is already on; check whether the tool setter is touched or "
+                    "its cable is damaged"
+                ),
+            ),
+            (wheel != "", "the handwheel is selected; deselect it first"),
+        )
+        found = next((why for so, why in reasons if so), "")
+        return found or self._broken(command) or self._too_far(command)
+
+    def _broken(self, command: Touch | None = None) -> str:
+        """What ends it in any tick; ``command``: what is to begin."""
+        context = self._context
+        button = (command or self._command).while_on
+        reasons = (
+            (command is None and context.now > self._until, "the key or button was released"),
+            (
+                bool(button) and not context.button(button),
+                Message("button {button} was released", button=button),
+            ),
+            (context.signals.hold, "feed hold is pressed"),
+            (guard_open(context), "the guard is open: close it"),
+            (context.spindle.asked or not context.spindle.stopped, ("the spindle is turning: stop it first")),
+            (
+                PROBE not in context.inputs or Unknown.INPUTS in context.unknown,
+                "the probe input is not being read; check its terminal",
+            ),
+        )
+        return next((why for so, why in reasons if so), "")
+
+    def _too_far(self, command: Touch) -> str:
+        """The whole of it has to lie inside the travel: half a search says nothing."""
+        assert self._model is not None
+        axis = self._context.machine.axis(command.axis)
+        low, high = axis.reach
+        here = self._context.sample.actual[self._index(command.axis)]
+        end = here + command.sign * (self._model.search + self._model.overtravel)
+        if low <= end <= high:
+            return ""
+        far = self._length(abs(end - (high if command.sign > 0 else low)))
+        return Message(
+            "the search for the touch point would exceed the travel of {axis} by "
+            "{distance}; jog the axis back first",
+            axis=command.axis,
+            distance=far,
+        )
+
+    def _length(self, mm: float) -> str:
+        """In the unit of the machine's builder."""
+        return (
+            Message("{mm} in", mm=f"{mm / INCH:.3f}")
+            if self._context.machine.inch
+            else Message("{unit} mm", unit=f"{mm:.2f}")
+        )
+
+    # --- from phase to phase --------------------------------------------------------------------------------
+
+    @property
+    def _made(self) -> bool:
+        return self._context.inputs.get(PROBE, False)
+
+    @property
+    def _here(self) -> float:
+        return self._context.sample.actual[self._index(self._command.axis)]
+
+    def _index(self, axis: str) -> int:
+        return self._context.ports.axes.axes.index(axis)
+
+    def _go(self, phase: TouchPhase, target: float) -> None:
+        self.phase, self._target, self._rested = phase, target, 0.0
+        self._renewed = -1.0
+        self._arrives(self._here)
+
+    def _arrives(self, here: float) -> bool:
+        """Move on under the lease; True once it has rested at the target for a while."""
+        context, model, command = self._context, self._model, self._command
+        assert model is not None
+        axis = context.machine.axis(command.axis)
+        if abs(here - self._target) <= max(_THERE, 2 * axis.count, axis.in_position) and self._jogger.over():
+            self._rested = self._rested or context.now
+            return context.now - self._rested >= _SETTLED
+        if context.now - self._renewed >= _RENEWED:
+            self._renewed = context.now
+            speed = model.slow if self.phase is TouchPhase.SLOW else model.speed
+            self._jogger.toward(command.axis, self._target, speed, self._until - context.now)
+        return False
+
+    def _touch(self, here: float) -> None:
+        """The input has come on: the slide brakes, and where that was is kept."""
+        context, port = self._context, self._context.ports.touch
+        if self.phase is TouchPhase.SLOW:
+            kept = port.latched() if port is not None else None
+            late = context.sample.t - self._seen[0]
+            self._latch = kept or Latch(context.sample.t, context.sample.actual, late)
+        else:
+            self._first = here
+        self._jogger.stop()
+        self._braking = True
+
+    def _at_rest(self, here: float) -> None:
+        assert self._model is not None
+        model, sign = self._model, self._command.sign
+        place = self._first if self._latch is None else self._latch.place[self._index(self._command.axis)]
+        over = (here - place) * sign
+        if over > model.overtravel:
+            far = self._length(over)
+            self.end(
+                Message(
+                    "the axis moved {distance} past the touch point, which is more than the "
+                    "overtravel setting; check the tool setter",
+                    distance=far,
+                )
+            )
+        elif self.phase is TouchPhase.SEARCH:
+            self._go(TouchPhase.BACK_OFF, self._first - sign * model.back_off)
+        else:
+            self._go(TouchPhase.RETREAT, place - sign * model.back_off)
+
+    def _arrived(self) -> None:
+        assert self._model is not None
+        model, sign, port = self._model, self._command.sign, self._context.ports.touch
+        if self.phase is TouchPhase.SEARCH:
+            self._failed = Message("no touch detected within {search}", search=self._length(model.search))
+            self._go(TouchPhase.RETURN, self._start)
+        elif self.phase is TouchPhase.RETURN:
+            self._over(self._failed)
+        elif self.phase is TouchPhase.SLOW:
+            self._failed = "no second touch detected; check whether the tool or the tool setter is loose"
+            self._go(TouchPhase.RETURN, self._first - sign * model.back_off)
+        elif self._made:
+            far = self._length(model.back_off)
+            self._over(
+                Message(
+                    "the probe input is still on after the tool has backed off {distance} from the touch "
+                    "point; check the stylus and the cable",
+                    distance=far,
+                )
+            )
+        elif self.phase is TouchPhase.BACK_OFF:
+            if port is not None:
+                port.arm()
+            self._go(TouchPhase.SLOW, self._first + sign * model.overtravel)
+        else:
+            self._found()
+
+    def _found(self) -> None:
+        """Half of what it may have been seen late is taken off; the other half, and half a count of the
+        encoder, is how far it may be off.
+        """
+        assert self._latch is not None
+        command, place = self._command, self._latch.place[self._index(self._command.axis)]
+        assert self._model is not None
+        half = self._model.slow * self._latch.late / 2.0
+        count = self._context.machine.axis(command.axis).count
+        self._over("", place - command.sign * half, half + count / 2.0)
+
+    def _over(self, why: str, place: float | None = None, error: float = 0.0) -> None:
+        command, count = self._command, self.touched.number if self.touched is not None else 0
+        self.phase, self._ended, self._braking = None, command.press, False
+        self.touched = Touched(count + 1, command.axis, command.sign, place, error, why)
+        if why:
+            self._context.log("refused", Message("touch-off: {why}", why=why))
+
+
+class Homing:
+    """The homing that is under way, if any."""
+
+    def __init__(self, context: MachineContext) -> None:
+        self._context = context
+        self._left: list[str] = []
+        self._now = ""
+        self._found_at = 0.0  # when the last one was found, s
+
+    def begin(self, name: str) -> str:
+        """Start with one axis, or with all; returns why not, empty when it has begun."""
+        axes = self._context.machine.axes
+        if name and name not in {axis.name for axis in axes}:
+            return Message("this machine has no axis {name} to home", name=name)
+        lost = [
+            axis
+            for axis, homed in zip(axes, self._context.sample.homed, strict=True)
+            if not homed and name in {"", axis.name}
+        ]
+        if not lost:
+            return "all axes homed"
+        self._left = [axis.name for axis in sorted(lost, key=lambda axis: axis.home_order)]
+        self._now = ""
+        return ""
+
+    def stop(self) -> None:
+        """Give the homing up; the drives brake on their own and hold."""
+        self._left, self._now = [], ""
+        self._context.ports.axes.stop(Stop.RAMP_HOLD)
+
+    def step(self) -> bool:
+        """Every tick: home the next axis when one is done; returns whether all are. Raises DriverError."""
+        context = self._context
+        homed = dict(zip(context.ports.axes.axes, context.sample.homed, strict=True))
+        if self._now and not homed[self._now]:
+            self._found_at = context.now
+            return False
+        if self._left:
+            if self._now and context.sample.moving and context.now < self._found_at + _SETTLES:
+                return False
+            self._now = self._left.pop(0)
+            context.ports.axes.home(self._now)
+            return False
+        self._now = ""
+        return not context.sample.moving

@@ -1,0 +1,402 @@
+"""A cycle: one run of a program, block by block, single block and feed hold on its path.
+
+Feed hold: the operator asks for it, or what must not go on: a lost spindle, an open guard, an output that is
+not as it was commanded, a queue that runs dry. The cycle comes to rest on its path, in a thread behind the
+pull-out. Going on waits for the spindle before the slides move.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from core.alarms import CATALOGUE, Code
+from core.executor.job import ProgramPass, ReadAhead
+from core.executor.machine_context import MachineContext
+from core.executor.program_motion.controller_motion import ControllerMotion
+from core.executor.program_motion.path_section import Progress
+from core.executor.program_motion.setpoint_motion import SetpointMotion
+from core.executor.program_motion.standstill import Next, Standstill, Wait, at_speed
+from core.executor.raised_alarm import AlarmError, code_of_hold
+from core.executor.snapshot import State
+from core.interpreter.actions import ProgramEnd, ProgramStop, SpindleLock, SpindleOrient, SpindleStop
+from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.modal_state import Modal
+from core.interpreter.path_sections import needs_speed
+
+PathMotion = SetpointMotion | ControllerMotion
+"""What moves the blocks from rest to rest: our own setpoints, or a controller that plans by itself."""
+
+_BLOCKS = 400  # read in one tick at most: a press is never kept waiting for a long program
+_ACTIONS = 50  # carried out in one tick at most
+_BUFFER = 1.0  # of the look-ahead: seconds of motion kept read beyond what is planned
+_BEHIND_TAP = "FEED HOLD BEHIND THE TAP"
+_GOING = frozenset({State.RUN, State.WAIT})
+_SPINDLE_WORDS = (SpindleStop, SpindleLock, SpindleOrient, ProgramEnd)  # done whether it turns or not
+
+
+class FeedHold:
+    """Stops what a cycle has under way and lets it go on. On the executor's thread alone."""
+
+    def __init__(self, context: MachineContext, motion: PathMotion, still: Standstill) -> None:
+        self._context = context
+        self._motion = motion
+        self._still = still
+        self.reason = ""  # in the words of the catalogue; empty where the button was pressed
+        self._since = 0.0
+        self._spin_up: Wait | None = None  # before motion that was stopped goes on
+        self._behind: Block | None = None  # single block goes on behind this one
+        self._retracting = False  # out of a thread whose spindle is lost
+
+    @property
+    def within_section(self) -> bool:
+        """Whether motion goes on within a path section, and not with the next one."""
+        return self._motion.active and not self._motion.complete
+
+    @property
+    def retracting(self) -> bool:
+        """Whether the tool is on its way out of a thread that has lost its spindle."""
+        return self._retracting
+
+    @property
+    def spins_up(self) -> bool:
+        """Whether going on still waits for the spindle."""
+        return self._spin_up is not None
+
+    @property
+    def label(self) -> str:
+        """In words, what going on waits for; empty where it waits for nothing."""
+        return self._spin_up.label() if self._spin_up is not None else ""
+
+    def begin(self, reason: str = "", by: str = "", code: Code | None = None) -> State:
+        """Come to rest; returns the state of the machine from now on.
+
+        ``reason`` in the words of the catalogue or with its ``code``; empty where it was pressed, ``by``
+        whom.
+        """
+        self.reason, self._since = reason, self._context.now
+        self._context.show_stop(*(code_of_hold(reason, by) if code is None else (code, reason.lower())))
+        if self._motion.moving:
+            self._motion.hold()
+            return State.HOLDING
+        self._motion.let_stop()  # of a plan whose queue has run out meanwhile nothing holds any more
+        return State.HOLD
+
+    def starve(self, code: Code, detail: str) -> None:
+        """The queue was not refilled in time and stops the slides: keep and show why."""
+        self.reason, self._since = CATALOGUE[code].text.upper(), self._context.now
+        self._context.show_stop(code, detail)
+
+    def retract(self, block: Block) -> None:
+        """The spindle is lost in a thread: brake along it, then draw X back."""
+        self._context.log("thread", "spindle speed lost during threading")
+        self._motion.retract(block)
+        self._retracting = True
+
+    def stopped(self) -> bool:
+        """Called every tick while the slides come to rest; returns whether they are at rest.
+
+        Raises AlarmError("thread-lost") once a lost thread is left.
+        """
+        self._motion.keep_up()
+        if self._motion.moving:
+            return False
+        if self._retracting:
+            self._motion.retracted()
+        return not self._retracting
+
+    def go_on(self, behind: Block | None, *, starts_spindle: bool) -> None:
+        """Cycle Start after a stop, with single block ``behind`` the block that was the last one.
+
+        A spindle that is to turn is waited for first.
+        """
+        self.reason = ""
+        within = self.within_section
+        self._still.done = within
+        self._still.shift_for_hold(self._context.now - self._since)
+        self._behind = behind
+        self._spin_up = self._slow_spindle() if within or starts_spindle else None
+        self._since = self._context.now
+        if within and self._spin_up is None:
+            self._motion.go_on(behind)
+
+    def spin_up(self) -> State:
+        """Every tick while the spindle speeds up; returns the state of the machine from now on.
+
+        One that does not come to its speed is a hold again: the program is not lost with it.
+        """
+        if self._spin_up is None:
+            return State.RUN
+        try:
+            over = self._spin_up.over(self._context.now)
+        except AlarmError:
+            self._spin_up = None
+            return self.begin("SPINDLE DID NOT RETURN TO SPEED")
+        if not over:
+            return State.WAIT
+        self._spin_up = None
+        self._still.shift_for_hold(self._context.now - self._since)
+        if self.within_section:
+            self._motion.go_on(self._behind)
+        return State.RUN
+
+    def _slow_spindle(self) -> Wait | None:
+        """What motion waits for that goes on: the spindle, when the program has it turning."""
+        spindle = self._context.spindle
+        if not spindle.asked or spindle.at_speed(self._context.now):
+            return None
+        return at_speed(self._context)
+
+
+class Cycle:
+    """``step`` is called every tick, ``enter`` at each change of state, ``ended`` at the end of the program.
+
+    ``begins`` is the modal state before its first block.
+    """
+
+    def __init__(
+        self,
+        context: MachineContext,
+        motion: PathMotion,
+        source: ProgramPass,
+        begins: Modal,
+        enter: Callable[[State], None],
+        ended: Callable[[ProgramEnd | None], None],
+    ) -> None:
+        self._context = context
+        self._motion = motion
+        self._enter = enter
+        self._ended = ended
+        self._needs_end = source.left is None
+        self._feed = ReadAhead(source, context.machine)
+        self._state = State.RUN
+        self._still = Standstill(context, self._feed, lambda: self._tapping)
+        self._hold = FeedHold(context, motion, self._still)
+        self._later: Callable[[], State] | None = None  # a hold, as soon as the tap is out of its hole
+        self.message = ""  # of M00 and M01 while the stop lasts
+        self.current: Block | None = None
+        self.modal = begins
+
+    @property
+    def waiting_for(self) -> str:
+        """In words, what the cycle waits for."""
+        if self._state is State.HOLD:
+            return self._hold.reason
+        if self._later is not None:
+            return _BEHIND_TAP
+        if self._hold.spins_up:
+            return self._hold.label
+        if self._still.label is not None:
+            return self._still.label
+        return "FEED OVERRIDE AT 0" if self._state is State.WAIT else ""
+
+    @property
+    def next_block(self) -> Block | None:
+        """The block after the one that is being executed; none while a standstill is awaited."""
+        following = self._motion.following or self._feed.next_block
+        return None if following is self.current else following
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether nothing moves any more."""
+        return not self._motion.moving
+
+    # --- what the operator asks ---------------------------------------------------------------------------
+
+    def hold(
+        self, reason: str = "", by: str = "", code: Code | None = None, *, at_once: bool = False
+    ) -> None:
+        """Feed hold; for ``reason``, ``by`` and ``code`` see ``FeedHold.begin``.
+
+        A tap first comes out of its hole, in which the spindle would turn on; without a spindle, or
+        ``at_once``, it stops.
+        """
+        if self._state in {State.HOLD, State.HOLDING}:
+            self._hold.reason = self._hold.reason or reason
+        if self._state not in _GOING:
+            return
+        begin = partial(self._hold.begin, reason, by, code)
+        turns = not (self._context.spindle.lost or self._context.spindle.waits)
+        if self._tapping and turns and not at_once:
+            self._later = self._later or begin
+        else:
+            self._later = None
+            self._change(begin())
+
+    @property
+    def _tapping(self) -> bool:
+        """Whether a tap is in its hole, which it has to leave while the spindle turns."""
+        block = self.current
+        return block is not None and (block.in_hole or (block.coupled and self._motion.moving))
+
+    def _held_behind_tap(self) -> bool:
+        """Begin the hold that has waited for the tap, once that is out."""
+        if self._later is None or self._tapping:
+            return False
+        begin, self._later = self._later, None
+        self._change(begin())
+        return True
+
+    def starve(self, code: Code = "low-queue", detail: str = "") -> None:
+        """The queue was not refilled in time: its tail stops the slides, Cycle Start goes on."""
+        self._motion.let_stop()
+        if self._state in _GOING:
+            self._hold.starve(code, detail)
+            self._change(State.HOLDING)
+
+    def wait_for(self, label: str) -> None:
+        """Its program is over; stand still until another cycle takes its place."""
+        self._still.wait_for(label)
+
+    def abandon(self) -> None:
+        """Come to rest and be given up; the caller waits for ``at_rest``."""
+        if self._motion.moving:
+            self._motion.brake()
+        if self._state in _GOING:
+            self._change(State.HOLDING)
+
+    def why_not_on(self) -> str:
+        """Why a stopped cycle cannot go on now; empty when it can."""
+        spindle = self._context.spindle
+        return spindle.start_barred.lower() if spindle.waits and self._turns_next() else ""
+
+    def go_on(self, *, starts_spindle: bool = False) -> None:
+        """Cycle Start after hold, single block, M00, M01; a spindle that it starts is waited for."""
+        stopped, self._later = self._state, None
+        self.message = ""
+        if stopped is State.PROGRAM_STOP:
+            self._feed.pass_stop()
+        self._change(State.RUN)
+        behind = self.current if stopped is State.BLOCK_END else None
+        self._hold.go_on(behind, starts_spindle=starts_spindle)
+
+    # --- every tick ---------------------------------------------------------------------------------------
+
+    def catch_up(self) -> None:
+        """Show the block in which the slides are or stand, also when none of it was seen while they moved."""
+        self._show_later(self._motion.block)
+
+    def step(self) -> None:
+        """Keep the queue filled, then do what comes next. Raises AlarmError, MotionError, DriverError."""
+        playing = self._motion.block if self._motion.moving else None
+        if playing is not None:
+            self._show(playing)
+            self._watch_spindle(playing)
+        if self._state in _GOING and self._held_behind_tap():
+            return
+        if self._state is State.HOLDING:
+            if self._hold.stopped():
+                self.catch_up()
+                self._change(State.HOLD)
+        elif self._state in _GOING:
+            self._read()
+            self._advance()
+
+    def _read(self) -> None:
+        self._feed.pull(_BLOCKS, _BUFFER * self._context.machine.timing.lookahead)
+
+    def _advance(self) -> None:
+        if self._context.spindle.waits and self._turns_next():
+            self.hold(self._context.spindle.waits)
+        elif self._hold.spins_up:
+            self._change(self._hold.spin_up())
+        else:
+            self._progress()
+
+    def _turns_next(self) -> bool:
+        """Whether what is done now, or comes next, is meant for a spindle that turns."""
+        if self._hold.within_section or self._still.label is not None or self._feed.pending:
+            return True
+        stop = self._feed.stop
+        return stop is not None and not isinstance(stop.action, _SPINDLE_WORDS)
+
+    def _progress(self) -> None:
+        match self._motion.progress(self._feed):
+            case Progress.MOVING:
+                self._change(State.RUN)
+            case Progress.STILL:
+                self._change(State.WAIT)
+            case Progress.BLOCK_END:
+                self._show_later(self._motion.block)
+                self._change(State.BLOCK_END)
+            case Progress.HELD:
+                self.hold("CONTROLLER IN FEED HOLD", at_once=True)
+            case Progress.DONE:
+                self._show_later(self._motion.ended_with)
+                self._stand()
+
+    def _stand(self) -> None:
+        """At rest: wait, act, begin the next path section, as far as this tick's budget goes."""
+        for _ in range(_ACTIONS):
+            match self._still.next():
+                case Next.GO_ON:
+                    self._change(State.RUN)
+                case Next.ACTION if self._feed.stop is not None:
+                    if not self._act(self._feed.stop):
+                        return
+                case done:
+                    self._rest(done)
+                    return
+
+    def _rest(self, what: Next) -> None:
+        """Wait, stop, begin motion or end: what this tick ends with."""
+        match what:
+            case Next.WAIT:
+                self._change(State.WAIT if self._still.label else State.RUN)
+            case Next.BLOCK_END:
+                self._change(State.BLOCK_END)
+            case Next.MOTION:
+                self._change(State.RUN)
+                self._read()
+                self._motion.begin(self._feed.take())
+            case Next.END if self._needs_end:
+                raise AlarmError("no-end")
+            case Next.END:
+                self._ended(None)
+            case _:
+                pass
+
+    def _act(self, block: Block) -> bool:
+        """Carry out the block that needed the standstill; False when the cycle stops or ends with it."""
+        context, action = self._context, block.action
+        if action is not None:
+            self._show(block)
+        if isinstance(action, ProgramEnd):
+            self._feed.pass_stop()
+            self._ended(action)
+            return False
+        if isinstance(action, ProgramStop) and (context.switches.optional_stop or not action.optional):
+            self.message = action.message
+            context.show_stop("optional-stop" if action.optional else "program-stop", action.message)
+            self._change(State.PROGRAM_STOP)
+            return False
+        self._still.carry_out(block)
+        return True
+
+    def _watch_spindle(self, block: Block) -> None:
+        """Feeding by the revolution needs a spindle that turns; a thread that lost it is left at once."""
+        spindle = self._context.spindle
+        if not needs_speed(block) or self._hold.retracting or not spindle.lost or not self._motion.moving:
+            return
+        if block.kind is Kind.THREAD and not self._motion.release():
+            self._hold.retract(block)
+            self._change(State.HOLDING)
+        elif block.kind is Kind.THREAD or (block.per_rev and not block.modal.c_locked) or spindle.fails:
+            self.hold(spindle.why_slow or "SPINDLE BELOW HALF COMMANDED SPEED")
+
+    def _show_later(self, block: Block | None) -> None:
+        """At rest: blocks that go nowhere have been executed too."""
+        if block is not None and (self.current is None or block.n > self.current.n):
+            self._show(block)
+
+    def _show(self, block: Block) -> None:
+        self.current = block
+        self.modal = block.modal
+        self._context.line = block.line
+        if block.moves:
+            self._context.spindle.follow(block)
+
+    def _change(self, state: State) -> None:
+        if state is not self._state:
+            self._state = state
+            self._enter(state)

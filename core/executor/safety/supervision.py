@@ -1,0 +1,334 @@
+"""What is watched every tick: following error, standstill, drives, collet, outputs, the feeder.
+
+A feeder that heard nothing stops spindle and outputs; a terminal, a module or a controller may do so by
+itself. What was switched behind the back of the program holds the cycle, and its part is not counted: nothing
+is fed while an output is not what the program commanded, and what a start switches on again is announced.
+
+The following error and the standstill of the axes are watched here too. The drives watch themselves, with one
+window for every speed; this is narrower, and holds at rest. The spindle is watched by ``spindle_control``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from core.alarms import Code
+from core.executor.machine_context import MachineContext
+from core.executor.program_run import ProgramRun
+from core.executor.raised_alarm import AlarmError
+from core.executor.snapshot import ACTIVE, CYCLE, STOPPED, State
+from core.executor.start_conditions import Starting
+from core.faults import Trip, code_of
+from core.machine.machine_model import Axis
+from core.message import Message, join_messages
+from core.ports import AxisSample, Unknown
+
+_HOST = 0.03  # s beyond a drive's own time: a drive that trips by itself is to be heard first
+_RECENT = 0.1  # s for which a slide may still trail behind a speed that has gone
+_UNMOVED = 0.05  # s in which an encoder has to have counted while its axis is sent away
+_ARRIVES = 1.0  # s that a slide may take into position, as the cycle waits for it
+_FROZEN, _CLOSE = 3.0, 2.5  # s, counts: a drive that pushes moves its encoder by one or two
+_PART = 0.125  # of the standstill window: pushed that far off, a slide that is free moves
+_COUNTS = 20.0  # by which it must have been sent, where counts are coarse
+_NOTHING = 1e-9
+_POWERED = CYCLE | {State.IDLE, State.JOG, State.HOME}
+_UNHEARD = 0.25  # s for which a driver may have nothing of the slides before it reports why
+
+
+class FollowingErrorWatch:
+    """Watches all axes, at rest and in motion, powered or not; ``look`` is called once a tick."""
+
+    def __init__(self, axes: Sequence[Axis]) -> None:
+        self._axes = [_OneAxis(axis) for axis in axes]
+        self._enabled = False
+
+    def look(self, sample: AxisSample, *, unpowered: bool) -> None:
+        """Raises AlarmError for the first axis that is not where it ought to be.
+
+        ``unpowered``: the drives are off and nothing else is the matter, so that nobody ought to move them.
+        """
+        if sample.enabled is not self._enabled:
+            self._enabled = sample.enabled
+            self.forget()
+        each = zip(self._axes, sample.demand, sample.actual, sample.homed, strict=True)
+        for one, demand, actual, homed in each:
+            if sample.moving:
+                one.sent()  # also where its wire has not yet told of it
+            if not one.passes(sample.t):
+                continue
+            if sample.enabled:
+                one.powered(demand, actual)
+                one.unasked(actual, at_rest=not sample.moving and demand == actual)
+            else:
+                one.unasked(actual, at_rest=not sample.moving and unpowered and homed)
+
+    def forget(self) -> None:
+        """What was seen no longer counts: power has changed, or the operator has acknowledged an alarm."""
+        for one in self._axes:
+            one.forget()
+
+
+class _OneAxis:
+    """One axis. Times are those of the samples, so that a control that was away takes nothing for long."""
+
+    def __init__(self, axis: Axis) -> None:
+        self._axis = axis
+        self._t = 0.0
+        self.forget()
+
+    def forget(self) -> None:
+        self._dt = 0.0
+        self._demand: float | None = None
+        self._speed = self._speed_at = 0.0
+        self._sent_at = self._t
+        self._since: dict[str, float] = {}
+        self._counted = (self._t, 0.0, 0.0)  # sent since, from which demand; reading when it last counted
+        self._counted_at = self._t
+        self._stood: float | None = None  # where it stood when it came to rest
+
+    def passes(self, t: float) -> bool:
+        """Whether this is a new sample."""
+        self._dt, self._t = t - self._t, t
+        return self._dt > 0.0
+
+    def powered(self, demand: float, actual: float) -> None:
+        """A sample of the axis with its drive on. Raises AlarmError."""
+        axis, error = self._axis, abs(demand - actual)
+        if self._demand is None:
+            self._demand, self._sent_at, self._counted = demand, self._t, (self._t, demand, actual)
+        self._note_speed(abs(demand - self._demand) / self._dt)
+        self._demand = demand
+        self._encoder(demand, actual)
+        rest = self._t - self._sent_at
+        limit = axis.following_limit(self._speed)
+        if self._lasts("off", error > limit) > axis.following_time + _HOST:
+            code: Code = "standstill" if rest > axis.still_time else "following"
+            raise AlarmError(
+                code, Message("{axis} is {error} off its setpoint", axis=axis.name, error=self._words(error))
+            )
+        if rest > axis.still_time:
+            self._at_standstill(error, rest)
+
+    def _at_standstill(self, error: float, rest: float) -> None:
+        """Nothing has sent it away for a while, and it does not arrive: the nearer the longer it may take."""
+        axis, unmoved = self._axis, self._t - self._counted_at
+        pushed = max(_PART * axis.still_window, 4.0 * axis.in_position)
+        if self._lasts("pushed", error > pushed) > axis.still_time and unmoved > axis.still_time:
+            raise AlarmError(
+                "standstill",
+                Message("{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)),
+            )
+        beside = self._lasts("beside", error > axis.in_position) > _ARRIVES and rest > _ARRIVES
+        frozen = self._lasts("frozen", error > _CLOSE * axis.count) > _FROZEN and unmoved > _FROZEN
+        if beside or frozen:
+            raise AlarmError(
+                "standstill",
+                Message("{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)),
+            )
+
+    def sent(self) -> None:
+        """Something moves, by the driver's own word: where it stood no longer counts."""
+        self._stood = None
+        self._since.pop("rest", None)
+
+    def unasked(self, actual: float, *, at_rest: bool) -> None:
+        """At rest, without a setpoint that holds it there. Raises AlarmError."""
+        axis = self._axis
+        if not at_rest:
+            self.sent()
+            return
+        if self._lasts("rest", True) < axis.still_time:
+            return
+        self._stood = actual if self._stood is None else self._stood
+        off = abs(actual - self._stood)
+        if self._lasts("moved", off > axis.still_window) > axis.still_time:
+            raise AlarmError(
+                "moved-unasked",
+                Message("{axis} has moved by {off} without a command", axis=axis.name, off=self._words(off)),
+            )
+
+    def _note_speed(self, speed: float) -> None:
+        if speed * self._dt > _NOTHING:
+            self._sent_at = self._t
+        if speed >= self._speed or self._t - self._speed_at > _RECENT:
+            self._speed, self._speed_at = speed, self._t
+
+    def _encoder(self, demand: float, actual: float) -> None:
+        """Sent away, and its encoder counts nothing: it is jammed, or nobody knows where it is."""
+        axis, (since, sent_from, read) = self._axis, self._counted
+        if abs(actual - read) > 1.5 * axis.count:
+            self._counted, self._counted_at = (self._t, demand, actual), self._t
+            return
+        least = max(0.25 * axis.still_window, _COUNTS * axis.count)
+        sent = abs(demand - sent_from)
+        if sent <= axis.count:
+            self._counted = (self._t, sent_from, read)
+        elif self._t - since > _UNMOVED and sent > least and abs(demand - actual) > least:
+            raise AlarmError(
+                "encoder-still",
+                Message(
+                    "{axis} was commanded to move {sent}, but its encoder does not count",
+                    axis=axis.name,
+                    sent=self._words(sent),
+                ),
+            )
+
+    def _lasts(self, what: str, holds: bool) -> float:
+        """How long it has held, s."""
+        if not holds:
+            self._since.pop(what, None)
+            return 0.0
+        return self._t - self._since.setdefault(what, self._t)
+
+    def _words(self, way: float) -> str:
+        return (
+            Message("{angle} degrees", angle=f"{way:.2f}")
+            if self._axis.rotary
+            else Message("{unit} mm", unit=f"{way:.3f}")
+        )
+
+
+class Supervisor:
+    """Watches drives, axes and collet."""
+
+    def __init__(self, context: MachineContext) -> None:
+        self._context = context
+        self._axes = FollowingErrorWatch(context.machine.axes)
+        self.max_following_error = 0.0
+
+    def acknowledged(self) -> None:
+        """The operator has acknowledged an alarm: an axis that stands elsewhere now may stand there."""
+        self._axes.forget()
+
+    def look(self, state: State) -> None:
+        """Raises AlarmError for the first thing that must stop the machine."""
+        sample, context = self._context.sample, self._context
+        if sample.fault:
+            raise AlarmError(code_of(sample.fault, "axis"), sample.fault)
+        if Unknown.SLIDES in context.unknown:
+            self._axes.forget()  # heard again, they may stand elsewhere
+            self._unheard(powered=state in _POWERED)
+            return
+        self._unheard_since = None
+        self._numbers(sample)
+        self.max_following_error = max(self.max_following_error, *map(abs, sample.following_error[:2]))
+        self._axes.look(sample, unpowered=state is State.DISABLED)
+        turning = not context.spindle.stopped and context.spindle.asked
+        gripped = context.inputs.get("collet_closed", True) or not context.ports.io.outputs().get(
+            "collet", True
+        )
+        if turning and not gripped and not context.machine.interlocks.spindle_with_collet_open:
+            self._collet_lost()
+        else:
+            self._open_since = None
+
+    def _unheard(self, *, powered: bool) -> None:
+        """A driver reports a fault too; where it does not, nothing moves on and nothing is ready."""
+        now = self._context.now
+        since = self._unheard_since = now if self._unheard_since is None else self._unheard_since
+        if powered and now - since > _UNHEARD:
+            raise AlarmError("drive-silent", "no data from the axes")
+
+    def _numbers(self, sample: AxisSample) -> None:
+        """No comparison ever trips on what is no number."""
+        each = zip(
+            self._context.machine.axes, sample.demand, sample.actual, sample.following_error, strict=True
+        )
+        for axis, *told in each:
+            if not all(map(math.isfinite, told)):
+                raise AlarmError(
+                    "axis",
+                    Message("{axis}: the drive reports a position that is not a number", axis=axis.name),
+                )
+
+    def _collet_lost(self) -> None:
+        """The switch may bounce while the collet closes; it must be off for its closing time."""
+        now = self._context.now
+        self._open_since = now if self._open_since is None else self._open_since
+        if now - self._open_since > 2.0 * self._context.machine.collet.close_time:
+            raise AlarmError("collet-lost")
+
+    _open_since: float | None = None
+    _unheard_since: float | None = None
+
+
+# --- outputs and the feeder -----------------------------------------------------------------------------
+
+
+class OutputsWatch:
+    """Watches outputs and the feeder, once a tick. On the executor's thread alone."""
+
+    def __init__(self, context: MachineContext, program_run: ProgramRun) -> None:
+        self._context = context
+        self._program_run = program_run
+        self._known_off: frozenset[str] = (
+            frozenset()
+        )  # outputs of which it is known that they are not as commanded
+
+    def look(self) -> None:
+        """Hold the cycle where something was switched by somebody else. Raises DriverError, AlarmError."""
+        trips = self._context.ports.trips
+        trip = trips.tripped() if trips is not None else None
+        if trips is not None and trip is not None:
+            trips.acknowledge(trip)  # first: the hold is setpoints too
+            self._tripped(trip)
+        if Unknown.OUTPUTS in self._context.unknown or self._context.sample.fault:
+            return  # what a fault has switched off is the fault's, which is told in this tick
+        if self._program_run.status.state not in CYCLE:
+            told, self._known_off = self._known_off, frozenset()
+            for each in self._context.outputs.accept():
+                if each.name not in told:  # by what has switched it off
+                    self._context.log("disturbed", Message("{item} MOVED WITHOUT A COMMAND", item=each.words))
+            return
+        differing = self._context.outputs.differing()
+        new = [each for each in differing if each.name not in self._known_off]
+        self._known_off = frozenset(each.name for each in differing)
+        if new:
+            self._disturbed("switched-off", " AND ".join(each.words for each in new))
+
+    def starts(self) -> Iterator[Starting]:
+        """What the announcement lists: outputs that going on switches as the program has them."""
+        if self._program_run.status.state in STOPPED:
+            for name, wanted in self._context.outputs.differing():
+                words = Message("{output} TURNS ON" if wanted else "{output} TURNS OFF", output=name.upper())
+                begin = partial(self._context.outputs.write, name, wanted)
+                yield Starting(Message("output {name}", name=name), words, begin)
+
+    def _tripped(self, trip: Trip) -> None:
+        """Lamps are no outputs of the program: they are lit again, and nothing is held or told for them."""
+        context = self._context
+        outputs = tuple(name for name in trip.outputs if name not in context.machine.lamps)
+        off = [*(["SPINDLE"] if trip.spindle else []), *(name.upper() for name in outputs)]
+        if not off:
+            return
+        if trip.spindle:
+            context.spindle.dropped("DRIVER HOST STOPPED SPINDLE/OUTPUTS")
+        context.outputs.fell(outputs)
+        self._known_off |= set(outputs)
+        template = (
+            "NO SIGNAL FROM MACHINE FOR {away} S, OUTPUTS FOUND ON AND SWITCHED OFF: {off}"
+            if trip.found
+            else "NO SIGNAL FROM CONTROL FOR {away} S, SWITCHED OFF: {off}"
+        )
+        self._disturbed(
+            "feeder-tripped",
+            Message(
+                template,
+                away=f"{trip.away:.1f}",
+                off=join_messages(", ", off),
+            ),
+        )
+
+    def _disturbed(self, code: Code, words: str) -> None:
+        program_run, state = self._program_run, self._program_run.status.state
+        self._context.log("disturbed", words)
+        if program_run.cycle is None or state not in CYCLE:
+            return
+        program_run.disturb(words.lower())
+        if state in ACTIVE:
+            self._context.spindle.break_off()
+        else:
+            self._context.show_stop(code, words.lower())
+        program_run.cycle.hold(words, code=code)

@@ -1,0 +1,378 @@
+"""Checks of a cutting edge: its side, its place along the part, and the hand of the spindle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from core.interpreter.elementary_blocks import Kind
+from core.message import Message
+from core.part.cutter import Cutter, Side
+from core.part.stock import Stock
+from core.part.swept_edge import Point
+from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.part.turned_part import NOTHING, Cut, TurnedPart
+from core.proving.checks.cut_checks import INSERTS, is_round, size_faults
+from core.proving.checks.thread_checks import Found
+from core.proving.tip_moves import TipMove
+from core.tool_edges import edge_name
+
+_WRONG_SIDE = 0.5  # mm that the back of an insert may take off
+_BEHIND = 0.05  # mm of metal behind the nose
+_FACED = 2.54  # mm that is usually faced off in one cut towards the axis
+_STEEPER = 2.0  # degrees
+_OVER_AXIS = 1.5  # mm beyond it, which a face or a part-off needs at most
+_TURNED_AWAY = 0.1  # mm beyond it, by a cut along Z that leaves nothing
+_BEHIND_FACE = 0.5  # mm
+_PAST = 12.7  # mm
+_BEYOND_CUT = 0.2  # mm
+_ENTERS = 1.0  # mm; less is a chamfer or a face
+_BREAKS_THROUGH = 2.54  # mm that a tool may go beyond the stock
+_OFF_AXIS = 0.1  # mm; less is a correction by a work shift
+_LOOP = 200.0  # degrees; an insert with a corner gets around less than 180
+_QUARTER = (80.0, 100.0)  # degrees
+_EDGE = 3.0  # mm of radius with which an edge is rounded at most
+_AT_FACE = 0.05  # mm
+_NEAR = 1e-6
+_DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTRE_DRILL, ToolKind.REAMER, ToolKind.TAP})
+
+
+@dataclass(slots=True)
+class EdgeChecks:
+    """Goes with the moves in their order, each once it has been cut."""
+
+    stock: Stock | None = None
+    stock_given: bool = False  # and not assumed
+    parted_at: float | None = None  # Z to which the deepest part-off cuts, at the side of the chuck
+    _turned: dict[int, float] = field(default_factory=dict)  # T → which way its edge has been cut with
+    _told: set[int] = field(default_factory=set)
+    _solid: float = 0.0  # mm of Z without a bore that the move under way enters
+
+    def before_cut(self, move: TipMove, shape: ToolShape | None, part: TurnedPart) -> None:
+        """Note how much solid material a tool for bores is about to enter."""
+        self._solid = 0.0
+        if shape is None or not shape.internal or move.quick:
+            return
+        z = [z for z, _ in move.points]
+        there = slice(part.columns.at(min(z)), part.columns.at(max(z)))
+        solid = np.all(part.low[:, there] <= 0.0, axis=0) & np.any(part.high[:, there] > 0.0, axis=0)
+        self._solid = part.columns.step * float(np.count_nonzero(solid))
+
+    def look(
+        self,
+        move: TipMove,
+        cuts: Sequence[Cut],
+        met: Cut,
+        shape: ToolShape | None,
+        cutter: Cutter,
+        part: TurnedPart,
+        tool: int,
+    ) -> Iterator[Found]:
+        """Yield the faults of a feed that has just cut; ``cuts``: what each piece of it has met."""
+        if shape is None or not met:
+            return
+        if cutter.held and shape.kind in INSERTS and _turning(move) > _LOOP and not is_round(shape):
+            around = f"{_turning(move):.0f}°"
+            yield Found(
+                "arc-loop",
+                Message(
+                    "{tool} feeds through the part along an arc of {around}.",
+                    tool=edge_name(tool),
+                    around=around,
+                ),
+            )
+            return
+        yield from _hollow_at_edge(move, shape, cutter, part, tool)
+        yield from size_faults(move, met, shape, cutter, tool, stock_given=self.stock_given)
+        yield from self._spindle(move, shape, cutter, tool)
+        yield from _off_axis(move, shape, tool)
+        yield from _without_limit(move, shape, tool)
+        if self._solid > _ENTERS and met.width > _ENTERS:
+            words = Message(
+                "{tool} feeds {solid} along Z into solid material.",
+                tool=edge_name(tool),
+                solid=move.modal.length_text(self._solid),
+            )
+            yield Found("no-bore", words)
+        yield from self._past_stock(move, shape, tool)
+        yield from self._over_axis(move, met, cutter, tool)
+        yield from self._past_part_off(move, shape, cutter, tool)
+        yield from self._contour_past_part_off(move, shape, tool)
+        yield from self._drilled(move, shape, tool)
+        if cutter.held and shape.kind in INSERTS and move.kind is not Kind.THREAD:  # else it is assumed
+            yield from _wrong_side(move, cuts, shape, cutter, part, tool)
+
+    def _spindle(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
+        """M03 and M04 against the hand of a drill; one edge cuts one way only."""
+        if not move.rpm:
+            return
+        if shape.kind in _DRILLS:
+            needed = {Hand.RIGHT: 1.0, Hand.LEFT: -1.0}.get(shape.hand, 0.0)
+            if move.rpm * needed < 0.0:
+                yield Found("wrong-spindle-direction", _turns_wrongly(move, shape, tool))
+            return
+        if shape.turns_itself:
+            return
+        if cutter.held and _turns_backwards(shape, move.rpm) and tool not in self._told:
+            self._told.add(tool)
+            yield Found("wrong-spindle-direction", _turns_wrongly(move, shape, tool))
+            return
+        radii = [r for _, r in move.points]
+        if min(radii) < _NEAR and max(radii) > -_NEAR:
+            return  # over the axis
+        way = math.copysign(1.0, move.rpm) * math.copysign(1.0, radii[0])
+        if self._turned.setdefault(tool, way) != way and tool not in self._told:
+            self._told.add(tool)
+            words = Message(
+                "{tool} cuts with the spindle turning in the opposite direction to its earlier cuts.",
+                tool=edge_name(tool),
+            )
+            yield Found("wrong-spindle-direction", words)
+
+    def _over_axis(self, move: TipMove, met: Cut, cutter: Cutter, tool: int) -> Iterator[Found]:
+        """An outside tool that is fed through the axis, or cuts on its other side."""
+        face = (self.stock.front if self.stock is not None else 0.0) - _BEHIND_FACE
+        beyond = max((-r * cutter.across for z, r in move.points[1:] if z < face), default=0.0)
+        turns = max(r * cutter.across for _, r in move.points) < 0.0 and met.width > _ENTERS
+        if cutter.side is Side.OUTSIDE and beyond > (_TURNED_AWAY if turns else _OVER_AXIS):
+            deep = move.modal.length_text(beyond)
+            yield Found(
+                "over-axis",
+                Message(
+                    "{tool} cuts {depth} past the spindle centerline, on the side opposite to "
+                    "where the tool is mounted.",
+                    tool=edge_name(tool),
+                    depth=deep,
+                ),
+            )
+
+    def _past_part_off(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
+        if self.parted_at is None or cutter.drills or shape.kind is ToolKind.PARTING:
+            return
+        z = min(z for z, _ in move.points)
+        long = (self.stock.front if self.stock is not None else 0.0) - self.parted_at
+        if z < self.parted_at - max(_PAST, long):
+            text = move.modal.length_text
+            yield Found(
+                "past-part-off",
+                Message(
+                    "{tool} cuts at Z {z}, but the part ends at Z {parted_at}.",
+                    tool=edge_name(tool),
+                    z=text(z),
+                    parted_at=text(self.parted_at),
+                ),
+            )
+
+    def _contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+        """An arc that no part has: it lies on the bar's side of the deepest part-off."""
+        if self.parted_at is None or move.kind is not Kind.ARC or shape.kind not in INSERTS:
+            return
+        front = max(z for z, _ in move.points)
+        if front < self.parted_at - _BEYOND_CUT:
+            text = move.modal.length_text
+            words = Message(
+                "{tool} cuts an arc at Z {front}, but the part ends at Z {parted_at}.",
+                tool=edge_name(tool),
+                front=text(front),
+                parted_at=text(self.parted_at),
+            )
+            yield Found("contour-past-part-off", words)
+
+    def _past_stock(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+        """A feed beyond the far end of the stock; the point of a drill may come out of it."""
+        if self.stock is None or not self.stock_given:
+            return
+        z, allowed = min(z for z, _ in move.points), _BREAKS_THROUGH
+        if shape.turns_itself:
+            allowed += shape.diameter
+        if z < self.stock.back - allowed:
+            text = move.modal.length_text
+            words = Message(
+                "{tool} feeds to Z {z}, but the stock ends at Z {back}.",
+                tool=edge_name(tool),
+                z=text(z),
+                back=text(self.stock.back),
+            )
+            yield Found("past-stock", words)
+
+    def _drilled(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+        deep = part_depth(move, self.stock)
+        if shape.turns_itself and shape.length and deep > shape.length:
+            text = move.modal.length_text
+            yield Found(
+                "drill-too-deep",
+                Message(
+                    "{tool} goes {depth} deep, but its cutting length is only {length}.",
+                    tool=edge_name(tool),
+                    depth=text(deep),
+                    length=text(shape.length),
+                ),
+            )
+
+
+def _turns_wrongly(move: TipMove, shape: ToolShape, tool: int) -> str:
+    if move.rpm < 0.0:
+        return Message(
+            "{tool}, a {hand}-hand tool, cuts while the spindle turns in reverse.",
+            tool=edge_name(tool),
+            hand=shape.hand,
+        )
+    return Message(
+        "{tool}, a {hand}-hand tool, cuts while the spindle turns forward.",
+        tool=edge_name(tool),
+        hand=shape.hand,
+    )
+
+
+def _turns_backwards(shape: ToolShape, rpm: float) -> bool:
+    """Whether the spindle turns against the rake of a tool in front, which lies face up.
+
+    A tool mounted upside down cuts the other way along Z than its hand says, and is not examined.
+    """
+    upright = {Hand.RIGHT: -1, Hand.LEFT: 1}.get(shape.hand) == shape.direction[0]
+    return shape.kind in INSERTS and upright and not shape.behind and rpm < 0.0
+
+
+def _off_axis(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+    """A round tool that is held still makes its hole on the axis alone."""
+    off = min(abs(r) for _, r in move.points)
+    if shape.kind in _DRILLS and move.rpm and off > _OFF_AXIS:
+        words = Message(
+            "{tool} is {off} off the spindle centerline when it cuts.",
+            tool=edge_name(tool),
+            off=move.modal.length_text(off),
+        )
+        yield Found("drill-off-axis", words)
+
+
+def _without_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+    """A round tool under constant surface speed: on the axis that asks for any speed."""
+    off = min(abs(r) for _, r in move.points)
+    if shape.kind in _DRILLS and move.modal.css and move.modal.css_max is None and off < _OFF_AXIS:
+        words = Message(
+            "{tool} cuts on the spindle centerline under G96, so the spindle runs at its maximum speed.",
+            tool=edge_name(tool),
+        )
+        yield Found("drill-without-limit", words)
+
+
+def _turning(move: TipMove) -> float:
+    """By how many degrees the path of an arc turns; 0 of another move."""
+    if move.kind is not Kind.ARC or len(move.points) < 3:
+        return 0.0
+    headings = np.unwrap(np.arctan2(*np.diff(np.array(move.points), axis=0).T[::-1]))
+    chords = len(headings)
+    return math.degrees(abs(float(headings[-1] - headings[0]))) * chords / (chords - 1)
+
+
+def _hollow_at_edge(
+    move: TipMove, shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
+) -> Iterator[Found]:
+    """A small quarter circle that begins along Z at the face, and so is hollow."""
+    if not (cutter.held and shape.kind is ToolKind.TURNING and cutter.side is Side.OUTSIDE):
+        return
+    if not _QUARTER[0] < _turning(move) < _QUARTER[1] or shape.direction[0] >= 0:
+        return
+    points = np.array(move.points) * [1.0, cutter.across]
+    (z_in, r_in), (z_out, r_out) = np.diff(points, axis=0)[[0, -1]]
+    radius = math.dist(points[0], points[-1]) / math.sqrt(2.0)
+    faces = np.flatnonzero(part.outermost > 0.0)
+    front = part.columns.first + part.columns.step * float(faces[-1]) if len(faces) else -math.inf
+    along, away = -z_in > 5.0 * abs(r_in), r_out > 5.0 * abs(z_out)
+    if along and away and radius < _EDGE and abs(points[0][0] - front) < _AT_FACE:
+        words = Message(
+            "{tool} cuts a concave arc of radius {radius} into the edge of the face.",
+            tool=edge_name(tool),
+            radius=move.modal.length_text(radius),
+        )
+        yield Found("hollow-at-edge", words)
+
+
+def part_depth(move: TipMove, stock: Stock | None) -> float:
+    """How deep a move ends behind the face of the stock, mm."""
+    return (stock.front if stock is not None else 0.0) - min(z for z, _ in move.points)
+
+
+def _wrong_side(
+    move: TipMove, cuts: Sequence[Cut], shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
+) -> Iterator[Found]:
+    """Yield what the back of an insert cuts: fed backwards at depth, or down a wall steeper than it clears.
+
+    ``cuts`` has what each straight piece of the move has met.
+    """
+    forward, across = shape.direction
+    if not forward or not across:
+        return
+    text = move.modal.length_text
+    deep = max(
+        (met.depth for (start, end), met in zip(pairwise(move.points), cuts, strict=True)
+         if _goes_back(start, end, forward)),
+        default=0.0,
+    )  # fmt: skip
+    if deep > max(_WRONG_SIDE, 2.0 * shape.nose_radius):
+        yield Found(
+            "wrong-side",
+            Message(
+                "{tool} cuts {depth} deep with the trailing edge of its insert.",
+                tool=edge_name(tool),
+                depth=text(deep),
+            ),
+        )
+        return
+    clears = cutter.clears(forward)
+    for start, end, met, steep in _steep_runs(move.points, cuts, shape, clears + _STEEPER):
+        behind = met.front - start[0] if forward < 0 else start[0] - met.back
+        faces = behind <= _FACED and not _stands_behind(part, met, forward, abs(end[1]), cutter.side)
+        if behind > 2.0 * shape.nose_radius + _BEHIND and met.depth > _BEHIND and not faces:
+            words = Message(
+                "{tool} cuts into the part at {steep}°, but the trailing edge of its insert clears "
+                "only {clears}°.",
+                tool=edge_name(tool),
+                steep=f"{steep:.0f}",
+                clears=f"{clears:.0f}",
+            )
+            yield Found("wrong-side", words)
+            return
+
+
+def _stands_behind(part: TurnedPart, met: Cut, forward: int, r: float, side: Side) -> bool:
+    """Whether metal above the tip is left right behind what was cut: a wall that the back has met."""
+    step = part.columns.step
+    edge = met.front + step if forward < 0 else met.back - step
+    at = part.columns.at(edge)
+    if not 0 <= at < part.columns.number:
+        return False
+    low, high = part.low[:, at], part.high[:, at]
+    above = low < r if side is Side.BORE else high > r
+    return bool(np.any((high > low + _NEAR) & above))
+
+
+def _goes_back(start: Point, end: Point, forward: int) -> bool:
+    along = (end[0] - start[0]) * forward
+    return along < -_NEAR and abs(end[1] - start[1]) < -along * 0.05
+
+
+def _steep_runs(
+    points: Sequence[Point], cuts: Sequence[Cut], shape: ToolShape, steepest: float
+) -> Iterator[tuple[Point, Point, Cut, float]]:
+    """Yield the stretches of a move that go in more steeply than ``steepest`` degrees.
+
+    Each is its start, its end, what it has met, and its greatest angle.
+    """
+    forward, across = shape.direction
+    start, end, met, angle = points[0], points[0], NOTHING, 0.0
+    for (a, b), cut in zip(pairwise(points), cuts, strict=True):
+        along, inwards = (b[0] - a[0]) * forward, (b[1] - a[1]) * across
+        steep = math.degrees(math.atan2(inwards, along)) if inwards > _NEAR and along >= 0.0 else 0.0
+        if steep > steepest:
+            start, end = start if angle else a, b
+            met, angle = met.followed(cut), max(angle, steep)
+        elif angle:
+            yield start, end, met, angle
+            met, angle = NOTHING, 0.0
+    if angle:
+        yield start, end, met, angle

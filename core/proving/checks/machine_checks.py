@@ -1,0 +1,382 @@
+"""Checks of the machine: soft limits; tool, collet, live tool and inputs while it cuts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+from core.geometry.surface_speed import surface_rpm
+from core.interpreter.actions import AskInput, Collet, Preset, ProgramEnd, SpindleRun, ToolChange, WaitInput
+from core.interpreter.elementary_blocks import Block, Kind, Series
+from core.interpreter.modal_state import Modal
+from core.language.diagnostics import Diagnostic, Severity
+from core.language.source import Dialect
+from core.machine.machine_model import Axis, Machine
+from core.message import Message
+from core.proving.tip_moves import taps
+from core.tool_edges import edge_name
+
+LIVE = "live"
+"""The names of outputs that turn a live tool begin with it in the machine file."""
+
+_QUICK = 100 * 25.4 / 60  # mm/s; what moves by G94 at this or more goes to a place and cuts nothing
+_FASTEST = 1000.0 * 1000.0 / 60.0  # mm/s of surface speed; more is for tools that small lathes do not have
+_MILLING = frozenset({Kind.PLANE_LINE, Kind.PLANE_ARC})
+_METAL = _MILLING | {Kind.ARC, Kind.THREAD}
+_WAYS = _METAL | {Kind.FEED}
+_MOST = 100  # findings
+MM_PER_INCH = 25.4
+
+
+def cuts(block: Block) -> bool:
+    """Whether a move is one that would take metal off: no rapid, no quick feed to another place."""
+    return block.kind in _WAYS and (block.per_rev or block.feed < _QUICK or block.kind is Kind.THREAD)
+
+
+@dataclass(slots=True)
+class CuttingChecks:
+    """Goes with the blocks of a program in their order; ``findings`` at the end.
+
+    One finding for each time that something was wrong, at the first block of it. Of other languages than
+    OmniTurn, whose frames and collets are others, tool and spindle alone are looked at.
+    """
+
+    machine: Machine
+    dialect: Dialect
+    single: bool = False  # a line of MDI: whoever types it sees which tool is in force
+    placed: bool = False  # where the slides stand is known: no start of a program, or a move has said it
+    _found: list[Diagnostic] = field(default_factory=list)
+    _without_tool: list[Diagnostic] = field(default_factory=list)  # how much they weigh is known at the end
+    _names_tool: bool = False
+    _tool_off: int = 0  # line of a T0
+    _preset: bool = False  # G92 has said where the point stands since the last T
+    _has_run: bool = False  # the program has turned the spindle
+    _reported: frozenset[str] = frozenset()  # what is wrong now and has been told
+    _cut_before_collet: int = 0  # line of the first cut in the collet as the program has met it
+    _collet: bool = False  # M12 or M13 has come
+    _asked: frozenset[str] = frozenset()
+    _like: tuple[Modal, Kind] | None = None  # of the move before: one such as it is no news
+
+    def twin(self) -> CuttingChecks:
+        """The same place in a program, for one of its other ways; what was found before is left behind."""
+        return replace(self, _found=[], _without_tool=[])
+
+    @property
+    def findings(self) -> list[Diagnostic]:
+        """What was found, in the order of the blocks."""
+        weight = Severity.ERROR if self._names_tool else Severity.WARNING
+        return [*self._found, *(replace(each, severity=weight) for each in self._without_tool)]
+
+    def look(self, blocks: Sequence[Block]) -> None:
+        """Look at the next blocks of the program."""
+        if not blocks:
+            return
+        own = self.dialect is Dialect.OMNITURN
+        alike: Iterable[Block] = (blocks[0],) if isinstance(blocks, Series) else blocks
+        for block in alike:
+            if block.action is not None:
+                self._like = None
+                self._act(block)
+                continue
+            if block.css is not None and cuts(block):
+                self._surface_speed(block)
+            if (block.modal, block.kind) != self._like:
+                if own and not self.placed:
+                    self._place(block)
+                self._like = (block.modal, block.kind) if block.modal.collet_closed else None
+                if cuts(block):
+                    (self._cut if own else self._cut_elsewhere)(block)
+
+    def _place(self, block: Block) -> None:
+        """An incremental first move leads from wherever the slides stand, and was proved from home."""
+        self.placed = True
+        if block.modal.absolute is False:
+            text = (
+                "The first move is incremental: it starts from the current axis position, but was "
+                "proved from home."
+            )
+            hint = "Start with a move to X and Z under G90."
+            self._add(_finding(block, Severity.WARNING, "start-place", text, hint))
+
+    def _act(self, block: Block) -> None:
+        match block.action:
+            case ToolChange(tool=tool):
+                self._names_tool = self._names_tool or tool > 0
+                self._tool_off = 0 if tool else block.line
+                self._preset = False
+                self._clear("no-tool")
+            case Preset():
+                self._preset = True
+            case SpindleRun():
+                self._has_run = True
+                self._clear("spindle-off")
+            case Collet(closed=closed):
+                self._collet = True
+                if closed:
+                    self._clear("collet-open")
+            case AskInput(terminal=terminal) | WaitInput(terminal=terminal):
+                self._input(block, terminal)
+            case ProgramEnd():
+                self._end(block)
+            case _:
+                pass
+
+    def _cut(self, block: Block) -> None:
+        modal = block.modal
+        if not self._collet:
+            self._cut_before_collet = self._cut_before_collet or block.line
+        if not (modal.tool or self.single or self._preset or modal.preset_x or modal.preset_z):
+            self._no_tool(block)
+        if not modal.collet_closed:
+            self._collet_open(block)
+        if any(name.startswith(LIVE) for name in modal.outputs):
+            self._clear("live-tool-off", "spindle-off")
+        elif taps(block):
+            return
+        elif modal.c_locked or block.kind in _MILLING:
+            self._live_tool_off(block)
+        elif not modal.spindle and not block.per_rev and (self._has_run or modal.rpm):
+            self._spindle_off(block)
+
+    def _surface_speed(self, block: Block) -> None:
+        """G96: what it asks of the spindle at both ends of a cut, against the limits in force."""
+        modal, most = block.modal, self.machine.spindle.rpm_max
+        speed = block.css or 0.0
+        radii = sorted((abs(block.x0), abs(block.x)))
+        slowest, fastest = (surface_rpm(speed, r, 0.0, math.inf) for r in reversed(radii))
+        if speed > _FASTEST and slowest > 2.0 * most:
+            text = Message(
+                "The surface speed requires {slowest} rpm in this move, but the spindle maximum is "
+                "{maximum} rpm.",
+                slowest=f"{slowest:.0f}",
+                maximum=f"{most:.0f}",
+            )
+            self._report(
+                block, Severity.ERROR, "surface-speed", text, "Correct S, or write G97 if S is in rpm."
+            )
+        limited = abs(block.x) <= abs(block.x0) and abs(block.rpm) < most  # as G26 does
+        if modal.css_max is None and fastest > most and not limited:
+            text = Message(
+                "G96 has no speed limit, so the spindle reaches its maximum of {maximum} rpm in this move.",
+                maximum=f"{most:.0f}",
+            )
+            hint = "Write G77Sn, where n is the maximum rpm for this chuck and bar."
+            if self.dialect is Dialect.SINUMERIK:
+                hint = "Write LIMS= with the maximum speed for this chuck and bar."
+            self._report(block, Severity.WARNING, "no-speed-limit", text, hint)
+
+    def _cut_elsewhere(self, block: Block) -> None:
+        """A cut of Klartext or SINUMERIK; of a mill's spindle at rest its interpreter tells."""
+        modal = block.modal
+        if not (modal.tool or self.single):
+            self._no_tool(block)
+        if self.dialect is Dialect.KLARTEXT:
+            return
+        if any(name.startswith(LIVE) for name in modal.outputs):
+            self._clear("spindle-off")
+            return
+        driven = taps(block) or modal.c_locked or modal.spindle or block.per_rev
+        if not driven and (self._has_run or modal.rpm):
+            self._spindle_off(block)
+
+    def _no_tool(self, block: Block) -> None:
+        text = "This move cuts with no tool active, so its coordinates are relative to machine home."
+        hint = "Write T and the tool number before this move."
+        if self.dialect is not Dialect.OMNITURN:
+            text = "This move cuts with no tool active, so no tool length or radius applies."
+            hint = "Write TOOL CALL before this move." if self.dialect is Dialect.KLARTEXT else hint
+        elif self._tool_off:
+            after = Message("the tool cancel (T0) on line {tool_off}", tool_off=self._tool_off)
+            text = Message(
+                "This cutting move follows {after}, so its coordinates are relative to machine home.",
+                after=after,
+            )
+        if "no-tool" not in self._reported:
+            self._without_tool.append(_finding(block, Severity.ERROR, "no-tool", text, hint))
+        self._reported |= {"no-tool"}
+
+    def _collet_open(self, block: Block) -> None:
+        """Bar work moves a stop or a gripper while the collet is open; nothing is cut in it."""
+        if block.per_rev or block.kind in _METAL or block.modal.c_locked:
+            text = "This move cuts with the collet open, so the part is not clamped."
+            self._report(
+                block, Severity.ERROR, "collet-open", text, "Close the collet with M12 before this move."
+            )
+        elif block.x != block.x0 or block.z < block.z0:
+            text = (
+                "This move feeds with the collet open, but not in a straight line away from the "
+                "spindle, as a bar pull does."
+            )
+            self._report(
+                block, Severity.WARNING, "collet-open", text, "Close the collet with M12 before this move."
+            )
+
+    def _live_tool_off(self, block: Block) -> None:
+        codes = sorted(
+            code for code, (name, on) in self.machine.m_codes.items() if on and name.startswith(LIVE)
+        )
+        if not codes:
+            return  # a live tool that this control does not switch
+        hint = Message(
+            "Turn on the live tool with {code} before this move.",
+            code=" or ".join(f"M{code:02d}" for code in codes),
+        )
+        if block.kind in _MILLING:
+            text = "This move mills with no live tool running."
+            self._report(block, Severity.ERROR, "live-tool-off", text, hint)
+        else:
+            text = "This move cuts with the spindle locked as the C axis and no live tool running."
+            self._report(block, Severity.WARNING, "live-tool-off", text, hint)
+
+    def _spindle_off(self, block: Block) -> None:
+        text = "This move cuts with the spindle stopped and no live tool running."
+        if not self._has_run:
+            text = "S sets a speed, but nothing starts the spindle before this cut."
+        hint = "Start the spindle with M03 or M04 before this cut."
+        if self.dialect is not Dialect.OMNITURN:
+            hint = "Start the spindle with M3 or M4 before this cut."
+        self._report(block, Severity.WARNING, "spindle-off", text, hint)
+
+    def _input(self, block: Block, terminal: str) -> None:
+        if terminal in self.machine.inputs or terminal in self._asked:
+            return
+        self._asked |= {terminal}
+        text = Message("This machine has no input {terminal}.", terminal=terminal)
+        hint = "Correct the number, or define the input under [io.in] in the machine file."
+        if isinstance(block.action, WaitInput):
+            text = Message(
+                "This machine has no input {terminal}, so the wait would never end.", terminal=terminal
+            )
+        self._add(_finding(block, Severity.ERROR, "no-input", text, hint))
+
+    def _end(self, block: Block) -> None:
+        if block.modal.collet_closed or not self._cut_before_collet:
+            return
+        line = self._cut_before_collet
+        text = Message(
+            "The program ends with the collet open, and the next cycle cuts on line {line} before any M12.",
+            line=line,
+        )
+        self._add(
+            _finding(
+                block,
+                Severity.WARNING,
+                "collet-open",
+                text,
+                "Write M12 at the end or the start of the program.",
+            )
+        )
+
+    def _report(self, block: Block, severity: Severity, check: str, text: str, hint: str) -> None:
+        """Once until it is right again; an error also behind a warning."""
+        key = f"{check} {severity}"
+        if key not in self._reported:
+            self._reported |= {key}
+            self._add(_finding(block, severity, check, text, hint))
+
+    def _clear(self, *checks: str) -> None:
+        self._reported = frozenset(each for each in self._reported if each.split()[0] not in checks)
+
+    def _add(self, found: Diagnostic) -> None:
+        if len(self._found) < _MOST:
+            self._found.append(found)
+
+
+def _finding(block: Block, severity: Severity, check: str, text: str, hint: str) -> Diagnostic:
+    return Diagnostic(block.line, 0, severity, check, text, hint, check=check, n=block.n)
+
+
+def travel_findings(
+    blocks: Sequence[Block], machine: Machine, dialect: Dialect = Dialect.OMNITURN
+) -> Iterator[Diagnostic]:
+    """An error for each block whose machine positions leave the travel; curved ways all along."""
+    limits = [(axis, *axis.reach) for axis in machine.axes]
+    for block in _outside(blocks, limits):
+        for (axis, least, most), (low, high) in zip(limits, block.machine_reach(), strict=True):
+            if low < least or high > most:
+                yield _beyond(machine, dialect, block, axis, low, high)
+
+
+def _outside(blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]]) -> Iterator[Block]:
+    """Blocks that may leave the travel: straight moves of a lathe, which are most, are seen by their ends."""
+    (_, x_least, x_most), (_, z_least, z_most) = limits[:2]
+    endless = all(least == -math.inf for _, least, _ in limits[2:])
+    if endless and isinstance(blocks, Series):
+        x, z = blocks.x + blocks.pattern.offset_x, blocks.z + blocks.pattern.offset_z
+        inside = (x_least <= x) & (x <= x_most) & (z_least <= z) & (z <= z_most)
+        yield from (blocks[at] for at in (~inside).nonzero()[0].tolist())
+        return
+    for block in blocks:
+        straight = block.kind is Kind.FEED or block.kind is Kind.RAPID
+        if not (straight and endless and block.travel is None):
+            yield block
+            continue
+        mx, mz = block.mx, block.mz
+        if not (x_least <= mx <= x_most and z_least <= mz <= z_most):
+            yield block
+
+
+def _beyond(
+    machine: Machine, dialect: Dialect, block: Block, axis: Axis, low: float, high: float
+) -> Diagnostic:
+    least, greatest = axis.reach
+    at = low if low < least else high
+    limit = least if low < least else greatest
+    scale, unit, places = (1.0, "mm", 3) if block.modal.metric else (1 / MM_PER_INCH, "in", 4)
+    if axis.rotary:
+        scale, unit, places = 1.0, "degrees", 3
+    template = (
+        "{axis} would move to {position} {unit} from home (X as a radius), {excess} {unit} beyond the travel "
+        "limit of {limit}"
+        if machine.kind == "lathe"
+        else "{axis} would move to {position} {unit} from home, {excess} {unit} beyond the travel limit of "
+        "{limit}"
+    )
+    over = abs(at - limit) * scale
+    return Diagnostic(
+        line=block.line,
+        column=1,
+        severity=Severity.ERROR,
+        code="soft-limit",
+        message=Message(
+            template,
+            axis=axis.name,
+            position=f"{at * scale:.{places}f}",
+            unit=unit,
+            excess=f"{over:.{places}f}",
+            limit=f"{limit * scale:.{places}f}",
+        ),
+        hint=_hint(machine, dialect, block, axis),
+    )
+
+
+def _hint(machine: Machine, dialect: Dialect, block: Block, axis: Axis) -> str:
+    if machine.kind != "lathe" or axis.rotary:
+        return Message("check the {axis} word and all active shifts", axis=axis.name)
+    where = Message(
+        "check the {axis} word and the offset of {tool}", axis=axis.name, tool=edge_name(block.modal.tool)
+    )
+    if dialect is Dialect.OMNITURN:
+        return Message("{place}; also check every G10 and G92", place=where)
+    return Message("{place}; also check G54 to G59 and TRANS", place=where)
+
+
+# --- C as the spindle -----------------------------------------------------------------------------------
+
+
+def c_findings(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic]:
+    """An error for each block that moves C while the spindle, which is this machine's C, turns."""
+    if not machine.spindle_is_c or isinstance(blocks, Series):  # which moves X and Z alone
+        return
+    for block in blocks:
+        if block.c != block.c0 and block.modal.spindle:
+            yield Diagnostic(
+                line=block.line,
+                column=1,
+                severity=Severity.ERROR,
+                code="c-is-spindle",
+                message="C moves while the spindle turns, but on this machine C is the spindle itself",
+                hint="stop the spindle with M5 first, or use a lathe with a separate C drive "
+                "(sinumerik-modulo)",
+            )

@@ -1,0 +1,159 @@
+"""History of the offsets: what was when, and undo of a step, without changing other rows unseen."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Mapping, Sequence
+
+from core.message import Message
+from core.store import row_sums
+from core.store.offsets import offset_tables
+from core.store.offsets.offset_tables import (
+    LOGS,
+    MOST_STEPS,
+    OFFSET_LOG,
+    TABLES,
+    Changes,
+    Log,
+    Reason,
+    apply,
+    damaged_entry,
+    select,
+)
+from core.store.store_errors import StoreError
+from core.store.store_rows import Change, Kind, Row, ToolRow
+from core.tool_edges import edge_name, tool_of
+
+
+def undo(connection: sqlite3.Connection, reason: Reason, kind: Kind | None = None) -> tuple[Change, ...]:
+    """Takes the last step back that is not undone yet; answers the changes this made.
+
+    With ``kind`` the last step of that table, without one that of tools and secondary offsets together.
+    Asking again goes further back. Raises StoreError when there is nothing left to undo.
+    """
+    return _undo(connection, reason, _log_of(kind), kind)
+
+
+def undo_any(connection: sqlite3.Connection, reason: Reason) -> tuple[Change, ...]:
+    """The same for the youngest step of all tables."""
+    last = {log: _last_step(connection, log, None) or 0 for log in LOGS}
+    log = max(LOGS, key=lambda each: last[each] if isinstance(last[each], int) else MOST_STEPS)
+    return _undo(connection, reason, log, None)
+
+
+def _last_step(
+    connection: sqlite3.Connection, log: Log, kind: Kind | None, number: int | None = None
+) -> int | None:
+    """Return the last step that is not undone yet; None without one. ``number``: of this row."""
+    step: int | None
+    (step,) = connection.execute(
+        f"SELECT max(step) FROM {log.name}"
+        f" WHERE undoes IS NULL AND {log.kind} = coalesce(?, {log.kind})"
+        f" AND {log.key} = coalesce(?, {log.key})"
+        f" AND step NOT IN (SELECT undoes FROM {log.name} WHERE undoes IS NOT NULL)",
+        (kind.value if kind else None, number),
+    ).fetchone()
+    return step
+
+
+def _undo(connection: sqlite3.Connection, reason: Reason, log: Log, kind: Kind | None) -> tuple[Change, ...]:
+    rows = _step_to_undo(connection, log, kind)
+    if not rows:
+        raise StoreError(log.nothing_left, "nothing-to-undo")
+    return apply(connection, rows[0].kind, backward(rows), reason, undoes=rows[0].step)
+
+
+def _step_to_undo(
+    connection: sqlite3.Connection, log: Log, kind: Kind | None, number: int | None = None
+) -> tuple[Change, ...]:
+    step = _last_step(connection, log, kind, number)
+    rows = select(connection, log, "WHERE step = ? ORDER BY id", (step,)) if step is not None else ()
+    first = rows[0].id if rows else 0
+    for entry in row_sums.broken(connection, log.name, first):  # of this step, or a later one that it hides
+        raise damaged_entry(entry)
+    return rows
+
+
+def backward(rows: Sequence[Change]) -> Changes:
+    """Return these changes in the opposite direction."""
+    return {row.number: (row.new, row.old) for row in rows}
+
+
+def undoable(connection: sqlite3.Connection, kind: Kind, number: int | None) -> tuple[Change, ...]:
+    """Return the changes of the step that ``undo_step`` would take back; none when nothing is left.
+
+    ``number`` restricts it to the last step that changed this row; None: the last step of the table.
+    """
+    return _step_to_undo(connection, _log_of(kind), kind, number)
+
+
+def history(connection: sqlite3.Connection, kind: Kind | None, limit: int) -> tuple[Change, ...]:
+    """The last changes, newest first; without ``kind`` those of tools and secondary offsets together."""
+    log = _log_of(kind)
+    if kind is None:
+        return select(connection, log, "ORDER BY id DESC LIMIT ?", (limit,))
+    return select(connection, log, f"WHERE {log.kind} = ? ORDER BY id DESC LIMIT ?", (kind.value, limit))
+
+
+def history_any(connection: sqlite3.Connection, limit: int) -> tuple[Change, ...]:
+    """The last changes of all tables, newest first; a limit below nought, as SQLite has it, is none."""
+    tail = "ORDER BY id DESC LIMIT ?"
+    found = [each for log in LOGS for each in select(connection, log, tail, (limit,))]
+    return tuple(sorted(found, key=lambda each: each.step, reverse=True)[: limit if limit >= 0 else None])
+
+
+def as_of(connection: sqlite3.Connection, kind: Kind, moment: str) -> dict[int, Row]:
+    """The offsets of a table as they were set at a moment (UTC), by number."""
+    log = _log_of(kind)
+    changes = select(connection, log, f"WHERE {log.kind} = ? AND at <= ? ORDER BY id", (kind.value, moment))
+    rows = {each.number: each.new for each in changes}
+    return {number: row for number, row in rows.items() if row is not None}
+
+
+def _log_of(kind: Kind | None) -> Log:
+    return OFFSET_LOG if kind is None else TABLES[kind].log
+
+
+def undo_step(
+    connection: sqlite3.Connection, reason: Reason, kind: Kind, number: int | None, step: int
+) -> tuple[Change, ...]:
+    """Take back exactly this step; return the changes that this made.
+
+    Raises StoreError if it is no longer the last step of the row, or if a row of it has changed since.
+    """
+    rows, now = undoable(connection, kind, number), offset_tables.current(connection, kind)
+    changed_since = [str(row.number) for row in rows if now.get(row.number) != row.new]
+    if not rows or rows[0].step != step or changed_since:
+        raise StoreError(
+            Message(
+                "offset {changed_since} was changed later; undo that change first",
+                changed_since=", ".join(changed_since) or number or "",
+            ),
+            "changed-since",
+        )
+    after = {**now, **{row.number: row.old for row in rows}}
+    _check(kind, {n: row for n, row in after.items() if row is not None})
+    return offset_tables.apply(connection, kind, backward(rows), reason, undoes=step)
+
+
+def _check(kind: Kind, rows: Mapping[int, Row]) -> None:
+    """Raise StoreError if the table would have two masters, or a cutting edge without its tool."""
+    if kind is not Kind.TOOL:
+        return
+    masters = [edge_name(n) for n, row in rows.items() if isinstance(row, ToolRow) and row.master]
+    if len(masters) > 1:
+        raise StoreError(
+            Message(
+                "{masters} would both be master tools; clear the current master first",
+                masters=" and ".join(masters),
+            ),
+            "two-masters",
+        )
+    if orphans := [edge_name(n) for n in rows if tool_of(n) not in rows]:
+        raise StoreError(
+            Message(
+                "cutting edge {orphans} would be left without a tool; clear this cutting edge first",
+                orphans=", ".join(orphans),
+            ),
+            "has-further-edges",
+        )

@@ -1,0 +1,201 @@
+"""The queue of jobs as it is kept: programs, how many parts of each, and how many of these are made.
+
+A job counts nothing by itself: its parts are those that the store counts of its program while it is under
+way. One at most is under way, the one that the operator has put on the desk last.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from core.message import Message
+from core.store import event_log, program_records, row_sums
+from core.store.store_errors import StoreError
+from core.store.store_file import text_key
+from core.store.store_rows import utc_now
+
+MOST_PARTS = 9_999_999
+MOST_JOBS = 200
+NOTE_LONGEST = 80
+
+
+class JobRow(NamedTuple):
+    """One job. ``base``: the count of its program from which it counts, None: it is not under way.
+
+    ``counted`` is what the store has counted of its program by now.
+    """
+
+    id: int
+    program: str
+    wanted: int
+    before: int = 0  # parts that were made of it before ``base``
+    base: int | None = None
+    note: str = ""
+    added: str = ""
+    counted: int = 0
+
+    @property
+    def under_way(self) -> bool:
+        """Whether parts of its program are counted for it."""
+        return self.base is not None
+
+    @property
+    def made(self) -> int:
+        """Parts of it that are made."""
+        return max(0, self.before + (self.counted - self.base if self.base is not None else 0))
+
+    @property
+    def left(self) -> int:
+        """Parts that are still to be made."""
+        return max(0, self.wanted - self.made)
+
+    @property
+    def done(self) -> bool:
+        """Whether all of them are made."""
+        return self.made >= self.wanted
+
+    @property
+    def target(self) -> int:
+        """The part count of its program at which it is done; 0 while it is not under way."""
+        return max(1, self.base + self.wanted - self.before) if self.base is not None else 0
+
+
+Held = Mapping[str, tuple[bool, int]]
+"""Counts that wait in memory, by program: put to nought first, and so many more."""
+
+
+def jobs(connection: sqlite3.Connection, held: Held | None = None) -> tuple[JobRow, ...]:
+    """The queue in its order; a job that is not as it was saved is left out."""
+    rows = (row_sums.readable(row) for row in row_sums.whole_rows(connection, "jobs").values())
+    placed = sorted((place, number, rest) for number, place, *rest in rows)
+    return tuple(_job(connection, JobRow._make((number, *rest, 0)), held or {}) for _, number, rest in placed)
+
+
+def _job(connection: sqlite3.Connection, row: JobRow, held: Held) -> JobRow:
+    """A count that is put to nought only in memory yet takes nothing from a job: ``base`` follows it then."""
+    counted = program_records.parts(connection, row.program)
+    reset, more = held.get(program_records.key_of(connection, row.program), (False, 0))
+    if reset and row.base is not None:
+        before = row.before + counted - row.base
+        return row._replace(counted=max(0, more), before=before, base=0)
+    return row._replace(counted=max(0, counted + more))
+
+
+def add(connection: sqlite3.Connection, program: str, wanted: int, note: str = "") -> int:
+    """One more job at the end of the queue; answers its id. Raises StoreError."""
+    program_records.check_name(program)
+    _check(wanted, note)
+    count, last = connection.execute("SELECT count(*), coalesce(max(place), 0) FROM jobs").fetchone()
+    if count >= MOST_JOBS:
+        raise StoreError(
+            Message("the queue is full ({most_jobs} jobs); remove finished jobs", most_jobs=MOST_JOBS),
+            "queue-full",
+        )
+    done = connection.execute(
+        "INSERT INTO jobs (place, program, wanted, note, added) VALUES (?, ?, ?, ?, ?)",
+        (last + 1, program, wanted, note, utc_now()),
+    )
+    return int(done.lastrowid or 0)
+
+
+def change(connection: sqlite3.Connection, job: int, wanted: int, note: str) -> None:
+    """Another number of parts, another note. Raises StoreError."""
+    _check(wanted, note)
+    _demand(connection, job)
+    connection.execute("UPDATE jobs SET wanted = ?, note = ? WHERE id = ?", (wanted, note, job))
+
+
+def move(connection: sqlite3.Connection, job: int, to: int) -> None:
+    """To this place of the queue, counted from 1. Raises StoreError."""
+    _demand(connection, job)
+    order = [number for (number,) in connection.execute("SELECT id FROM jobs ORDER BY place, id")]
+    order.remove(job)
+    order.insert(max(0, to - 1), job)
+    connection.executemany(
+        "UPDATE jobs SET place = ? WHERE id = ?", [(place, each) for place, each in enumerate(order, 1)]
+    )
+
+
+def remove(connection: sqlite3.Connection, job: int) -> None:
+    """Take it out of the queue; the counts of its program stay. Raises StoreError."""
+    _demand(connection, job)
+    connection.execute("DELETE FROM jobs WHERE id = ?", (job,))
+
+
+def clear(connection: sqlite3.Connection, *, everything: bool) -> int:
+    """Take out what is done, or everything; also what is not as it was saved. Answers how many went."""
+    whole = {row.id: row for row in jobs(connection)}
+    numbers = [number for (number,) in connection.execute("SELECT id FROM jobs")]
+    gone = [each for each in numbers if everything or each not in whole or whole[each].done]
+    connection.executemany("DELETE FROM jobs WHERE id = ?", [(each,) for each in gone])
+    return len(gone)
+
+
+def begin(connection: sqlite3.Connection, job: int) -> None:
+    """It is on the desk now: parts of its program count for it, and for no other job. Raises StoreError."""
+    _demand(connection, job)
+    put_away(connection)
+    row = next((row for row in jobs(connection) if row.id == job), None)
+    if row is None:
+        raise StoreError(
+            "the data of this job does not match its checksum; clear the job from the "
+            "queue and enter the job again",
+            "damaged-job",
+        )
+    connection.execute("UPDATE jobs SET base = ? WHERE id = ?", (row.counted, job))
+
+
+def put_away(connection: sqlite3.Connection) -> None:
+    """None is under way; what was made of it stays."""
+    for row in jobs(connection):
+        if row.under_way:
+            connection.execute("UPDATE jobs SET made = ?, base = NULL WHERE id = ?", (row.made, row.id))
+
+
+def count_reset(connection: sqlite3.Connection, program: str) -> None:
+    """The part count of a program is about to be put to nought: its job keeps what was made."""
+    key = program_records.key_of(connection, program)
+    for row in jobs(connection):
+        if row.under_way and program_records.key_of(connection, row.program) == key:
+            connection.execute("UPDATE jobs SET made = ?, base = 0 WHERE id = ?", (row.made, row.id))
+
+
+def load_text(connection: sqlite3.Connection, program: str, text: str) -> None:
+    """State that ``text``, a record key, is loaded under this name; its job retains what was made."""
+    before = program_records.key_of(connection, program)
+    if before == text:
+        return
+    if before == program:
+        program_records.adopt(connection, program)
+    made = {row.id: row.made for row in jobs(connection) if row.under_way and row.program == program}
+    event_log.set_setting(connection, text_key(program), text)
+    base = program_records.parts(connection, program)
+    for number, count in made.items():
+        connection.execute("UPDATE jobs SET made = ?, base = ? WHERE id = ?", (count, base, number))
+
+
+def _check(wanted: int, note: str) -> None:
+    if not 1 <= wanted <= MOST_PARTS:
+        raise StoreError(
+            Message(
+                "a job must have 1 to {most_parts} parts, not {expected}",
+                most_parts=MOST_PARTS,
+                expected=wanted,
+            ),
+            "part-count",
+        )
+    if len(note) > NOTE_LONGEST or not note.isprintable():
+        raise StoreError(
+            Message(
+                "a job note can have at most {note_longest} characters, on one line",
+                note_longest=NOTE_LONGEST,
+            ),
+            "invalid-note",
+        )
+
+
+def _demand(connection: sqlite3.Connection, job: int) -> None:
+    if connection.execute("SELECT 1 FROM jobs WHERE id = ?", (job,)).fetchone() is None:
+        raise StoreError("that job is not in the queue anymore", "job-gone")

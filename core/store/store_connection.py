@@ -1,0 +1,158 @@
+"""Connections to the file of the store, and the lock of the one process that writes it."""
+
+from __future__ import annotations
+
+import os
+import sqlite3
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from core.file_lock import is_locked, lock, mark_locked
+from core.file_placing import NEW_FILE
+from core.message import Message
+from core.store.store_errors import Cause, StoreError, cause_of, why
+from core.store.store_file import real_path
+
+_BUSY_SECONDS = 5.0
+_LOCK = "turndesk.lock"
+_TRIES, _BETWEEN = 10, 0.01  # tries of a writer for the lock, s between two
+WRITTEN_HERE = set[Path]()  # folders whose store this process writes
+_NO_ROOM = frozenset({Cause.FULL, Cause.FORBIDDEN})
+
+
+def connect(path: Path, *, read_only: bool) -> sqlite3.Connection:
+    """A connection with our settings. Transactions are begun by hand. Raises StoreError.
+
+    Reading, too, needs a little room beside the file, for SQLite's index. Where there is none, and no log
+    whose entries would be missed, the file is read as it stands.
+    """
+    try:
+        return _connection(path, "mode=ro" if read_only else "mode=rw")
+    except sqlite3.Error as error:
+        if not read_only or cause_of(path, error) not in _NO_ROOM or has_log(path):
+            raise why(path, error) from error
+    try:
+        return _connection(path, "mode=ro&immutable=1")
+    except sqlite3.Error as error:
+        raise why(path, error) from error
+
+
+def _connection(path: Path, how: str) -> sqlite3.Connection:
+    connection = sqlite3.connect(
+        f"{path.resolve().as_uri()}?{how}",
+        uri=True,
+        isolation_level=None,
+        check_same_thread=False,
+        timeout=_BUSY_SECONDS,
+    )
+    try:
+        return configured(connection)
+    except UnicodeDecodeError as error:  # SQLite's own sentence quotes what is damaged
+        connection.close()
+        raise _damaged() from error
+    except sqlite3.Error:
+        connection.close()
+        raise
+
+
+def _damaged() -> sqlite3.DatabaseError:
+    """As SQLite says it of a file whose tables cannot be read."""
+    error = sqlite3.DatabaseError("malformed database schema")
+    error.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
+    return error
+
+
+def has_log(path: Path) -> bool:
+    log, _ = companions(path)
+    return log.exists() and log.stat().st_size > 0
+
+
+def configured(connection: sqlite3.Connection) -> sqlite3.Connection:
+    """Every commit reaches the disk; references are kept whole."""
+    connection.execute("PRAGMA synchronous = FULL")
+    connection.execute("PRAGMA foreign_keys = ON")
+    return connection
+
+
+def version_of(connection: sqlite3.Connection) -> int:
+    """The last migration that was carried out on this store; 0: none, it is empty."""
+    return int(connection.execute("PRAGMA user_version").fetchone()[0])
+
+
+def companions(path: Path) -> tuple[Path, Path]:
+    """SQLite's write-ahead log and its index beside a database, or beside the one that a link leads to."""
+    path = real_path(path)
+    return path.with_name(path.name + "-wal"), path.with_name(path.name + "-shm")
+
+
+# --- One process writes a store. The kernel gives the lock back when that process ends, however it ends.
+
+
+class WriterLock:
+    """The advisory lock beside the store, held from construction to close. Raises StoreError when taken.
+
+    A lock that another process has for an instant only, because it asks for its owner, is tried again for
+    0.1 s; ``pause`` waits between two tries.
+    """
+
+    def __init__(self, folder: Path, pause: Callable[[float], object] = time.sleep) -> None:
+        self._path = folder / _LOCK
+        try:
+            self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, NEW_FILE)
+        except OSError as error:
+            raise why(self._path, error) from error
+        try:
+            self._take(pause)
+        except OSError as error:
+            owner = os.read(self._file, 32).decode("ascii", "replace").strip()
+            os.close(self._file)
+            who = Message(" (process {owner})", owner=owner) if owner else ""
+            raise StoreError(
+                Message(
+                    "the data store in {folder} is in use by another TurnDesk{who}; close that TurnDesk, "
+                    "or make the entry there",
+                    folder=folder,
+                    who=who,
+                ),
+                "in-use",
+            ) from error
+        mark_locked(self._file)
+        self._folder = folder.resolve()
+        with suppress(OSError):  # a courtesy to whoever finds it taken; a full disk has no room for it
+            os.ftruncate(self._file, 0)
+            os.lseek(self._file, 0, os.SEEK_SET)
+            os.write(self._file, f"{os.getpid()}\n".encode("ascii"))
+
+    def _take(self, pause: Callable[[float], object]) -> None:
+        """Raises OSError when the lock stays taken."""
+        for _ in range(_TRIES):
+            with suppress(OSError):
+                lock(self._file)
+                return
+            pause(_BETWEEN)
+        lock(self._file)
+
+    def opened(self) -> None:
+        """From now on SQLite holds the store's file open in this process."""
+        WRITTEN_HERE.add(self._folder)
+
+    def close(self) -> None:
+        """Give the store free. Calling it again does nothing."""
+        if self._file >= 0:
+            WRITTEN_HERE.discard(self._folder)
+            os.close(self._file)
+            self._file = -1
+
+
+def in_use(folder: Path) -> bool:
+    """Whether a process writes the store of this folder now. Asks without taking the lock."""
+    try:
+        file = os.open(folder / _LOCK, os.O_RDONLY)
+    except OSError:
+        return False
+    try:
+        return is_locked(file)
+    finally:
+        os.close(file)
