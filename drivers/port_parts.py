@@ -8,7 +8,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from core.ports import DriverError, FloatArray, Latch, code_of
+from core.faults import code_of
+from core.ports import DriverError, FloatArray, Latch
 
 T = TypeVar("T")
 
