@@ -41,7 +41,6 @@ COMMANDS = (
     "scope",
     "setup",
     "shapes",
-    "profile",
 )
 
 NO_DISPLAY = """\

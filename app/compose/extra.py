@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-NAMES = ("sharing",)
+NAMES = ("sharing", "drawings")
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -36,12 +36,15 @@ class Extra:
     ``commands`` maps each subcommand to the subcommand that it follows in the help. Its module is
     ``app.extras.NAME.SUBCOMMAND_command``. ``threads`` maps each supervised thread to what an operator
     misses when the thread ends. ``needs`` names the features without which this feature is left out.
+    ``drawings`` are the endings of drawings from which this feature makes programs: the list of programs
+    shows them.
     """
 
     needs: Sequence[str] = ()
     commands: Mapping[str, str] = {}
     pages: Sequence[PageEntry] = ()
     threads: Mapping[str, str] = {}
+    drawings: Sequence[str] = ()
 
     def machine_tables(self) -> Sequence[Driver]:
         """Return the tables that this feature adds to the machine file."""
@@ -49,6 +52,9 @@ class Extra:
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None) -> None:
         """Attach the models of this feature to the desk; without a ``journal`` nothing is saved."""
+
+    def extend(self, part: object, desk: Desk, machine: Machine) -> None:
+        """Add to ``part``, a model of a feature that this one needs, when that model is made."""
 
     def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
         """Start the threads of this feature, and return a function that ends them.
@@ -59,6 +65,10 @@ class Extra:
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
         """Return the declared outputs of --json of this feature, by the output that they follow."""
         return {}
+
+    def words(self) -> Sequence[str]:
+        """Return texts of the screen that look like names in the source, for the list of all texts."""
+        return ()
 
     def check(self, machine: Machine, answers: Answers) -> None:
         """Add the rows of this feature to ``turndesk machine check``."""
@@ -83,6 +93,11 @@ def command_modules() -> Mapping[str, str]:
         for name, extra in extras().items()
         for command in extra.commands
     }
+
+
+def drawing_endings() -> tuple[str, ...]:
+    """Return the endings of all drawings from which an optional feature makes programs."""
+    return tuple(ending for extra in extras().values() for ending in extra.drawings)
 
 
 def insert_after(items: Iterable[T], name_of: Callable[[T], str], added: Iterable[tuple[T, str]]) -> list[T]:

@@ -15,7 +15,7 @@ from app.compose.backends import connect
 from app.compose.desk_functions import furnish
 from app.compose.desk_quality import give_quality
 from app.compose.error_log import Log
-from app.compose.extra import extras
+from app.compose.extra import drawing_endings, extras
 from app.compose.jobs_desk import give_jobs
 from app.compose.journal import Journal
 from app.compose.kinematics_chain import kinematics_of
@@ -309,7 +309,7 @@ def _desk(
             workshop(machine, offsets, journal, left=left, shapes=shapes_at_hand, kept=kept),
             executor.post,
         ),
-        program_folders=ProgramFolders((data_folder() / "programs", samples())),
+        program_folders=ProgramFolders((data_folder() / "programs", samples()), drawing_endings()),
         station=connected.panel,
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,

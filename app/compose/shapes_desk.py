@@ -4,14 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from functools import partial
 
+from app.compose.extra import extras
 from app.desk.desk import Desk
-from app.desk.latest import Watch
-from app.shapes.drawing_plan import Plan
 from app.shapes.shapes_model import Shapes
-from core.drawings.part_against_drawing import Comparison
-from core.drawings.profile_program import greatest_diameter
 from core.machine.machine_model import Axis, Machine
 from core.part.tool_shape import ToolShape
 from core.shapes.shape_setting import Setting, Shop
@@ -23,29 +19,9 @@ _USUAL = (15, 16)
 def shapes_of(desk: Desk, machine: Machine, shapes: Callable[[], Mapping[int, ToolShape]]) -> Shapes:
     """The shapes of the desk; the tools are those of the moment in which a form is opened."""
     found = Shapes(lambda: shop_of(machine, shapes()), Setting(metric=not machine.inch))
-    found.drawings = lambda: {each.name: each.path for each in desk.program_folders.drawings()}
-    found.attempt = partial(attempt, machine, shapes)
+    for extra in extras().values():
+        extra.extend(found, desk, machine)
     return found
-
-
-def attempt(
-    machine: Machine, shapes: Callable[[], Mapping[int, ToolShape]], text: str, plan: Plan, watch: Watch
-) -> tuple[Comparison | None, tuple[str, ...]]:
-    """The program on the bar that the form names, with the tools of the moment."""
-    from app.compose.profile_trial import TrialStock, tried
-
-    made, chosen, mm = plan.made, plan.chosen, plan.asked.setting.mm
-    if made is None or chosen is None:
-        return None, ()
-
-    def length(word: str) -> float:
-        value = plan.asked.values.get(word, plan.proposals.get(word, 0.0))
-        return 0.0 if isinstance(value, str) else value * mm
-
-    bar = length("FROM") or 1.5 * greatest_diameter(chosen)
-    stock = TrialStock(bar, length("STOCK"), length("HOLE"))
-    trial = tried(text, chosen, stock, made.nose, machine, shapes(), watch, plan.asked.setting.dialect)
-    return trial.comparison, trial.errors
 
 
 def shop_of(machine: Machine, tools: Mapping[int, ToolShape]) -> Shop:

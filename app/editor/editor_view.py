@@ -5,7 +5,7 @@ Everything is done by keys alone, and every function key is a target for a finge
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from enum import StrEnum
 from functools import partial
 from typing import TYPE_CHECKING
@@ -35,19 +35,17 @@ from app.path.part_player import player_of
 from app.screen import page_table
 from app.screen.letter_keys import PROGRAMS, LetterPad, strike
 from app.screen.page_base import Host, KeyActions, Page
-from app.shapes.shapes_model import FORMS, Shapes, written_in
+from app.shapes.shapes_model import Shapes, written_in
 from app.shapes.shapes_view import ShapesView
 from app.working_plane.plane_instant import at_line, plane_words
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
 from core.language.source import dialect_of
 from core.message import Message
-from core.shapes.shape_table import HELPERS
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
     from core.language.diagnostics import Diagnostic
-from core.shapes.shape import Shape
 
 Keys = dict[int, Key]
 Actions = dict[int, Callable[[], None]]
@@ -93,7 +91,7 @@ class EditorPage(Page):
         self._moving = False
         self._with_letters = False
         self.head = HeadLine(
-            look, self.turn_letters, self.open_shapes, partial(self.open_shapes, HELPERS), self
+            look, self.turn_letters, self.open_shapes, partial(self.open_shapes, helpers=True), self
         )
         self.letters = LetterPad(look, self._strike, self, PROGRAMS)
         self.field = TextField(look, self)
@@ -140,7 +138,7 @@ class EditorPage(Page):
         found = {f"F{number}": key.action for number, key in self._keys().items()}
         found["Codes"] = self.look_up
         found["Shapes"] = self.open_shapes
-        found["Calculators"] = partial(self.open_shapes, HELPERS)
+        found["Calculators"] = partial(self.open_shapes, helpers=True)
         if self.mode is Mode.LOOK:  # keys of the Automatic page that mean the same here
             path = self.path
             found |= {"Zoom in": partial(path.zoom, 1), "Zoom out": partial(path.zoom, -1)}
@@ -349,16 +347,17 @@ class EditorPage(Page):
         else:
             self.editor.notice = messages.NO_PATH
 
-    def open_shapes(self, table: Mapping[str, Shape] = FORMS) -> None:
+    def open_shapes(self, *, helpers: bool = False) -> None:
         """The form of the shape at the cursor, or the list of shapes; from them back to the text.
 
-        ``table``: shapes, or calculators and templates.
+        ``helpers``: the list of calculators and templates instead.
         """
         if self.mode is Mode.SHAPES:
             self.back()
         elif self.editor.stage is Stage.OPEN and self.mode is Mode.TEXT:
             model = self.shapes.model
-            self.editor.notice = model.open(self.editor.name, self.typed_text.now(), self.field.line, table)
+            now, line = self.typed_text.now(), self.field.line
+            self.editor.notice = model.open(self.editor.name, now, line, helpers=helpers)
             if not self.editor.notice:
                 self.desk.clear()
                 self._shown_shapes = (model.number, model.written)
@@ -369,9 +368,8 @@ class EditorPage(Page):
         model = self.shapes.model
         wanted, model.wanted = model.wanted, None
         self.open_shapes()
-        if self.mode is Mode.SHAPES:
-            model.wanted = wanted
-            model.open_wanted()
+        if self.mode is Mode.SHAPES and wanted is not None:
+            model.open_file(wanted)
 
     def _follow_shapes(self) -> None:
         """What the form makes of the text is proved; what it has written comes into the field."""

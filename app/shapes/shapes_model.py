@@ -6,15 +6,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from app.desk.latest import Latest, Watch
+from app.desk.latest import Latest
 from app.desk.sheet import STEPS, Key
 from app.desk.translation import tr
-from app.shapes.drawing_form import PROFILE, DrawingForm
-from app.shapes.drawing_plan import Plan, Planner
+from app.shapes.added_form import AddedForm
 from app.shapes.shape_form import ShapeForm
-from core.drawings.drawing_process import read_in_process
-from core.drawings.part_against_drawing import Comparison
-from core.language.source import Dialect, dialect_of
+from core.language.source import dialect_of
 from core.message import Message
 from core.shapes.pieces import (
     Piece,
@@ -30,25 +27,12 @@ from core.shapes.pieces import (
 from core.shapes.program_head import HEAD
 from core.shapes.shape import Shape
 from core.shapes.shape_setting import Setting, Shop
-from core.shapes.shape_table import HELPERS, HELPERS_OF, SHAPES_OF
-
-FORMS_OF = {dialect: {**table, "X": PROFILE} for dialect, table in SHAPES_OF.items()}
-"""The forms by the language of the program."""
-FORMS = FORMS_OF[Dialect.OMNITURN]
+from core.shapes.shape_table import HELPERS_OF, SHAPES, SHAPES_OF
 
 
 def written_in(name: str) -> bool:
     """Whether a program of this name takes shapes: their lines are OmniTurn or SINUMERIK."""
     return dialect_of(name) in SHAPES_OF
-
-
-Attempt = Callable[[str, Plan, Watch], tuple[Comparison | None, tuple[str, ...]]]
-"""A program that was made of a drawing is proved, and its part held against it."""
-
-
-def nothing_tried(_text: str, _plan: Plan, _watch: Watch) -> tuple[Comparison | None, tuple[str, ...]]:
-    """Of a desk that knows no machine."""
-    return None, ()
 
 
 @dataclass(slots=True)
@@ -62,13 +46,9 @@ class Shapes:
     fetch: Callable[[], Shop] = Shop
     new: Setting = field(default_factory=Setting)
     worker: Latest = field(default_factory=lambda: Latest("editing-shapes"))
-    drawings: Callable[[], Mapping[str, Path]] = dict
-    attempt: Attempt = nothing_tried
-    planner: Planner = field(default_factory=lambda: Planner(read_in_process))
-    planning: Latest = field(default_factory=lambda: Latest("planning-drawing"))
-    trying: Latest = field(default_factory=lambda: Latest("trying-drawing"))
-    table: Mapping[str, Shape] = field(default_factory=lambda: FORMS)  # of the list: shapes, or calculators
-    wanted: Path | None = None  # a drawing that is to be opened with the next program
+    added: tuple[AddedForm, ...] = ()  # forms of other features, the last ones of the list
+    table: Mapping[str, Shape] = field(default_factory=lambda: SHAPES)  # of the list: shapes, or calculators
+    wanted: Path | None = None  # a file that the next added form opens
     shop: Shop = field(default_factory=Shop)
     lines: list[str] = field(default_factory=list)
     at: int = 0
@@ -85,28 +65,30 @@ class Shapes:
 
     def close(self) -> None:
         """End the workers."""
-        for each in (self.worker, self.planning, self.trying):
+        for each in (self.worker, *self.added):
             each.close()
 
     def look(self) -> None:
         """Once a frame: take up what the workers have fetched and found."""
-        for each in (self.worker, self.planning, self.trying):
+        self.worker.poll()
+        for each in self.added:
             each.poll()
 
     # --- coming in -----------------------------------------------------------------------------------
 
-    def open(self, name: str, text: str, line: int, table: Mapping[str, Shape] = FORMS) -> str:
+    def open(self, name: str, text: str, line: int, *, helpers: bool = False) -> str:
         """Shapes of this text; the cursor stands on ``line``, from 1. Answers why not, else nothing.
 
-        ``table``: the forms of the list; of calculators and templates no piece of the text is opened.
+        ``helpers``: list calculators and templates instead, and open no piece of the text.
         """
         if not written_in(name):
             return tr("SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS")
         dialect = dialect_of(name)
-        table = (HELPERS_OF if table is HELPERS else FORMS_OF)[dialect]
+        forms = {**SHAPES_OF[dialect], **{each.key: each.shape for each in self.added}}
         self.new = replace(self.new, dialect=dialect)
         self.worker.ask(lambda _request: self.fetch(), self._have_shop, self._no_shop)
-        self.notice, self.asked, self.form, self.table = "", None, None, table
+        self.notice, self.asked, self.form = "", None, None
+        self.table = HELPERS_OF[dialect] if helpers else forms
         self._take(text)
         here = self.piece_at(line - 1)
         self.at = self._place(line - 1)
@@ -206,28 +188,35 @@ class Shapes:
                 return
         elif not shape.noted:
             pass  # no piece of a program: it needs no head
-        elif shape is PROFILE and not self.lines:
+        elif self._adder_of(shape) is not None and not self.lines:
             self.at = 0  # it writes a head of its own
         elif not begun(self.lines, self.new.dialect):
             self.notice = tr("FIRST PRESS N AND FILL IN THE PROGRAM HEADER (HEAD)")
             return
         setting = setting_at(self.lines, self.at, self.shop, self.new)
-        if shape is PROFILE:
+        adder = self._adder_of(shape)
+        if adder is None:
+            self.form = ShapeForm(shape, setting)
+        else:
             self.padded = False  # its drawing is picked from: on a small screen the pad has its place
-        self.form = self._drawing_form(setting) if shape is PROFILE else ShapeForm(shape, setting)
+            wanted, self.wanted = self.wanted, None
+            self.form = adder.open_form(setting, tuple(self.lines[: self.at]), wanted)
         self._preview()
 
-    def _drawing_form(self, setting: Setting) -> DrawingForm:
-        """With the drawings beside the programs, that which was asked for first."""
-        files, wanted = dict(self.drawings()), self.wanted
-        self.wanted = None
-        if wanted is not None:
-            files = {wanted.name: wanted, **{name: path for name, path in files.items() if path != wanted}}
-        return DrawingForm(PROFILE, setting, files=files, before=tuple(self.lines[: self.at]))
+    def open_file(self, file: Path) -> None:
+        """The form of the feature that makes a program of this file."""
+        for each in self.added:
+            if each.makes_of(file.name):
+                self.wanted = file
+                self.open_shape(each.key)
 
-    def open_wanted(self) -> None:
-        """The form of the drawing that is waiting to be opened."""
-        self.open_shape("X")
+    def _adder_of(self, shape: Shape) -> AddedForm | None:
+        return next((each for each in self.added if each.shape is shape), None)
+
+    @property
+    def _adder(self) -> AddedForm | None:
+        """Who has added the open form; None for a shape."""
+        return self._adder_of(self.form.shape) if self.form is not None else None
 
     def _open_piece(self, piece: Piece) -> None:
         """A piece of the program; of one that somebody has changed by hand it is said."""
@@ -253,10 +242,8 @@ class Shapes:
         found = {2: Key("WRITE", self.write), 8: Key("LIST", self.to_list), 9: pad}
         if self.asked is not None:
             found[6] = Key("YES", self.answer)
-        elif self.form.waits:
-            found[6] = Key("CANCEL", self.cancel_reading)
-        elif isinstance(self.form, DrawingForm) and self.form.canceled:
-            found[6] = Key("READ", self.read_again)
+        elif self._adder is not None:
+            found |= self._adder.keys(self.form, self._shown_of)
         if self.form.instead is not None:
             found[5] = Key("DELETE", self.delete)
         if self.form.shape.contour:
@@ -337,8 +324,8 @@ class Shapes:
             self.asked, self.notice = None, ""
         elif self.notice:
             self.notice = ""
-        elif self.form is not None and self.form.waits:
-            self.cancel_reading()
+        elif self.form is not None and self.form.waits and self._adder is not None:
+            self._adder.cancel(self.form)
         elif self.form is not None:
             self.to_list()
         else:
@@ -433,55 +420,23 @@ class Shapes:
         form = self.form
         if form is None:
             return
-        self._plan(form)
+        if self._adder is not None:
+            self._adder.work(form, self._shown_of, self._tell)
         if form.troubles or not form.lines:
             self._show("\n".join(self.lines) + "\n" if self.lines else "")
             return
         text, _ = with_shape(self.lines, self.at, form.one, form.setting, form.instead)
         self._show("\n".join(text) + "\n")
 
-    # --- a drawing
+    def _shown_of(self, form: ShapeForm) -> str | None:
+        """Show what a form has worked out beside the screen; the text, None where the form has gone."""
+        if self.form is not form:
+            return None
+        self._preview()
+        return self.text
 
-    def cancel_reading(self) -> None:
-        """Cancel the reading of a drawing (F6 or Esc) by ending its process."""
-        if isinstance(self.form, DrawingForm):
-            self.planning.give_up()
-            self.form.cancel()
-
-    def read_again(self) -> None:
-        """F6 after that."""
-        if isinstance(self.form, DrawingForm):
-            self.form.work()
-            self._preview()
-
-    def _plan(self, form: ShapeForm) -> None:
-        """What was typed is worked out beside the screen; then the program is tried."""
-        if not isinstance(form, DrawingForm) or form.pending is None:
-            return
-        asked = form.pending
-
-        def planned(plan: Plan) -> None:
-            if self.form is form and form.pending == asked:
-                form.take(plan)
-                self._preview()
-                self._try(form, plan)
-
-        self.trying.give_up()
-        self.planning.ask(lambda watch: self.planner.plan(asked, watch), planned, self._no_plan)
-
-    def _no_plan(self, why: str) -> None:
-        self.notice = tr(Message("THE DRAWING CANNOT BE PROCESSED: {why}", why=why))
-
-    def _try(self, form: DrawingForm, plan: Plan) -> None:
-        if not form.lines:
-            return
-        text = self.text
-
-        def tried(found: tuple[Comparison | None, tuple[str, ...]]) -> None:
-            if self.form is form and form.plan is plan:
-                form.tried(*found)
-
-        self.trying.ask(lambda watch: self.attempt(text, plan, watch), tried, self._no_plan)
+    def _tell(self, words: str) -> None:
+        self.notice = words
 
     def _show(self, text: str) -> None:
         if text != self.text:
@@ -496,18 +451,12 @@ class Shapes:
             return tr("LETTER: OPEN CALCULATOR OR TEMPLATE   F10: GO TO TEXT")
         if self.form is None:
             return tr("LETTER: OPEN SHAPE   RIGHT: SHAPES IN PROGRAM   F10: TEXT")
-        return self._waiting() if self.form.waits else tr(self.form.trouble or _keys_of(self.form))
-
-    def _waiting(self) -> str:
-        if not self.planner.reading:
-            return tr("CALCULATING THE CONTOUR. PRESS F6 TO CANCEL")
-        words = tr("READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL")
-        return tr(Message(words, seconds=self.planning.reached))
+        if self._adder is not None:
+            return self._adder.prompt(self.form)
+        return tr(self.form.trouble or _keys_of(self.form))
 
 
 def _keys_of(form: ShapeForm) -> str:
-    if form.shape is PROFILE:
-        return tr("LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS")
     if form.point >= 0:
         return tr("X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE")
     return tr("TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE")

@@ -650,16 +650,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>DRAWING UNIT: AS DRAWN</source>
-      <translation>LA DEL DIBUJO</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>DRAWING UNIT: INCH</source>
-      <translation>PULGADAS</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>Declares a subprogram that has parameters and is stored in a separate file.</source>
       <translation>Declara un subprograma que tiene parámetros y está guardado en un archivo aparte.</translation>
     </message>
@@ -1337,11 +1327,6 @@
       <location filename="" />
       <source>KIND: RADIUS</source>
       <translation>RADIO</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>LAYER: ALL</source>
-      <translation>TODAS</translation>
     </message>
     <message>
       <location filename="" />
@@ -2282,11 +2267,6 @@
       <location filename="" />
       <source>SCREEN SETTINGS</source>
       <translation>AJUSTES DE PANTALLA</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>SERIES</source>
-      <translation>SERIE</translation>
     </message>
     <message>
       <location filename="" />
@@ -4790,11 +4770,6 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
-      <source>PROGRAM SHARING</source>
-      <translation>COMPARTICIÓN DE PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
       <source>SCOPE RECORDER</source>
       <translation>GRABADOR DEL OSCILOSCOPIO</translation>
     </message>
@@ -4832,21 +4807,6 @@
       <location filename="app/compose/screen_desk.py" />
       <source>{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK</source>
       <translation>{what}: DETENIDO. GUARDE LA BITÁCORA Y REINICIE TURNDESK</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>PROGRAMS NOT SHARED: {why}</source>
-      <translation>PROGRAMAS SIN COMPARTIR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>{name} WAS CHANGED ON {machine}. F1, X: SHOW CHANGES</source>
-      <translation>{name} SE CAMBIÓ EN {machine}. F1, X: MOSTRAR LOS CAMBIOS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>{path} cannot be used: {error}</source>
-      <translation>{path} no se puede usar: {error}</translation>
     </message>
     <message>
       <location filename="app/compose/stored_offsets.py" />
@@ -6897,6 +6857,431 @@
       <location filename="app/editor/versions_view.py" />
       <source>{size} bytes</source>
       <translation>{size} bytes</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/added_drawing.py" />
+      <source>CALCULATING THE CONTOUR. PRESS F6 TO CANCEL</source>
+      <translation>CALCULANDO EL CONTORNO. PULSE F6 PARA CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/added_drawing.py" />
+      <source>LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS</source>
+      <translation>IZQUIERDA/DERECHA: CAMBIAR   TOCAR DIBUJO: CONTORNO O EJE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/added_drawing.py" />
+      <source>READ</source>
+      <translation>LEÍDAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/added_drawing.py" />
+      <source>READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL</source>
+      <translation>LEYENDO EL DIBUJO: {seconds} s. PULSE F6 PARA CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/added_drawing.py" />
+      <source>THE DRAWING CANNOT BE PROCESSED: {why}</source>
+      <translation>NO SE PUEDE PROCESAR EL DIBUJO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>AXIS</source>
+      <translation>EJE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>BLADE</source>
+      <translation>BLADE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>COMP</source>
+      <translation>COMP</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>CONTOUR</source>
+      <translation>CONTORNO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>DRAWING UNIT</source>
+      <translation>UNIDAD DEL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>DUNIT</source>
+      <translation>DUNIT</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>FACE SIDE IN DRAWING</source>
+      <translation>LADO DE LA CARA EN EL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>FROM</source>
+      <translation>FROM</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>FRONT</source>
+      <translation>FRENTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>GROOVING TOOL</source>
+      <translation>ÚTIL DE RANURAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>HOLE</source>
+      <translation>HOLE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>HOLE DIAMETER</source>
+      <translation>DIÁMETRO DEL AGUJERO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>LAYER</source>
+      <translation>CAPA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>MATERIAL</source>
+      <translation>MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>NOSE COMPENSATION: D NUMBER</source>
+      <translation>COMPENSACIÓN DE PUNTA: NÚMERO D</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8.</source>
+      <translation>No hay dibujos en la carpeta de programas: copie en ella un archivo DXF o SVG con F6 y luego F8.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>ROUGH</source>
+      <translation>ROUGH</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>ROUGHING DEPTH OF CUT</source>
+      <translation>PROFUNDIDAD DE DESBASTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>Reading was canceled. Press F6 to read the drawing again.</source>
+      <translation>Lectura cancelada. Pulse F6 para leer el dibujo de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>SHIFT</source>
+      <translation>SHIFT</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>STEEL</source>
+      <translation>ACERO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>STOCK DIAMETER</source>
+      <translation>DIÁMETRO DEL MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>STOCK ON THE FACE</source>
+      <translation>MATERIAL EN LA CARA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>Z OF REFERENCE POINT</source>
+      <translation>Z DEL PUNTO DE REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>Z REFERENCE POINT</source>
+      <translation>PUNTO DE REFERENCIA Z</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>facing, roughing, finishing and grooving of a profile from a DXF or SVG drawing</source>
+      <translation>refrentado, desbastado, acabado y ranurado de un perfil de un dibujo DXF o SVG</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>AS DRAWN</source>
+      <translation>COMO EN EL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>Boring needs a predrilled hole: enter its diameter.</source>
+      <translation>El mandrinado necesita un agujero previo: introduzca su diámetro.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>CONTOUR {item}</source>
+      <translation>CONTORNO {item}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} does not specify its unit: choose MM or INCH.</source>
+      <translation>{drawing} no indica su unidad: elija MM o PULGADAS.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} has no contour for the selected axis: choose another layer or axis.</source>
+      <translation>{drawing} no tiene ningún contorno para el eje elegido: elija otra capa u otro eje.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} has no contour on layer {layer}: choose another layer or axis.</source>
+      <translation>{drawing} no tiene ningún contorno en la capa {layer}: elija otra capa u otro eje.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} has no layer {layer}: choose another layer.</source>
+      <translation>{drawing} no tiene la capa {layer}: elija otra capa.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} has {nets_count} contours: choose 1 to {nets_count2}.</source>
+      <translation>{drawing} tiene {nets_count} contornos: elija de 1 a {nets_count2}.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} is {wrong}, which is too large for this machine. The drawing fits if its unit is {wrong2}: choose {wrong3}.</source>
+      <translation>{drawing} mide {wrong}, demasiado para esta máquina. El dibujo cabe si su unidad es {wrong2}: elija {wrong3}.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{path} cannot be read: {cause}.</source>
+      <translation>no se puede leer {path}: {cause}.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/extra.py" />
+      <source>DRAWING UNIT: AS DRAWN</source>
+      <translation>LA DEL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/extra.py" />
+      <source>DRAWING UNIT: INCH</source>
+      <translation>PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/extra.py" />
+      <source>LAYER: ALL</source>
+      <translation>TODAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>PROGRAM SHARING</source>
+      <translation>COMPARTICIÓN DE PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>SHARED</source>
+      <translation>COMPART.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>SHARED PROGRAMS</source>
+      <translation>PROGRAMAS COMPARTIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>programs from other TurnDesk controls; newer versions are copied on request</source>
+      <translation>programas de otros controles TurnDesk; las versiones nuevas se copian si se pide</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/program_files.py" />
+      <source>the file is larger than {most_bytes} MB</source>
+      <translation>el archivo es mayor de {most_bytes} MB</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/program_files.py" />
+      <source>the name of another program on this control differs from the name of this program only in upper and lower case: rename one of the programs</source>
+      <translation>el nombre de otro programa de este control difiere del nombre de este programa solo en mayúsculas y minúsculas: cambie el nombre de uno de los programas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>copied from {machine}</source>
+      <translation>copiado de {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>no decision is necessary, because no other control has changed this program</source>
+      <translation>no hace falta decidir, porque ningún otro control ha cambiado este programa</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>shared by {machine}</source>
+      <translation>compartido por {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>the text of {program} differs from the saved version; save the program again</source>
+      <translation>el texto de {program} difiere de la versión guardada; guarde el programa otra vez</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>{program} is already the selected version</source>
+      <translation>{program} ya es la versión elegida</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_desk.py" />
+      <source>PROGRAMS NOT SHARED: {why}</source>
+      <translation>PROGRAMAS SIN COMPARTIR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_desk.py" />
+      <source>{name} WAS CHANGED ON {machine}. F1, X: SHOW CHANGES</source>
+      <translation>{name} SE CAMBIÓ EN {machine}. F1, X: MOSTRAR LOS CAMBIOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_desk.py" />
+      <source>{path} cannot be used: {error}</source>
+      <translation>{path} no se puede usar: {error}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>AVAILABLE ON</source>
+      <translation>DISPONIBLE EN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>AVAILABLE ON {desks}</source>
+      <translation>DISPONIBLE EN {desks}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>CHANGED HERE AND ON ANOTHER CONTROL</source>
+      <translation>CAMBIADO AQUÍ Y EN OTRO CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>CHANGES IF YOU USE THE SELECTED VERSION</source>
+      <translation>CAMBIOS SI USA LA VERSIÓN ELEGIDA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>CHECKING …</source>
+      <translation>COMPROBANDO …</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>F2: USE SELECTED VERSION   F3: KEEP LOCAL VERSION   ESC: BACK</source>
+      <translation>F2: USAR LA VERSIÓN ELEGIDA   F3: CONSERVAR LA LOCAL   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>F2: USE SELECTED VERSION (ASKS FIRST)   ESC: AUTOMATIC</source>
+      <translation>F2: USAR LA VERSIÓN ELEGIDA (PREGUNTA ANTES)   ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>KEEP</source>
+      <translation>CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NEWER VERSION ON ANOTHER CONTROL</source>
+      <translation>VERSIÓN MÁS NUEVA EN OTRO CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM</source>
+      <translation>NO HACE FALTA DECIDIR: NINGÚN OTRO CONTROL HA CAMBIADO ESTE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER OR A DATABASE UNDER [sharing] IN THE MACHINE FILE</source>
+      <translation>NO HAY UBICACIÓN PARA PROGRAMAS COMPARTIDOS. INDIQUE UNA CARPETA O UNA BASE DE DATOS EN [sharing] DEL ARCHIVO DE MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NO OTHER CONTROL HAS A NEWER VERSION</source>
+      <translation>NINGÚN OTRO CONTROL TIENE UNA VERSIÓN MÁS NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NOT ON THIS CONTROL</source>
+      <translation>NO ESTÁ EN ESTE CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER</source>
+      <translation>AÚN NO SE COMPARTE NADA. LA PRÓXIMA ACTUALIZACIÓN COMPARTE LA CARPETA DE PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>SAME TEXT AS ON THIS CONTROL</source>
+      <translation>EL MISMO TEXTO QUE EN ESTE CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>UP TO DATE</source>
+      <translation>AL DÍA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC</source>
+      <translation>ARRIBA/ABAJO: SELECCIONAR PROGRAMA   F5: ACTUALIZAR   ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>VERSION</source>
+      <translation>VERSIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>Y: KEEP LOCAL {name}, STORE OTHER VERSIONS   N: CANCEL</source>
+      <translation>Y: CONSERVAR {name} LOCAL, GUARDAR LAS OTRAS VERSIONES   N: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>Y: USE {name} FROM {desk} (LOCAL VERSION STAYS STORED)   N: CANCEL</source>
+      <translation>Y: USAR {name} DE {desk} (LA VERSIÓN LOCAL QUEDA GUARDADA)   N: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>program {name}: local version retained</source>
+      <translation>programa {name}: versión local conservada</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>program {program}: version from {machine} now in use</source>
+      <translation>programa {program}: se usa ahora la versión de {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{count} WAITING TO BE SHARED</source>
+      <translation>{count} POR COMPARTIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{name} IS NOW THE VERSION FROM {machine}</source>
+      <translation>{name} ES AHORA LA VERSIÓN DE {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{name}: LOCAL VERSION RETAINED</source>
+      <translation>{name}: VERSIÓN LOCAL CONSERVADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{name}: NO RESPONSE FOR {seconds} S. PROGRAMS STAY LOCAL FOR NOW</source>
+      <translation>{name} NO RESPONDE HACE {seconds} S. POR AHORA LOS PROGRAMAS QUEDAN AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_view.py" />
+      <source>VERSIONS ON OTHER CONTROLS</source>
+      <translation>VERSIONES EN OTROS CONTROLES</translation>
     </message>
     <message>
       <location filename="app/jobs/job_setup.py" />
@@ -12340,16 +12725,6 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
-      <source>SHARED</source>
-      <translation>COMPART.</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>SHARED PROGRAMS</source>
-      <translation>PROGRAMAS COMPARTIDOS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
       <source>SPECIAL FUNCTIONS</source>
       <translation>FUNCIONES ESPECIALES</translation>
     </message>
@@ -12397,11 +12772,6 @@
       <location filename="app/screen/page_table.py" />
       <source>program findings, stock, checks turned off</source>
       <translation>hallazgos del programa, material en bruto, comprobaciones desactivadas</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>programs from other TurnDesk controls; newer versions are copied on request</source>
-      <translation>programas de otros controles TurnDesk; las versiones nuevas se copian si se pide</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -12974,186 +13344,6 @@
       <translation>{which}: NINGUNA</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>AXIS</source>
-      <translation>EJE</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>BLADE</source>
-      <translation>BLADE</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>COMP</source>
-      <translation>COMP</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>CONTOUR</source>
-      <translation>CONTORNO</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>DRAWING UNIT</source>
-      <translation>UNIDAD DEL DIBUJO</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>DUNIT</source>
-      <translation>DUNIT</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>FACE SIDE IN DRAWING</source>
-      <translation>LADO DE LA CARA EN EL DIBUJO</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>FROM</source>
-      <translation>FROM</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>FRONT</source>
-      <translation>FRENTE</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>GROOVING TOOL</source>
-      <translation>ÚTIL DE RANURAR</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>HOLE</source>
-      <translation>HOLE</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>HOLE DIAMETER</source>
-      <translation>DIÁMETRO DEL AGUJERO</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>LAYER</source>
-      <translation>CAPA</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>MATERIAL</source>
-      <translation>MATERIAL</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>NOSE COMPENSATION: D NUMBER</source>
-      <translation>COMPENSACIÓN DE PUNTA: NÚMERO D</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8.</source>
-      <translation>No hay dibujos en la carpeta de programas: copie en ella un archivo DXF o SVG con F6 y luego F8.</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>ROUGH</source>
-      <translation>ROUGH</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>ROUGHING DEPTH OF CUT</source>
-      <translation>PROFUNDIDAD DE DESBASTE</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>Reading was canceled. Press F6 to read the drawing again.</source>
-      <translation>Lectura cancelada. Pulse F6 para leer el dibujo de nuevo.</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>SHIFT</source>
-      <translation>SHIFT</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>STEEL</source>
-      <translation>ACERO</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>STOCK DIAMETER</source>
-      <translation>DIÁMETRO DEL MATERIAL</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>STOCK ON THE FACE</source>
-      <translation>MATERIAL EN LA CARA</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>Z OF REFERENCE POINT</source>
-      <translation>Z DEL PUNTO DE REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>Z REFERENCE POINT</source>
-      <translation>PUNTO DE REFERENCIA Z</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_form.py" />
-      <source>facing, roughing, finishing and grooving of a profile from a DXF or SVG drawing</source>
-      <translation>refrentado, desbastado, acabado y ranurado de un perfil de un dibujo DXF o SVG</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
-      <source>AS DRAWN</source>
-      <translation>COMO EN EL DIBUJO</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
-      <source>Boring needs a predrilled hole: enter its diameter.</source>
-      <translation>El mandrinado necesita un agujero previo: introduzca su diámetro.</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
-      <source>CONTOUR {item}</source>
-      <translation>CONTORNO {item}</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
-      <source>{drawing} does not specify its unit: choose MM or INCH.</source>
-      <translation>{drawing} no indica su unidad: elija MM o PULGADAS.</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
-      <source>{drawing} has no contour for the selected axis: choose another layer or axis.</source>
-      <translation>{drawing} no tiene ningún contorno para el eje elegido: elija otra capa u otro eje.</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
-      <source>{drawing} has no contour on layer {layer}: choose another layer or axis.</source>
-      <translation>{drawing} no tiene ningún contorno en la capa {layer}: elija otra capa u otro eje.</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
-      <source>{drawing} has no layer {layer}: choose another layer.</source>
-      <translation>{drawing} no tiene la capa {layer}: elija otra capa.</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
-      <source>{drawing} has {nets_count} contours: choose 1 to {nets_count2}.</source>
-      <translation>{drawing} tiene {nets_count} contornos: elija de 1 a {nets_count2}.</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
-      <source>{drawing} is {wrong}, which is too large for this machine. The drawing fits if its unit is {wrong2}: choose {wrong3}.</source>
-      <translation>{drawing} mide {wrong}, demasiado para esta máquina. El dibujo cabe si su unidad es {wrong2}: elija {wrong3}.</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/drawing_plan.py" />
-      <source>{path} cannot be read: {cause}.</source>
-      <translation>no se puede leer {path}: {cause}.</translation>
-    </message>
-    <message>
       <location filename="app/shapes/shape_form.py" />
       <source>CLASS</source>
       <translation>CLASE</translation>
@@ -13164,14 +13354,14 @@
       <translation>Estos valores no dan una forma válida: revise el último valor que introdujo.</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
-      <source>1 SHAPE EDITED BY HAND WAS NOT CHANGED</source>
-      <translation>1 FORMA EDITADA A MANO NO SE CAMBIÓ</translation>
+      <location filename="app/shapes/shape_words.py" />
+      <source>SERIES</source>
+      <translation>SERIE</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
-      <source>CALCULATING THE CONTOUR. PRESS F6 TO CANCEL</source>
-      <translation>CALCULANDO EL CONTORNO. PULSE F6 PARA CANCELAR</translation>
+      <source>1 SHAPE EDITED BY HAND WAS NOT CHANGED</source>
+      <translation>1 FORMA EDITADA A MANO NO SE CAMBIÓ</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
@@ -13195,11 +13385,6 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
-      <source>LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS</source>
-      <translation>IZQUIERDA/DERECHA: CAMBIAR   TOCAR DIBUJO: CONTORNO O EJE</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/shapes_model.py" />
       <source>LETTER: OPEN CALCULATOR OR TEMPLATE   F10: GO TO TEXT</source>
       <translation>LETRA: ABRIR CALCULADORA O PLANTILLA   F10: IR AL TEXTO</translation>
     </message>
@@ -13220,23 +13405,8 @@
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
-      <source>READ</source>
-      <translation>LEÍDAS</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/shapes_model.py" />
-      <source>READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL</source>
-      <translation>LEYENDO EL DIBUJO: {seconds} s. PULSE F6 PARA CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/shapes_model.py" />
       <source>SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS</source>
       <translation>LAS FORMAS SOLO FUNCIONAN EN PROGRAMAS OMNITURN Y SINUMERIK</translation>
-    </message>
-    <message>
-      <location filename="app/shapes/shapes_model.py" />
-      <source>THE DRAWING CANNOT BE PROCESSED: {why}</source>
-      <translation>NO SE PUEDE PROCESAR EL DIBUJO: {why}</translation>
     </message>
     <message>
       <location filename="app/shapes/shapes_model.py" />
@@ -13282,176 +13452,6 @@
       <location filename="app/shapes/shapes_view.py" />
       <source>SHAPES  ·  IN THIS PROGRAM, BY LINE</source>
       <translation>FORMAS  ·  EN ESTE PROGRAMA, POR LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/program_files.py" />
-      <source>the file is larger than {most_bytes} MB</source>
-      <translation>el archivo es mayor de {most_bytes} MB</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/program_files.py" />
-      <source>the name of another program on this control differs from the name of this program only in upper and lower case: rename one of the programs</source>
-      <translation>el nombre de otro programa de este control difiere del nombre de este programa solo en mayúsculas y minúsculas: cambie el nombre de uno de los programas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>copied from {machine}</source>
-      <translation>copiado de {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>no decision is necessary, because no other control has changed this program</source>
-      <translation>no hace falta decidir, porque ningún otro control ha cambiado este programa</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>shared by {machine}</source>
-      <translation>compartido por {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>the text of {program} differs from the saved version; save the program again</source>
-      <translation>el texto de {program} difiere de la versión guardada; guarde el programa otra vez</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>{program} is already the selected version</source>
-      <translation>{program} ya es la versión elegida</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>AVAILABLE ON</source>
-      <translation>DISPONIBLE EN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>AVAILABLE ON {desks}</source>
-      <translation>DISPONIBLE EN {desks}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>CHANGED HERE AND ON ANOTHER CONTROL</source>
-      <translation>CAMBIADO AQUÍ Y EN OTRO CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>CHANGES IF YOU USE THE SELECTED VERSION</source>
-      <translation>CAMBIOS SI USA LA VERSIÓN ELEGIDA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>CHECKING …</source>
-      <translation>COMPROBANDO …</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>F2: USE SELECTED VERSION   F3: KEEP LOCAL VERSION   ESC: BACK</source>
-      <translation>F2: USAR LA VERSIÓN ELEGIDA   F3: CONSERVAR LA LOCAL   ESC: VOLVER</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>F2: USE SELECTED VERSION (ASKS FIRST)   ESC: AUTOMATIC</source>
-      <translation>F2: USAR LA VERSIÓN ELEGIDA (PREGUNTA ANTES)   ESC: AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>KEEP</source>
-      <translation>CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NEWER VERSION ON ANOTHER CONTROL</source>
-      <translation>VERSIÓN MÁS NUEVA EN OTRO CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM</source>
-      <translation>NO HACE FALTA DECIDIR: NINGÚN OTRO CONTROL HA CAMBIADO ESTE PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER OR A DATABASE UNDER [sharing] IN THE MACHINE FILE</source>
-      <translation>NO HAY UBICACIÓN PARA PROGRAMAS COMPARTIDOS. INDIQUE UNA CARPETA O UNA BASE DE DATOS EN [sharing] DEL ARCHIVO DE MÁQUINA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NO OTHER CONTROL HAS A NEWER VERSION</source>
-      <translation>NINGÚN OTRO CONTROL TIENE UNA VERSIÓN MÁS NUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NOT ON THIS CONTROL</source>
-      <translation>NO ESTÁ EN ESTE CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER</source>
-      <translation>AÚN NO SE COMPARTE NADA. LA PRÓXIMA ACTUALIZACIÓN COMPARTE LA CARPETA DE PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>SAME TEXT AS ON THIS CONTROL</source>
-      <translation>EL MISMO TEXTO QUE EN ESTE CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>UP TO DATE</source>
-      <translation>AL DÍA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC</source>
-      <translation>ARRIBA/ABAJO: SELECCIONAR PROGRAMA   F5: ACTUALIZAR   ESC: AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>VERSION</source>
-      <translation>VERSIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>Y: KEEP LOCAL {name}, STORE OTHER VERSIONS   N: CANCEL</source>
-      <translation>Y: CONSERVAR {name} LOCAL, GUARDAR LAS OTRAS VERSIONES   N: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>Y: USE {name} FROM {desk} (LOCAL VERSION STAYS STORED)   N: CANCEL</source>
-      <translation>Y: USAR {name} DE {desk} (LA VERSIÓN LOCAL QUEDA GUARDADA)   N: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>program {name}: local version retained</source>
-      <translation>programa {name}: versión local conservada</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>program {program}: version from {machine} now in use</source>
-      <translation>programa {program}: se usa ahora la versión de {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{count} WAITING TO BE SHARED</source>
-      <translation>{count} POR COMPARTIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{name} IS NOW THE VERSION FROM {machine}</source>
-      <translation>{name} ES AHORA LA VERSIÓN DE {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{name}: LOCAL VERSION RETAINED</source>
-      <translation>{name}: VERSIÓN LOCAL CONSERVADA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{name}: NO RESPONSE FOR {seconds} S. PROGRAMS STAY LOCAL FOR NOW</source>
-      <translation>{name} NO RESPONDE HACE {seconds} S. POR AHORA LOS PROGRAMAS QUEDAN AQUÍ</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_view.py" />
-      <source>VERSIONS ON OTHER CONTROLS</source>
-      <translation>VERSIONES EN OTROS CONTROLES</translation>
     </message>
     <message>
       <location filename="app/shopfloor/agent_desk.py" />
@@ -16774,281 +16774,6 @@
       <translation>la pista de la perilla de avance o de husillo está gastada</translation>
     </message>
     <message>
-      <location filename="core/drawings/contour_walk.py" />
-      <source>the contour crosses itself {distance} mm from the face at a diameter of {diameter} mm. Correct the contour at this point.</source>
-      <translation>el contorno se cruza a sí mismo a {distance} mm de la cara, en un diámetro de {diameter} mm. Corrija el contorno en ese punto.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/contour_walk.py" />
-      <source>the contour crosses the axis {distance} mm from the face. Choose another axis.</source>
-      <translation>el contorno cruza el eje a {distance} mm de la cara. Elija otro eje.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/contour_walk.py" />
-      <source>the contour has no bore at its face. Choose the outside, or another contour.</source>
-      <translation>el contorno no tiene agujero en su cara. Elija el exterior u otro contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/contour_walk.py" />
-      <source>the foremost point of the contour is in the middle of an arc. End the arc at this point.</source>
-      <translation>el punto más adelantado del contorno está en medio de un arco. Termine el arco en ese punto.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/contour_walk.py" />
-      <source>this side has no contour. Choose another contour.</source>
-      <translation>este lado no tiene contorno. Elija otro contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing.py" />
-      <source>{name} has a point too far from the drawing origin: move the contour to the origin.</source>
-      <translation>{name} tiene un punto demasiado lejos del origen del dibujo: lleve el contorno al origen.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing.py" />
-      <source>{name} has a point whose coordinate is not a number: save the drawing again.</source>
-      <translation>{name} tiene un punto cuya coordenada no es un número: guarde el dibujo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing.py" />
-      <source>{name} has more than {most_elements} lines: save only the layer with the contour.</source>
-      <translation>{name} tiene más de {most_elements} líneas: guarde solo la capa del contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_file.py" />
-      <source>{path} is damaged or is not a {kind} file: save the drawing again.</source>
-      <translation>{path} está dañado o no es un archivo {kind}: guarde el dibujo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_file.py" />
-      <source>{path} is empty: save the drawing again.</source>
-      <translation>{path} está vacío: guarde el dibujo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_file.py" />
-      <source>{path} is larger than {most_bytes} MB. Save only the contour of the part.</source>
-      <translation>{path} tiene más de {most_bytes} MB. Guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_file.py" />
-      <source>{path} is not a supported drawing: use a DXF or SVG file.</source>
-      <translation>{path} no es un dibujo admitido: use un archivo DXF o SVG.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_file.py" />
-      <source>{path} needs more memory than is allowed for a drawing. Save only the contour of the part.</source>
-      <translation>{path} necesita más memoria de la permitida para un dibujo. Guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_process.py" />
-      <source>{path} cannot be read because the process that reads drawings cannot be started.</source>
-      <translation>{path} no se puede leer porque no se puede iniciar el proceso que lee los dibujos.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_process.py" />
-      <source>{path} cannot be read with {maximum} MB of memory. Save only the contour of the part.</source>
-      <translation>{path} no se puede leer con {maximum} MB de memoria. Guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_process.py" />
-      <source>{path} takes more than {seconds} s to read. Save only the contour of the part.</source>
-      <translation>{path} tarda más de {seconds} s en leerse. Guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_view.py" />
-      <source>CENTRE LINE {found_count}</source>
-      <translation>LÍNEA DE EJE {found_count}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_view.py" />
-      <source>LOWEST LINE</source>
-      <translation>LÍNEA MÁS BAJA</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_view.py" />
-      <source>{drawing} has no axis {name}: choose {present}, or LINE and a line number.</source>
-      <translation>{drawing} no tiene el eje {name}: elija {present}, o LINE y un número de línea.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_view.py" />
-      <source>{drawing} has {drawn_count} lines, but line {number} does not exist: choose an existing line.</source>
-      <translation>{drawing} tiene {drawn_count} líneas, pero la línea {number} no existe: elija una línea existente.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_view.py" />
-      <source>{drawing}: line {number} is an arc. Choose a straight line as the axis.</source>
-      <translation>{drawing}: la línea {number} es un arco. Elija una recta como eje.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>the {kind} on layer {layer} of {name} is damaged: draw it again.</source>
-      <translation>el elemento {kind} de la capa {layer} de {name} está dañado: dibújelo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>{name} does not contain any lines or arcs in model space, only {what}: draw the contour with lines.</source>
-      <translation>{name} no contiene líneas ni arcos en el espacio modelo, solo {what}: dibuje el contorno con líneas.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>{name} has blocks nested more than {deepest} levels deep: explode the blocks.</source>
-      <translation>{name} tiene bloques anidados a más de {deepest} niveles: descomponga los bloques.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>{name} is three-dimensional: save a section or a view of the part in one plane.</source>
-      <translation>{name} es tridimensional: guarde una sección o una vista de la pieza en un plano.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>{path} is a DWG drawing: save it as DXF.</source>
-      <translation>{path} es un dibujo DWG: guárdelo como DXF.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/expansion.py" />
-      <source>A repeated group in {name} contains itself: save only the contour of the part.</source>
-      <translation>Un grupo repetido de {name} se contiene a sí mismo: guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/expansion.py" />
-      <source>The repeated groups in {name} add up to more than {most_elements} entities: save only the contour of the part.</source>
-      <translation>Los grupos repetidos de {name} suman más de {most_elements} entidades: guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_program.py" />
-      <source>T{number} has a nose radius of {nose}, but its tool data has no tip quadrant: enter the tip quadrant on the SHAPE page of the tool (F8, F8).</source>
-      <translation>T{number} tiene un radio de punta de {nose}, pero sus datos de herramienta no tienen cuadrante de punta: introduzca el cuadrante de punta en la página FORMA de la herramienta (F8, F8).</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_program.py" />
-      <source>the groove cannot be cut because no grooving tool is specified</source>
-      <translation>la ranura no se puede cortar porque no se indica útil de ranurar</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_program.py" />
-      <source>the groove cannot be cut because the width of T{number} is not defined</source>
-      <translation>la ranura no se puede cortar porque la anchura de T{number} no está definida</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_program.py" />
-      <source>the groove is narrower than the {wide} mm blade</source>
-      <translation>la ranura es más estrecha que la cuchilla de {wide} mm</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>Z {front} to {back} is not cut: {why}</source>
-      <translation>Z {front} a {back} no se corta: {why}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>except at the listed deviations, the simulated part matches the drawing to within {within} {unit}</source>
-      <translation>salvo en las desviaciones indicadas, la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>gaps up to {closed} {unit} were closed</source>
-      <translation>se cerraron huecos de hasta {closed} {unit}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>proving did not produce a simulated part, so a comparison with the drawing was not possible</source>
-      <translation>la comprobación no produjo una pieza simulada, así que no se pudo comparar con el dibujo</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>secondary offset {number} must have X {x} (diameter), Z {z}, R {radius} {unit}</source>
-      <translation>el corrector secundario {number} debe tener X {x} (diámetro), Z {z}, R {radius} {unit}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>the simulated part matches the drawing to within {within} {unit}</source>
-      <translation>la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>the tool data of T{tool} has no nose radius, so the contour is not compensated</source>
-      <translation>los datos de herramienta de T{tool} no tienen radio de punta, así que el contorno no se compensa</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{depth} {unit} of stock remains (measured on the radius) from Z {front} to Z {back}</source>
-      <translation>quedan {depth} {unit} de material (medidos en el radio) de Z {front} a Z {back}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{depth} {unit} of stock remains in the corner at Z {position} because of the tool nose radius</source>
-      <translation>{depth} {unit} de material quedan en el rincón en Z {position} por el radio de punta del útil</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{depth} {unit} too much is cut (measured on the radius) from Z {front} to Z {back}</source>
-      <translation>se cortan {depth} {unit} de más (medidos en el radio) de Z {front} a Z {back}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{edge} must have nose radius {radius} {unit} and tip quadrant {quadrant}</source>
-      <translation>{edge} debe tener radio de punta {radius} {unit} y cuadrante de punta {quadrant}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/svg_reader.py" />
-      <source>{name} defines XML entities, which are not supported: save it as plain SVG.</source>
-      <translation>{name} define entidades XML, que no se admiten: guárdelo como SVG simple.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/svg_reader.py" />
-      <source>{name} does not contain any paths or lines, only {what}: draw the contour as a path.</source>
-      <translation>{name} no contiene trazados ni líneas, solo {what}: dibuje el contorno como trazado.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/svg_reader.py" />
-      <source>{name} has a path that does not begin with M: save the drawing again.</source>
-      <translation>{name} tiene un trazado que no empieza con M: guarde el dibujo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/svg_reader.py" />
-      <source>{name} is not an SVG file, because its first element is in another namespace: save the drawing again.</source>
-      <translation>{name} no es un archivo SVG, porque su primer elemento es de otro espacio de nombres: guarde el dibujo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/svg_reader.py" />
-      <source>{name}: {dimension} of &lt;{kind}&gt; is not a number. Draw that element again.</source>
-      <translation>{name}: {dimension} de &lt;{kind}&gt; no es un número. Dibuje ese elemento otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/turning_contour.py" />
-      <source>The tool edge is at {rise} degrees, but the contour at Z {start} mm is at {item} degrees: use a tool that can turn shoulders.</source>
-      <translation>El filo del útil está a {rise} grados, pero el contorno en Z {start} mm está a {item} grados: use un útil que pueda tornear escalones.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/turning_contour.py" />
-      <source>This contour consists only of a face, so there is nothing to turn. Choose another contour.</source>
-      <translation>Este contorno consta solo de una cara, así que no hay nada que tornear. Elija otro contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/turning_contour.py" />
-      <source>the contour is undercut</source>
-      <translation>el contorno tiene un rebaje</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/turning_contour.py" />
-      <source>the contour slopes too steeply for the tool</source>
-      <translation>el contorno tiene una pendiente demasiado fuerte para el útil</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/unit_check.py" />
-      <source>{size} {unit} across</source>
-      <translation>{size} {unit} de diámetro</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/unit_check.py" />
-      <source>{size} {unit} long</source>
-      <translation>{size} {unit} de largo</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/work_limit.py" />
-      <source>the drawing has too many parallel lines. Save only the contour of the part.</source>
-      <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
-    </message>
-    <message>
       <location filename="core/executor/changed_offsets.py" />
       <source>another program is running; changed offsets apply only to the program for which they were entered</source>
       <translation>hay otro programa en marcha; los correctores cambiados sólo valen para el programa para el que se introdujeron</translation>
@@ -18252,6 +17977,371 @@
       <location filename="core/executor/watchdog.py" />
       <source>the software thread of the control is stuck</source>
       <translation>el hilo de software del control está atorado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>the contour crosses itself {distance} mm from the face at a diameter of {diameter} mm. Correct the contour at this point.</source>
+      <translation>el contorno se cruza a sí mismo a {distance} mm de la cara, en un diámetro de {diameter} mm. Corrija el contorno en ese punto.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>the contour crosses the axis {distance} mm from the face. Choose another axis.</source>
+      <translation>el contorno cruza el eje a {distance} mm de la cara. Elija otro eje.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>the contour has no bore at its face. Choose the outside, or another contour.</source>
+      <translation>el contorno no tiene agujero en su cara. Elija el exterior u otro contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>the foremost point of the contour is in the middle of an arc. End the arc at this point.</source>
+      <translation>el punto más adelantado del contorno está en medio de un arco. Termine el arco en ese punto.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>this side has no contour. Choose another contour.</source>
+      <translation>este lado no tiene contorno. Elija otro contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing.py" />
+      <source>{name} has a point too far from the drawing origin: move the contour to the origin.</source>
+      <translation>{name} tiene un punto demasiado lejos del origen del dibujo: lleve el contorno al origen.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing.py" />
+      <source>{name} has a point whose coordinate is not a number: save the drawing again.</source>
+      <translation>{name} tiene un punto cuya coordenada no es un número: guarde el dibujo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing.py" />
+      <source>{name} has more than {most_elements} lines: save only the layer with the contour.</source>
+      <translation>{name} tiene más de {most_elements} líneas: guarde solo la capa del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} is damaged or is not a {kind} file: save the drawing again.</source>
+      <translation>{path} está dañado o no es un archivo {kind}: guarde el dibujo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} is empty: save the drawing again.</source>
+      <translation>{path} está vacío: guarde el dibujo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} is larger than {most_bytes} MB. Save only the contour of the part.</source>
+      <translation>{path} tiene más de {most_bytes} MB. Guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} is not a supported drawing: use a DXF or SVG file.</source>
+      <translation>{path} no es un dibujo admitido: use un archivo DXF o SVG.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} needs more memory than is allowed for a drawing. Save only the contour of the part.</source>
+      <translation>{path} necesita más memoria de la permitida para un dibujo. Guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_process.py" />
+      <source>{path} cannot be read because the process that reads drawings cannot be started.</source>
+      <translation>{path} no se puede leer porque no se puede iniciar el proceso que lee los dibujos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_process.py" />
+      <source>{path} cannot be read with {maximum} MB of memory. Save only the contour of the part.</source>
+      <translation>{path} no se puede leer con {maximum} MB de memoria. Guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_process.py" />
+      <source>{path} takes more than {seconds} s to read. Save only the contour of the part.</source>
+      <translation>{path} tarda más de {seconds} s en leerse. Guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>CENTRE LINE {found_count}</source>
+      <translation>LÍNEA DE EJE {found_count}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>LOWEST LINE</source>
+      <translation>LÍNEA MÁS BAJA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>{drawing} has no axis {name}: choose {present}, or LINE and a line number.</source>
+      <translation>{drawing} no tiene el eje {name}: elija {present}, o LINE y un número de línea.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>{drawing} has {drawn_count} lines, but line {number} does not exist: choose an existing line.</source>
+      <translation>{drawing} tiene {drawn_count} líneas, pero la línea {number} no existe: elija una línea existente.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>{drawing}: line {number} is an arc. Choose a straight line as the axis.</source>
+      <translation>{drawing}: la línea {number} es un arco. Elija una recta como eje.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/dxf_reader.py" />
+      <source>the {kind} on layer {layer} of {name} is damaged: draw it again.</source>
+      <translation>el elemento {kind} de la capa {layer} de {name} está dañado: dibújelo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/dxf_reader.py" />
+      <source>{name} does not contain any lines or arcs in model space, only {what}: draw the contour with lines.</source>
+      <translation>{name} no contiene líneas ni arcos en el espacio modelo, solo {what}: dibuje el contorno con líneas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/dxf_reader.py" />
+      <source>{name} has blocks nested more than {deepest} levels deep: explode the blocks.</source>
+      <translation>{name} tiene bloques anidados a más de {deepest} niveles: descomponga los bloques.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/dxf_reader.py" />
+      <source>{name} is three-dimensional: save a section or a view of the part in one plane.</source>
+      <translation>{name} es tridimensional: guarde una sección o una vista de la pieza en un plano.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/dxf_reader.py" />
+      <source>{path} is a DWG drawing: save it as DXF.</source>
+      <translation>{path} es un dibujo DWG: guárdelo como DXF.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/expansion.py" />
+      <source>A repeated group in {name} contains itself: save only the contour of the part.</source>
+      <translation>Un grupo repetido de {name} se contiene a sí mismo: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/expansion.py" />
+      <source>The repeated groups in {name} add up to more than {most_elements} entities: save only the contour of the part.</source>
+      <translation>Los grupos repetidos de {name} suman más de {most_elements} entidades: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_program.py" />
+      <source>T{number} has a nose radius of {nose}, but its tool data has no tip quadrant: enter the tip quadrant on the SHAPE page of the tool (F8, F8).</source>
+      <translation>T{number} tiene un radio de punta de {nose}, pero sus datos de herramienta no tienen cuadrante de punta: introduzca el cuadrante de punta en la página FORMA de la herramienta (F8, F8).</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_program.py" />
+      <source>the groove cannot be cut because no grooving tool is specified</source>
+      <translation>la ranura no se puede cortar porque no se indica útil de ranurar</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_program.py" />
+      <source>the groove cannot be cut because the width of T{number} is not defined</source>
+      <translation>la ranura no se puede cortar porque la anchura de T{number} no está definida</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_program.py" />
+      <source>the groove is narrower than the {wide} mm blade</source>
+      <translation>la ranura es más estrecha que la cuchilla de {wide} mm</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>Z {front} to {back} is not cut: {why}</source>
+      <translation>Z {front} a {back} no se corta: {why}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>except at the listed deviations, the simulated part matches the drawing to within {within} {unit}</source>
+      <translation>salvo en las desviaciones indicadas, la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>gaps up to {closed} {unit} were closed</source>
+      <translation>se cerraron huecos de hasta {closed} {unit}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>proving did not produce a simulated part, so a comparison with the drawing was not possible</source>
+      <translation>la comprobación no produjo una pieza simulada, así que no se pudo comparar con el dibujo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>secondary offset {number} must have X {x} (diameter), Z {z}, R {radius} {unit}</source>
+      <translation>el corrector secundario {number} debe tener X {x} (diámetro), Z {z}, R {radius} {unit}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>the simulated part matches the drawing to within {within} {unit}</source>
+      <translation>la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>the tool data of T{tool} has no nose radius, so the contour is not compensated</source>
+      <translation>los datos de herramienta de T{tool} no tienen radio de punta, así que el contorno no se compensa</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>{depth} {unit} of stock remains (measured on the radius) from Z {front} to Z {back}</source>
+      <translation>quedan {depth} {unit} de material (medidos en el radio) de Z {front} a Z {back}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>{depth} {unit} of stock remains in the corner at Z {position} because of the tool nose radius</source>
+      <translation>{depth} {unit} de material quedan en el rincón en Z {position} por el radio de punta del útil</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>{depth} {unit} too much is cut (measured on the radius) from Z {front} to Z {back}</source>
+      <translation>se cortan {depth} {unit} de más (medidos en el radio) de Z {front} a Z {back}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>{edge} must have nose radius {radius} {unit} and tip quadrant {quadrant}</source>
+      <translation>{edge} debe tener radio de punta {radius} {unit} y cuadrante de punta {quadrant}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/svg_reader.py" />
+      <source>{name} defines XML entities, which are not supported: save it as plain SVG.</source>
+      <translation>{name} define entidades XML, que no se admiten: guárdelo como SVG simple.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/svg_reader.py" />
+      <source>{name} does not contain any paths or lines, only {what}: draw the contour as a path.</source>
+      <translation>{name} no contiene trazados ni líneas, solo {what}: dibuje el contorno como trazado.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/svg_reader.py" />
+      <source>{name} has a path that does not begin with M: save the drawing again.</source>
+      <translation>{name} tiene un trazado que no empieza con M: guarde el dibujo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/svg_reader.py" />
+      <source>{name} is not an SVG file, because its first element is in another namespace: save the drawing again.</source>
+      <translation>{name} no es un archivo SVG, porque su primer elemento es de otro espacio de nombres: guarde el dibujo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/svg_reader.py" />
+      <source>{name}: {dimension} of &lt;{kind}&gt; is not a number. Draw that element again.</source>
+      <translation>{name}: {dimension} de &lt;{kind}&gt; no es un número. Dibuje ese elemento otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/turning_contour.py" />
+      <source>The tool edge is at {rise} degrees, but the contour at Z {start} mm is at {item} degrees: use a tool that can turn shoulders.</source>
+      <translation>El filo del útil está a {rise} grados, pero el contorno en Z {start} mm está a {item} grados: use un útil que pueda tornear escalones.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/turning_contour.py" />
+      <source>This contour consists only of a face, so there is nothing to turn. Choose another contour.</source>
+      <translation>Este contorno consta solo de una cara, así que no hay nada que tornear. Elija otro contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/turning_contour.py" />
+      <source>the contour is undercut</source>
+      <translation>el contorno tiene un rebaje</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/turning_contour.py" />
+      <source>the contour slopes too steeply for the tool</source>
+      <translation>el contorno tiene una pendiente demasiado fuerte para el útil</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/unit_check.py" />
+      <source>{size} {unit} across</source>
+      <translation>{size} {unit} de diámetro</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/unit_check.py" />
+      <source>{size} {unit} long</source>
+      <translation>{size} {unit} de largo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/work_limit.py" />
+      <source>the drawing has too many parallel lines. Save only the contour of the part.</source>
+      <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/connection_string.py" />
+      <source>{named} (TLS certificate not verified)</source>
+      <translation>{named} (certificado TLS sin verificar)</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_folder.py" />
+      <source>{mark} is damaged</source>
+      <translation>{mark} está dañado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_place.py" />
+      <source>the database {address}</source>
+      <translation>la base de datos {address}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_place.py" />
+      <source>the folder {folder}</source>
+      <translation>la carpeta {folder}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>[sharing] postgresql is not a valid connection string; put a value that contains spaces in quotation marks, and write / and @ in the password of an address as %2F and %40</source>
+      <translation>[sharing] postgresql no es una cadena de conexión válida; ponga entre comillas un valor que contenga espacios, y escriba / y @ en la contraseña de una dirección como %2F y %40</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]</source>
+      <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in [sharing] postgresql to the certificate of its issuer</source>
+      <translation>el certificado de {place} no se puede verificar ({why}); indique en [sharing] postgresql sslrootcert=FILE con el certificado de su emisor</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>the disk of {place} is full; free up space on that disk</source>
+      <translation>el disco de {place} está lleno; libere espacio en ese disco</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>this user does not have permission for this action in {place} ({why}); ask the administrator for permission</source>
+      <translation>este usuario no tiene permiso para esta acción en {place} ({why}); pida el permiso al administrador</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} accepts only TLS connections ({why}); remove sslmode from [sharing] postgresql</source>
+      <translation>{place} solo acepta conexiones TLS ({why}); quite sslmode de [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} contains no shared programs; check that it is mounted and that its name is right. To set up a new location, run: turndesk share begin</source>
+      <translation>{place} no contiene programas compartidos; revise que esté montado y que su nombre sea correcto. Para preparar una ubicación nueva, ejecute: turndesk share begin</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} does not respond ({why}); this control continues to work, and will share programs again when the connection is restored</source>
+      <translation>{place} no responde ({why}); este control sigue trabajando, y volverá a compartir programas cuando se restablezca la conexión</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} does not support TLS ({why}); turn on TLS at that server, or, on a network where you trust every user, write sslmode=disable in [sharing] postgresql</source>
+      <translation>{place} no ofrece TLS ({why}); active TLS en ese servidor o, en una red en la que confía en todos los usuarios, escriba sslmode=disable en [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} is not set up for shared programs ({why}); specify another location</source>
+      <translation>{place} no está preparado para programas compartidos ({why}); indique otra ubicación</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} rejects the user name or the password ({why}); correct the user name or the password in [sharing] postgresql</source>
+      <translation>{place} rechaza el nombre de usuario o la contraseña ({why}); corrija el nombre de usuario o la contraseña en [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} was not found ({why}); check that it is mounted and that its name is right</source>
+      <translation>no se encontró {place} ({why}); revise que esté montado y que su nombre sea correcto</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} was set up by a newer TurnDesk (format {why}); update TurnDesk on this control</source>
+      <translation>{place} fue preparado por un TurnDesk más nuevo (formato {why}); actualice TurnDesk en este control</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place}: another control is also named {why}; give this control a name that no other control uses (desk in [sharing]) or, if the other computer no longer exists, run: turndesk share publish --claim</source>
+      <translation>{place}: otro control también se llama {why}; dé a este control un nombre que no use ningún otro (desk en [sharing]) o, si la otra computadora ya no existe, ejecute: turndesk share publish --claim</translation>
     </message>
     <message>
       <location filename="core/geometry/area_clearing.py" />
@@ -31247,96 +31337,6 @@
       <location filename="core/shapes/usual_fields.py" />
       <source>S{revolutions} is more than the {maximum} rpm limit of this spindle: enter {maximum2} or less.</source>
       <translation>S{revolutions} es más que el límite de {maximum} rpm de este husillo: introduzca {maximum2} o menos.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/connection_string.py" />
-      <source>{named} (TLS certificate not verified)</source>
-      <translation>{named} (certificado TLS sin verificar)</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/shared_folder.py" />
-      <source>{mark} is damaged</source>
-      <translation>{mark} está dañado</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/shared_place.py" />
-      <source>the database {address}</source>
-      <translation>la base de datos {address}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/shared_place.py" />
-      <source>the folder {folder}</source>
-      <translation>la carpeta {folder}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>[sharing] postgresql is not a valid connection string; put a value that contains spaces in quotation marks, and write / and @ in the password of an address as %2F and %40</source>
-      <translation>[sharing] postgresql no es una cadena de conexión válida; ponga entre comillas un valor que contenga espacios, y escriba / y @ en la contraseña de una dirección como %2F y %40</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]</source>
-      <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in [sharing] postgresql to the certificate of its issuer</source>
-      <translation>el certificado de {place} no se puede verificar ({why}); indique en [sharing] postgresql sslrootcert=FILE con el certificado de su emisor</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>the disk of {place} is full; free up space on that disk</source>
-      <translation>el disco de {place} está lleno; libere espacio en ese disco</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>this user does not have permission for this action in {place} ({why}); ask the administrator for permission</source>
-      <translation>este usuario no tiene permiso para esta acción en {place} ({why}); pida el permiso al administrador</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} accepts only TLS connections ({why}); remove sslmode from [sharing] postgresql</source>
-      <translation>{place} solo acepta conexiones TLS ({why}); quite sslmode de [sharing] postgresql</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} contains no shared programs; check that it is mounted and that its name is right. To set up a new location, run: turndesk share begin</source>
-      <translation>{place} no contiene programas compartidos; revise que esté montado y que su nombre sea correcto. Para preparar una ubicación nueva, ejecute: turndesk share begin</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} does not respond ({why}); this control continues to work, and will share programs again when the connection is restored</source>
-      <translation>{place} no responde ({why}); este control sigue trabajando, y volverá a compartir programas cuando se restablezca la conexión</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} does not support TLS ({why}); turn on TLS at that server, or, on a network where you trust every user, write sslmode=disable in [sharing] postgresql</source>
-      <translation>{place} no ofrece TLS ({why}); active TLS en ese servidor o, en una red en la que confía en todos los usuarios, escriba sslmode=disable en [sharing] postgresql</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} is not set up for shared programs ({why}); specify another location</source>
-      <translation>{place} no está preparado para programas compartidos ({why}); indique otra ubicación</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} rejects the user name or the password ({why}); correct the user name or the password in [sharing] postgresql</source>
-      <translation>{place} rechaza el nombre de usuario o la contraseña ({why}); corrija el nombre de usuario o la contraseña en [sharing] postgresql</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} was not found ({why}); check that it is mounted and that its name is right</source>
-      <translation>no se encontró {place} ({why}); revise que esté montado y que su nombre sea correcto</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} was set up by a newer TurnDesk (format {why}); update TurnDesk on this control</source>
-      <translation>{place} fue preparado por un TurnDesk más nuevo (formato {why}); actualice TurnDesk en este control</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place}: another control is also named {why}; give this control a name that no other control uses (desk in [sharing]) or, if the other computer no longer exists, run: turndesk share publish --claim</source>
-      <translation>{place}: otro control también se llama {why}; dé a este control un nombre que no use ningún otro (desk en [sharing]) o, si la otra computadora ya no existe, ejecute: turndesk share publish --claim</translation>
     </message>
     <message>
       <location filename="core/store/backup.py" />

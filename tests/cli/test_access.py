@@ -19,6 +19,7 @@ from app.cli.main import build_parser, main
 from core.access import pins
 from core.coded_error import CodedError
 from core.store.store import Store
+from tests.extras.modules import of_extras
 from tests.texts import text as wording
 
 Captured = pytest.CaptureFixture[str]
@@ -155,10 +156,11 @@ CHANGES: dict[str, tuple[str, ...]] = {
     "serial receive": ("--port", "/dev/null"),
     "prove": ("{program}", "--stock", "bar:1.0", "--keep-stock"),
     "run": ("{program}", "--headless", "--stock", "bar:1.0", "--keep-stock"),
-    "profile": ("{file}", "--out", "{folder}/new.nc"),
     "shapes": ("{file}", "--out", "{folder}/new.nc"),
 }  # fmt: skip
 """Each command that changes something, with what it needs to come to the question who does it."""
+for _each in of_extras("options"):
+    CHANGES |= getattr(_each, "CHANGES", {})
 
 READS = {
     "expand", "trace", "alarms", "parts", "shift", "scope", "offsets show", "offsets history",

@@ -27,7 +27,7 @@ OF_LATER = (
         "app.transfer",
         "pyqtgraph",
     ),
-    *("core.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
+    *("core.extras.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
     *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen.canopen_machine", "drivers.feeder"),
     *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.pendant.pendant_reader"),
     *("drivers.mtconnect.mtconnect_adapter", "drivers.transfer"),

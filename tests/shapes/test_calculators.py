@@ -14,7 +14,6 @@ from core.shapes.drill_sizes import drill_for
 from core.shapes.shape import Filled, filled
 from core.shapes.shape_fields import Value
 from core.shapes.shape_setting import Setting, Shop
-from core.shapes.shape_table import HELPERS
 from core.shapes.tapping import TAP
 from tests.shapes.hand import Programmer, bad, proved
 from tests.texts import text as wording
@@ -117,7 +116,7 @@ def test_passes_of_a_thread() -> None:
 
 def written(keys: str, text: str = "") -> str:
     shapes = Shapes(shop=Shop())
-    assert shapes.open("x.nc", text, len(text.splitlines()), HELPERS) == ""
+    assert shapes.open("x.nc", text, len(text.splitlines()), helpers=True) == ""
     shapes.worker.settle(60.0)
     for key in keys:
         assert shapes.typed(key), (key, shapes.prompt())
@@ -151,7 +150,7 @@ def test_a_shape_is_not_opened_from_the_calculators() -> None:
         "G90G94F300G72(HEAD INCH UNIT DIAMETER WORDS STEEL MATERIAL ON COOLANT 1 CLEAR 300 RAPID)\nM08\nM30\n"
     )
     shapes = Shapes(shop=Shop())
-    shapes.open("x.nc", head, 1, HELPERS)
+    shapes.open("x.nc", head, 1, helpers=True)
     assert shapes.listing
     assert not shapes.listed
     assert not shapes.takes("x")

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 import resources
 from app.compose.machine_files import parse_machine
 from app.compose.shapes_desk import shop_of
-from app.shapes.drawing_plan import Asked
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape
 from core.shapes.contour import Row
@@ -20,7 +18,6 @@ from core.shapes.shape import Filled, filled
 from core.shapes.shape_fields import Value
 from core.shapes.shape_setting import Setting, Shop
 from core.shapes.shape_table import HELPERS_OF, SHAPES_OF
-from tests.drawings.hand import chain, dxf, planned
 from tests.shapes.hand import Programmer, bad, proved
 
 
@@ -237,19 +234,6 @@ def test_the_proposed_tool_is_of_the_kind_of_the_work() -> None:
     assert one("T", {"SIDE": "BORE"}, now).n("T") == 1.0
     assert one("T", {}, setting(tools={1: BAR}), STEPPED).n("T") == 2.0  # a place that no sheet takes
     assert refused(one("T", {"T": 1.0}, now, STEPPED), now) == []  # a boring bar may turn where it is typed
-
-
-def test_the_form_of_a_drawing_shows_the_depth_that_its_program_has(tmp_path: Path) -> None:
-    """A shaft of 12 mm and 18 mm out of steel, a bar of 19 mm: 1.016 mm by material, rounded down to 1.0."""
-    points = (0.0, 0.0), (0.0, 6.0), (-10.0, 6.0), (-14.0, 9.0), (-20.0, 9.0), (-20.0, 0.0)
-    path = dxf(tmp_path / "x.dxf", chain(*points))
-    now = setting(tools={1: CNMG}, metric=True)
-    plan = planned(Asked(path, {}, (), now))
-    assert plan.proposals["ROUGH"] == pytest.approx(1.0)
-    assert plan.made is not None
-    assert any(line.startswith("G75I1U") for line in plan.made.lines)
-    plan = planned(Asked(path, {"ROUGH": 7.0}, (), now))
-    assert "ROUGH" in plan.troubles  # CNMG 12 takes 6.448 mm
 
 
 # --- at the page, and its program on the bar

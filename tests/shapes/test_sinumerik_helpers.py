@@ -11,7 +11,6 @@ import pytest
 from app.shapes.shapes_model import Shapes
 from core.language.source import Dialect
 from core.shapes.shape_setting import Setting, Shop
-from core.shapes.shape_table import HELPERS
 from tests.shapes.test_sinumerik_shapes import NEAR, metal, strike
 from tests.texts import begins
 
@@ -22,7 +21,7 @@ HEAD = "G54 G18 G90 G95 G710 DIAMON\n"
 def written(keys: str, text: str = "", name: str = "x.mpf", shop: Shop = SHOP) -> tuple[str, str]:
     """The text with what one calculator or template writes before its end; and what is told instead."""
     shapes = Shapes(lambda: shop, Setting(metric=True), shop=shop)
-    assert shapes.open(name, text, max(1, len(text.splitlines())), HELPERS) == ""
+    assert shapes.open(name, text, max(1, len(text.splitlines())), helpers=True) == ""
     shapes.worker.settle(60.0)
     strike(shapes, keys)
     said = "" if shapes.form is None else shapes.prompt()

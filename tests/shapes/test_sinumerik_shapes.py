@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.compose.machine_setup import setup_for
-from app.shapes.shapes_model import FORMS, Shapes
+from app.shapes.shapes_model import Shapes
 from core.interpreter.dialects import ReadProgram
 from core.interpreter.elementary_blocks import Kind
 from core.interpreter.job_setup import Setup, ToolOffset
@@ -23,7 +23,7 @@ from core.shapes.pieces import pieces, renewed, setting_at, with_shape
 from core.shapes.shape import filled
 from core.shapes.shape_fields import Value
 from core.shapes.shape_setting import Setting, Shop
-from core.shapes.shape_table import HELPERS, SHAPES_OF
+from core.shapes.shape_table import SHAPES_OF
 from core.tool_edges import edge_key
 from tests.shapes.hand import machine, setup_of
 from tests.sinumerik.lathe import LINEAR
@@ -316,5 +316,5 @@ def test_a_program_without_a_head_asks_for_it(desk: Shapes) -> None:
 
 
 def test_a_language_that_the_forms_do_not_write_is_refused(desk: Shapes) -> None:
-    for table in (FORMS, HELPERS):
-        assert desk.open("x.h", "", 1, table) == text("shapes.other-language")
+    for helpers in (False, True):
+        assert desk.open("x.h", "", 1, helpers=helpers) == text("shapes.other-language")

@@ -310,16 +310,6 @@ def test_what_is_said_of_the_lines_leaves_no_half_line_below(qtbot: QtBot) -> No
     assert panel.grab().toImage() == without
 
 
-def test_the_drawing_is_seen_when_its_form_opens(writer: Writer) -> None:
-    """The number pad of the form before lay over it at 1024x600, where the contour is to be picked."""
-    opened(writer)
-    writer.key(Key.Key_F9)
-    assert writer.editor.shapes.model.padded
-    writer.type("x")
-    writer.sees(lambda: writer.editor.shapes.model.form is not None)
-    assert not writer.editor.shapes.model.padded
-
-
 def test_the_heading_counts_the_lines_of_the_text_that_is_proved(writer: Writer) -> None:
     drilled(writer)
     writer.sees(lambda: bool(writer.editor.shapes.model.listing))
