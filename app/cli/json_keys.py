@@ -558,24 +558,6 @@ problems | list | | Damage to the store, as sentences; if there is any, the exit
 """
     ),
 )
-SHAPES = Output(
-    "shapes FORM.toml --json",
-    "One object.",
-    keys(
-        """
-file | string | | The file with the steps.
-out | string or null | | File of --out.
-program | string | | Text of the program.
-steps | list | | Kinds of the steps.
-words | list | | Choices and observations of TurnDesk, as sentences.
-errors | list | | Errors of the program; the exit status is then 1.
-cycle_time_s | number | s | Cycle time.
-"""
-    ),
-)
-SHAPES_LIST = Output(
-    "shapes --list --json", "One object.", keys("* | list | | Keys that a step of this kind can have.")
-)
 SCOPE = Output(
     "scope FILE --json",
     "One object.",
@@ -639,7 +621,7 @@ ACCESS_TABLE = Output(
 _OWN_OUTPUTS = (
     *(PROVE, EXPAND_OMNITURN, EXPAND_SINUMERIK, EXPAND_KLARTEXT, TRACE, RUN, MACHINE_CHECK, MACHINE_HAL),
     *(ALARMS, OFFSETS_SHOW, OFFSETS_HISTORY, PARTS, SHIFT, JOBS, STORE_VERIFY),
-    *(SHAPES, SHAPES_LIST, SCOPE, ACCESS_LIST, ACCESS_TABLE),
+    *(SCOPE, ACCESS_LIST, ACCESS_TABLE),
 )
 OUTPUTS = tuple(
     insert_after(
@@ -649,7 +631,7 @@ OUTPUTS = tuple(
             (each, after)
             for extra in extras().values()
             for after, outputs in extra.json_outputs().items()
-            for each in reversed(outputs)
+            for each in outputs
         ],
     )
 )

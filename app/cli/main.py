@@ -40,7 +40,6 @@ COMMANDS = (
     "shift",
     "scope",
     "setup",
-    "shapes",
 )
 
 NO_DISPLAY = """\

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-NAMES = ("sharing", "drawings")
+NAMES = ("sharing", "shapes", "drawings")
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -37,7 +37,8 @@ class Extra:
     ``app.extras.NAME.SUBCOMMAND_command``. ``threads`` maps each supervised thread to what an operator
     misses when the thread ends. ``needs`` names the features without which this feature is left out.
     ``drawings`` are the endings of drawings from which this feature makes programs: the list of programs
-    shows them.
+    shows them. ``editor_panel`` is the dotted name of a subclass of ``EditorPanel`` that writes lines in
+    the place of the editor's text.
     """
 
     needs: Sequence[str] = ()
@@ -45,6 +46,7 @@ class Extra:
     pages: Sequence[PageEntry] = ()
     threads: Mapping[str, str] = {}
     drawings: Sequence[str] = ()
+    editor_panel: str = ""
 
     def machine_tables(self) -> Sequence[Driver]:
         """Return the tables that this feature adds to the machine file."""
@@ -103,10 +105,14 @@ def drawing_endings() -> tuple[str, ...]:
 def insert_after(items: Iterable[T], name_of: Callable[[T], str], added: Iterable[tuple[T, str]]) -> list[T]:
     """Return ``items`` with each pair of ``added`` inserted after the item that the pair names.
 
-    If there is no item of that name, the addition becomes the last one.
+    If there is no item of that name, the addition becomes the last one. Additions that follow the same item
+    keep their order.
     """
     found = list(items)
+    newest: dict[str, str] = {}
     for item, after in added:
         names = [name_of(each) for each in found]
-        found.insert(names.index(after) + 1 if after in names else len(found), item)
+        place = newest.get(after, after)
+        found.insert(names.index(place) + 1 if place in names else len(found), item)
+        newest[after] = name_of(item)
     return found

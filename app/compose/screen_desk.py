@@ -70,7 +70,6 @@ from drivers.clocks import RealClock
 
 if TYPE_CHECKING:
     from app.editor.editor import Editor
-    from app.shapes.shapes_model import Shapes
 
 # Threads beside the executor, and what an operator misses when they end.
 SUPERVISED = {
@@ -332,7 +331,6 @@ def _desk(
     if machine.kind == "mill":
         desk.attach(MillTouch(desk, kinematics_of(machine)))
     give_part(desk, machine, keep)
-    desk.attach_later("app.shapes.shapes_model.Shapes", partial(_shapes, desk, machine))
     give_searchto(desk, machine)
     give_quality(desk, machine, journal)
     alone = workshop(machine, offsets, left=left, pictures=False)
@@ -340,12 +338,6 @@ def _desk(
     for extra in extras().values():
         extra.attach(desk, machine, journal)
     return desk
-
-
-def _shapes(desk: Desk, machine: Machine) -> Shapes:
-    from app.compose.shapes_desk import shapes_of
-
-    return shapes_of(desk, machine, shapes_at_hand)
 
 
 def _stops(journal: Journal) -> Sequence[EventRow]:

@@ -15,7 +15,6 @@ from collections.abc import Container, Mapping
 from pathlib import Path
 
 from app.compose.extra import extras
-from app.shapes.shape_words import words_of
 from core.access.access_table import Act, Level
 from core.alarms import CATALOGUE
 from core.interpreter.dialects import code_book
@@ -25,7 +24,6 @@ from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
 from core.language.sinumerik.outside_words import OUTSIDE
 from core.language.sinumerik.word_table import FUNCTIONS, M_FUNCTIONS, WORDS
 from core.language.source import Dialect
-from core.shapes.shape_table import HELPERS, SHAPES, SINUMERIK_HELPERS, SINUMERIK_SHAPES
 from resources.translations.message_list import write_list
 from resources.translations.reading import marked, texts_of
 
@@ -60,12 +58,12 @@ ROOMS = (
         "app/programs",
         "app/quality",
     ),
-    *("app/scope", "app/screen", "app/searchto", "app/shapes", "app/extras"),
+    *("app/scope", "app/screen", "app/searchto", "app/extras"),
     *("app/special", "app/transfer"),
     "app/working_plane",
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
-    *("core/quality", "core/records", "core/shapes", "core/extras", "core/access"),
+    *("core/quality", "core/records", "core/extras", "core/access"),
     "app/shopfloor",
 )
 # Where much is told to programs: what is marked alone.
@@ -89,9 +87,10 @@ APART = frozenset(
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
         *("shared_database.py", "sharing/version_record.py", "share_command.py", "place_answer.py"),
         *("sharing_table.py", "sharing_check.py", "share_json_keys.py"),
-        *("profile_command.py", "profile_json_keys.py"),
-        *("screen/pdf_pages.py", "shapes/sinumerik_lines.py", "shapes/bar_lines.py"),
-        *("shapes/live_lines.py", "shapes/sinumerik_live_lines.py"),
+        *("profile_command.py", "profile_json_keys.py", "shapes_json_keys.py"),
+        *("shapes_command.py", "shape_steps.py"),
+        *("screen/pdf_pages.py", "lines/sinumerik_lines.py", "lines/bar_lines.py"),
+        *("lines/live_lines.py", "lines/sinumerik_live_lines.py"),
         *(
             "klartext_book.py",
             "klartext_cycle_book.py",
@@ -263,7 +262,7 @@ def texts() -> dict[str, str]:
             if not _is_apart(path, room):
                 for text in _texts_of_file(path, loud, room in MARKED_ALONE):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
-    tables = [*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_shapes(), *_of_extras()]
+    tables = [*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_extras()]
     return {**dict.fromkeys(tables, ""), **found}
 
 
@@ -316,12 +315,6 @@ def _of_books() -> list[str]:
     refused = {*OUTSIDE.values(), *CYCLES_OUTSIDE.values()}
     refused |= {name for key, name in vars(klartext_faults).items() if key.isupper()}
     return sorted(shown | refused | {entry.group for entry in FUNCTIONS.values()} | reasons - {""})
-
-
-def _of_shapes() -> list[str]:
-    """Names of shapes and of their fields: many are single words."""
-    tables = (SHAPES, SINUMERIK_SHAPES, HELPERS, SINUMERIK_HELPERS)
-    return words_of([shape for table in tables for shape in table.values()])
 
 
 def _of_extras() -> list[str]:

@@ -278,14 +278,7 @@ def test_exported_files_have_the_declared_columns(turndesk: Turndesk, filled: Pa
     assert {table.file: table.name for table in PUBLIC if table.file} == TABLES
 
 
-# --- Shapes, scope.
-
-
-def test_shapes(turndesk: Turndesk, tmp_path: Path) -> None:
-    path = tmp_path / "form.toml"
-    path.write_text('[[step]]\nkind = "head"\n[[step]]\nkind = "face"\nfrom = .5\nto = 0\n')
-    declared_alone([whole(turndesk("shapes", path, "--json"))], json_keys.SHAPES.keys)
-    declared_alone([whole(turndesk("shapes", "--list", "--json"))], json_keys.SHAPES_LIST.keys)
+# --- Scope.
 
 
 def test_scope(turndesk: Turndesk, offsets: Path, home: Path, tmp_path: Path) -> None:

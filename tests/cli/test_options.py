@@ -113,8 +113,6 @@ COVERED = {
     **{(f"serial {way}", option): "tests/drivers/transfer" for way in ("send", "receive")
        for option in ("--machine", "--port", "--baud", "--bits", "--parity", "--stop", "--flow", "--wrap",
                       "--dc-codes")},
-    **{("shapes", option): "tests/cli/test_shapes.py"
-       for option in ("--list", "--out", "--tools", "--machine", "--json")},
     ("setup save", "--machine"): "tests/cli/test_setup.py",
     ("setup load", "--check"): "tests/cli/test_setup.py",
     ("setup desktop", "--autostart"): "tests/cli/test_setup.py",
@@ -122,8 +120,7 @@ COVERED = {
     **{(command, "--as"): "tests/cli/test_access.py"
        for command in ("prove", "run", "offsets set", "offsets clear", "offsets undo", "store restore",
                        "store import", "setup load", "machine accept", "jobs add", "jobs move", "jobs remove",
-                       "jobs clear", "access add", "access pin", "access remove", "serial receive",
-                       "shapes")},
+                       "jobs clear", "access add", "access pin", "access remove", "serial receive")},
     **{("access " + action, "--json"): "tests/cli/test_access.py" for action in ("list", "table")},
     ("access add", "--level"): "tests/cli/test_access.py",
     ("serial receive", "--out"): "tests/drivers/transfer",

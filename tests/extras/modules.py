@@ -6,8 +6,11 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
+from app.compose.extra import NAMES
+
 
 def of_extras(name: str) -> list[ModuleType]:
     """Return the module ``tests.extras.FEATURE.name`` of each feature that has one."""
-    folders = sorted(path.parent.name for path in Path(__file__).parent.glob(f"*/{name}.py"))
-    return [import_module(f"tests.extras.{folder}.{name}") for folder in folders]
+    here = Path(__file__).parent
+    found = [feature for feature in NAMES if (here / feature / f"{name}.py").exists()]
+    return [import_module(f"tests.extras.{feature}.{name}") for feature in found]

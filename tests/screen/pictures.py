@@ -309,8 +309,6 @@ _OWN_SCENES = (
     Scene("programs", "F1 F6"),
     Scene("export", "F1 F6 F9"),
     Scene("editor", "F3"),
-    Scene("shapes", 'F3 Shapes R "1/2 Enter Enter Enter ".5'),
-    Scene("calculators", 'F3 Calculators T ".5 Enter "1 Enter "1'),
     Scene("mdi", 'F1 F4 "G90G94F10X.9Z.1'),
     Scene("jog", "F1 F5"),
     Scene("by-hand", 'F1 F5 T "1 Enter C X B 1 "800 Enter'),

@@ -24,15 +24,12 @@ from app.screen.look import Look
 from app.screen.main_window import MainWindow
 from app.screen.page_base import Page
 from app.screen.theme import DARK
-from app.shapes.shape_form import ShapeForm
 from app.special.logged_events import event_row
 from core.alarms import CATALOGUE, Code, Entry
 from core.executor.raised_alarm import log_line, make_alarm
 from core.executor.snapshot import Alarm
 from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.modal_state import Modal
-from core.shapes.shape_setting import Setting
-from core.shapes.shape_table import SHAPES
 from core.store.store_rows import EventRow
 from resources.translations.collect import (
     _NO_TEXT,
@@ -189,20 +186,6 @@ def test_a_refusal_with_values_is_told_in_spanish(spanish: Hands) -> None:
     told = tr(spanish.desk.notice)
     in_spanish = text_in_spanish("screen.spindle-limit-between", limit=9000, most=3500)
     assert told == text_in_spanish("screen.refused", why=in_spanish)
-
-
-@pytest.mark.parametrize(
-    ("key", "told"),
-    [
-        ("R", "TAMAÑO"),
-        ("G", "DIÁMETRO"),
-        ("F", "DIÁMETRO INICIAL"),
-    ],
-)
-def test_a_refusal_of_a_shape_calls_its_field_as_the_form_does(spanish: Hands, key: str, told: str) -> None:
-    form = ShapeForm(SHAPES[key], Setting())
-    assert tr(form.trouble).startswith(f"{told} falta: ")
-    assert tr(SHAPES[key].name) not in {"", SHAPES[key].name}
 
 
 def test_no_letter_is_missing_in_the_font() -> None:

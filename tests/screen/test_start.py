@@ -31,7 +31,7 @@ OF_LATER = (
     *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen.canopen_machine", "drivers.feeder"),
     *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.pendant.pendant_reader"),
     *("drivers.mtconnect.mtconnect_adapter", "drivers.transfer"),
-    *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.shapes"),
+    *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.extras.shapes"),
     *("ezdxf", "svgelements"),
 )
 

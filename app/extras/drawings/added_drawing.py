@@ -10,13 +10,13 @@ from app.desk.sheet import Key
 from app.desk.translation import tr
 from app.extras.drawings.drawing_form import PROFILE, DrawingForm
 from app.extras.drawings.drawing_plan import Plan, Planner
-from app.shapes.added_form import AddedForm, Show
-from app.shapes.shape_form import ShapeForm
+from app.extras.shapes.added_form import AddedForm, Show
+from app.extras.shapes.shape_form import ShapeForm
 from core.extras.drawings.drawing_file import is_drawing
 from core.extras.drawings.drawing_process import read_in_process
 from core.extras.drawings.part_against_drawing import Comparison
+from core.extras.shapes.shape_setting import Setting
 from core.message import Message
-from core.shapes.shape_setting import Setting
 
 Attempt = Callable[[str, Plan, Watch], tuple[Comparison | None, tuple[str, ...]]]
 """A program that was made of a drawing is proved, and its part held against it."""

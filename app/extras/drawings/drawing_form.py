@@ -9,18 +9,18 @@ from itertools import pairwise
 from pathlib import Path
 
 from app.extras.drawings.drawing_plan import ALL, OWN, Asked, Plan, pictured
-from app.shapes.shape_form import ShapeForm
+from app.extras.shapes.shape_form import ShapeForm
 from core.extras.drawings.drawing_view import Front, Side, Zero
 from core.extras.drawings.part_against_drawing import Comparison
 from core.extras.drawings.profile_words import in_words
 from core.extras.drawings.unit_check import UNITS
+from core.extras.shapes.cutting_data import MATERIALS
+from core.extras.shapes.lines.code_lines import Code
+from core.extras.shapes.shape import Filled, Shape
+from core.extras.shapes.shape_fields import Field, Kind, Value, Values, text
+from core.extras.shapes.shape_setting import Setting
 from core.message import Message
-from core.shapes.code_lines import Code
-from core.shapes.cutting_data import MATERIALS
-from core.shapes.shape import Filled, Shape
-from core.shapes.shape_fields import Field, Kind, Value, Values, text
-from core.shapes.shape_setting import Setting
-from core.shapes.sketch import Dim, Sketch, cut, part, sketch
+from core.sketch import Dim, Sketch, cut, part, sketch
 
 NO_DRAWINGS = "No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8."
 CANCELED = "Reading was canceled. Press F6 to read the drawing again."

@@ -28,11 +28,11 @@ from core.extras.drawings.profile_job import proposed_fields
 from core.extras.drawings.profile_program import ProfileProgram, profile_program
 from core.extras.drawings.unit_check import UNITS, wrong_unit
 from core.extras.drawings.work_limit import limited_work
+from core.extras.shapes.shape_fields import Value, Values
+from core.extras.shapes.shape_setting import Setting
 from core.geometry.lines_and_arcs import Arc, Element, Line
 from core.message import Message
-from core.shapes.shape_fields import Value, Values
-from core.shapes.shape_setting import Setting
-from core.shapes.sketch import Dim, Outline, Sketch
+from core.sketch import Dim, Outline, Sketch
 
 if TYPE_CHECKING:
     from core.extras.drawings.part_against_drawing import Comparison

@@ -16,12 +16,13 @@ if TYPE_CHECKING:
 class Drawings(Extra):
     """The form DRAWING in the list of shapes, ``turndesk profile``, and drawings in the list of programs."""
 
+    needs = ("shapes",)
     commands = {"profile": "shapes"}
     drawings = (".dxf", ".svg")
 
     def extend(self, part: object, desk: Desk, machine: Machine) -> None:
         from app.extras.drawings.drawings_desk import add_drawing
-        from app.shapes.shapes_model import Shapes
+        from app.extras.shapes.shapes_model import Shapes
 
         if isinstance(part, Shapes):
             add_drawing(part, desk, machine)
@@ -33,7 +34,7 @@ class Drawings(Extra):
 
     def words(self) -> Sequence[str]:
         from app.extras.drawings.drawing_form import PROFILE
-        from app.shapes.shape_words import words_of
+        from app.extras.shapes.shape_words import words_of
 
         of_drawings = ("DRAWING UNIT: INCH", "DRAWING UNIT: AS DRAWN", "LAYER: ALL")  # not in the table
         return (*words_of([PROFILE]), *of_drawings)

@@ -8,14 +8,14 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.made_program import may_write, write_made
 from app.cli.program_options import out_file
 from app.cli.who_changes import add_as_option
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
+from app.extras.shapes.shapes_command import may_write, write_made
 from core.extras.drawings.unit_check import UNITS
+from core.extras.shapes.cutting_data import MATERIALS
 from core.language.source import Dialect, dialect_of
 from core.message import Message
-from core.shapes.cutting_data import MATERIALS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from core.extras.drawings.drawing import Drawing
     from core.extras.drawings.drawing_view import Profile, View
     from core.extras.drawings.profile_program import ProfileProgram
+    from core.extras.shapes.shape_fields import Value
     from core.machine.machine_model import Machine
     from core.part.tool_shape import ToolShape
-    from core.shapes.shape_fields import Value
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -193,7 +193,7 @@ def _run(args: argparse.Namespace) -> int:
 
 def _check_unit(drawing: Drawing, view: View, net: Net, machine: Machine) -> None:
     """Refuse a contour that is too large for the machine only because of the unit that its file states."""
-    from app.compose.shapes_desk import shop_of
+    from app.extras.shapes.shapes_desk import shop_of
     from core.extras.drawings.unit_check import wrong_unit
 
     if (wrong := wrong_unit(net, view.unit, shop_of(machine, {}).travel)) is not None:
@@ -376,9 +376,9 @@ def _program(
     machine: Machine,
     shapes: Mapping[int, ToolShape],
 ) -> ProfileProgram:
-    from app.compose.shapes_desk import shop_of
+    from app.extras.shapes.shapes_desk import shop_of
     from core.extras.drawings.profile_program import profile_program
-    from core.shapes.shape_setting import Setting
+    from core.extras.shapes.shape_setting import Setting
 
     setting = Setting(metric=args.metric, shop=shop_of(machine, shapes), dialect=args.dialect)
     return profile_program(chosen, typed, [], setting)

@@ -1,4 +1,4 @@
-"""The keys of the outputs of ``turndesk profile``."""
+"""Keys of the JSON that ``turndesk profile`` prints, for the reference and its tests."""
 
 from __future__ import annotations
 

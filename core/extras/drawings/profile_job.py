@@ -7,9 +7,9 @@ from collections.abc import Mapping
 
 from core.extras.drawings.drawing_view import Profile, Side
 from core.extras.drawings.profile_program import greatest_diameter, nose_of
+from core.extras.shapes.shape_fields import Value, Values
 from core.language.source import Dialect
 from core.part.tool_shape import ToolKind, ToolShape
-from core.shapes.shape_fields import Value, Values
 
 _BAR = {True: 1.0, False: 0.0625}  # by metric: bars come in these steps
 _FACE = {True: 0.5, False: 0.02}

@@ -11,18 +11,18 @@ from core.extras.drawings.drawing import DrawingError
 from core.extras.drawings.drawing_view import Profile, Side
 from core.extras.drawings.nose_reach import reached_by_nose
 from core.extras.drawings.turning_contour import Groove, TurningContour, joined, reach_of, turning_contour
+from core.extras.shapes.contour import Row
+from core.extras.shapes.pieces import setting_at
+from core.extras.shapes.shape import Filled, Shape, filled
+from core.extras.shapes.shape_fields import Refusal, Value, Values
+from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_table import SHAPES_OF
 from core.geometry.intersections import intersections
 from core.geometry.lines_and_arcs import Arc, Element, Line
 from core.language.source import Dialect
 from core.message import Message
 from core.part.insert_codes import decoded
 from core.part.tool_shape import ToolShape
-from core.shapes.contour import Row
-from core.shapes.pieces import setting_at
-from core.shapes.shape import Filled, Shape, filled
-from core.shapes.shape_fields import Refusal, Value, Values
-from core.shapes.shape_setting import Setting
-from core.shapes.shape_table import SHAPES_OF
 from core.tool_edges import TIP_DIRECTIONS
 
 _SAME = 1e-3  # mm

@@ -8,8 +8,8 @@ from typing import Any
 from core.extras.drawings.drawing_view import Profile
 from core.extras.drawings.part_against_drawing import Comparison, Deviation
 from core.extras.drawings.profile_program import ProfileProgram
+from core.extras.shapes.number_words import plain
 from core.message import Message
-from core.shapes.number_words import plain
 
 _CLOSED = 1e-4  # mm: a narrower gap was none
 

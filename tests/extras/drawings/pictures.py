@@ -12,6 +12,7 @@ from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.editor.editor_view import EditorPage
 from app.extras.drawings.added_drawing import AddedDrawing
+from app.extras.shapes.shapes_view import ShapesView
 from app.screen.page_base import Page
 
 SCENES = (("drawing", "F3 Shapes X", "calculators"),)
@@ -35,8 +36,8 @@ def prepare(_desk: Desk, _journal: Journal, _folder: Path) -> None:
 
 def settle(page: Page | None, wait: Callable[[], None]) -> None:
     """Wait until a drawing has been read, and what was made of it proved."""
-    if isinstance(page, EditorPage) and page.shapes.model.form is not None:
-        for each in page.shapes.model.added:
+    if isinstance(page, EditorPage) and isinstance(page.panel, ShapesView):
+        for each in page.panel.model.added if page.panel.model.form is not None else ():
             if isinstance(each, AddedDrawing):
                 wait()
                 each.planning.settle(LOADING)

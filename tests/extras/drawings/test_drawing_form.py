@@ -14,13 +14,13 @@ from app.extras.drawings.added_drawing import AddedDrawing
 from app.extras.drawings.drawing_form import DrawingForm
 from app.extras.drawings.drawing_plan import Planner
 from app.extras.drawings.drawings_desk import attempt
+from app.extras.shapes.shapes_model import Shapes
 from app.screen.language import speak_in
-from app.shapes.shapes_model import Shapes
 from core.extras.drawings.drawing import Drawing
 from core.extras.drawings.drawing_file import read_drawing
-from core.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_setting import Setting, Shop
 from tests.extras.drawings.hand import TOOLS, chain, dxf
-from tests.shapes.hand import machine
+from tests.extras.shapes.hand import machine
 from tests.texts import pattern, text
 
 STEP = ((0, 0), (0, 4), (-10, 4), (-10, 6), (-20, 6), (-20, 0))

@@ -12,10 +12,10 @@ import pytest
 from app.extras.drawings.profile_trial import TrialStock, tried
 from core.extras.drawings.drawing_view import Front, Side, Zero
 from core.extras.drawings.profile_words import is_corner
+from core.extras.shapes.contour import points
 from core.language.source import Dialect
-from core.shapes.contour import points
 from tests.extras.drawings.hand import BLADE, SLIM, chain, dxf, profile_of, program, radii, text_of
-from tests.shapes.hand import machine
+from tests.extras.shapes.hand import machine
 from tests.sinumerik.lathe import LINEAR
 from tests.texts import text
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from app.extras.drawings.drawing_plan import Asked
+from core.extras.shapes.shape_setting import Setting, Shop
 from core.part.tool_shape import ToolKind, ToolShape
-from core.shapes.shape_setting import Setting, Shop
 from tests.extras.drawings.hand import chain, dxf, planned
 
 CNMG = ToolShape(ToolKind.TURNING, tip=3, insert="CNMG120408")

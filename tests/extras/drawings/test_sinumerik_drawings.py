@@ -13,9 +13,9 @@ from app.extras.drawings.profile_trial import Trial, TrialStock, tried
 from core.extras.drawings.drawing_view import Profile, Side
 from core.extras.drawings.profile_program import ProfileProgram
 from core.extras.drawings.profile_words import in_json, in_words
+from core.extras.shapes.pieces import pieces
+from core.extras.shapes.shape_setting import Setting, Shop
 from core.language.source import Dialect
-from core.shapes.pieces import pieces
-from core.shapes.shape_setting import Setting, Shop
 from core.tool_edges import TIP_DIRECTIONS
 from tests.coded import recorded_refusals
 from tests.extras.drawings.hand import TOOLS, chain, dxf, profile_of, program, text_of

@@ -11,6 +11,7 @@ from app.editor.editor_view import Mode
 from app.extras.drawings.added_drawing import AddedDrawing
 from core.extras.drawings import drawing_process
 from tests.extras.drawings.hand import chain, dxf
+from tests.extras.shapes.screen.panel import shapes_of
 from tests.screen.editor.writer import Writer
 from tests.screen.hands import Key
 from tests.texts import text as wording
@@ -21,7 +22,7 @@ STEP = ((0, 0), (0, 4), (-10, 4), (-10, 6), (-20, 6), (-20, 0))
 
 def labels(writer: Writer) -> dict[int, str]:
     """The function keys of the form."""
-    return {number: key.label for number, key in writer.editor.shapes.model.keys().items()}
+    return {number: key.label for number, key in shapes_of(writer).model.keys().items()}
 
 
 @pytest.mark.parametrize("key", [Key.Key_Escape, Key.Key_F6])
@@ -32,10 +33,10 @@ def test_a_process_that_hangs_is_canceled(
     path.write_text("hang")
     monkeypatch.setattr(drawing_process, "_CHILD", "tests.extras.drawings.hostile_child")
     writer.new("shaped")
-    model, drawing = writer.editor.shapes.model, AddedDrawing(lambda: {"part.dxf": path})
+    model, drawing = shapes_of(writer).model, AddedDrawing(lambda: {"part.dxf": path})
     model.added = (drawing,)
     writer.key(Key.Key_F3, SHIFT)
-    writer.sees(lambda: writer.editor.mode is Mode.SHAPES)
+    writer.sees(lambda: writer.editor.mode is Mode.PANEL)
     writer.type("x")
     writer.sees(lambda: writer.editor.prompt() == wording("shapes.being-read", seconds=0))
     assert labels(writer)[6] == "CANCEL"
@@ -53,11 +54,11 @@ def test_a_process_that_hangs_is_canceled(
 def test_the_drawing_is_seen_when_its_form_opens(writer: Writer) -> None:
     """The number pad of the form before lay over it at 1024x600, where the contour is to be picked."""
     writer.new("shaped")
-    writer.editor.shapes.model.added = (AddedDrawing(dict),)
+    shapes_of(writer).model.added = (AddedDrawing(dict),)
     writer.key(Key.Key_F3, SHIFT)
-    writer.sees(lambda: writer.editor.mode is Mode.SHAPES)
+    writer.sees(lambda: writer.editor.mode is Mode.PANEL)
     writer.key(Key.Key_F9)
-    assert writer.editor.shapes.model.padded
+    assert shapes_of(writer).model.padded
     writer.type("x")
-    writer.sees(lambda: writer.editor.shapes.model.form is not None)
-    assert not writer.editor.shapes.model.padded
+    writer.sees(lambda: shapes_of(writer).model.form is not None)
+    assert not shapes_of(writer).model.padded

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from tests.extras.shapes.stories.test_programs_without_writing import LIST, every_way, kept, on_the_smallest
 from tests.stories.conftest import Story
-from tests.stories.test_programs_without_writing import LIST, every_way, kept, on_the_smallest
 from tests.stories.ways_of_input import Hand
 from tests.texts import fragment
 
@@ -37,13 +37,13 @@ def test_a_program_is_made_of_a_drawing(story: Story, way: str) -> None:
         hand.press("axle.svg", "SheetPanel")
     hand.function("F3", "EDIT")
     hand.function("F1", "CREATE")
-    operator.sees(fragment("stories.left-and-right"))
+    operator.sees(fragment("shapes.left-and-right"))
     if way == "keys":
         operator.keys("Down", "Down", "Right")
     else:
         hand.press("2", "SketchPanel")
     operator.sees("◂ 2 ▸")
-    operator.sees(fragment("stories.left-and-right"))
+    operator.sees(fragment("shapes.left-and-right"))
     hand.function("F2", "WRITE")
     operator.sees(LIST)
     hand.function("F10", "BACK")
