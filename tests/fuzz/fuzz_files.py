@@ -266,7 +266,7 @@ def _dictionaries() -> Iterator[bytes]:
     yield path.read_bytes()[:6000]
 
 
-FILES = (
+FILES: tuple[Target, ...] = (
     *(_language(each) for each in Dialect),
     Target("machine file", _machine_files, _machine, (MachineFileError,), _other_value),
     Target("offsets file", lambda: (_OFFSETS,), _toml(read_rows), (CommandError,), _other_value),

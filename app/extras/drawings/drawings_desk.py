@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from pathlib import Path
 
 from app.compose.stored_offsets import shapes_at_hand
 from app.desk.desk import Desk
@@ -20,8 +21,10 @@ from core.part.tool_shape import ToolShape
 
 def add_drawing(shapes: Shapes, desk: Desk, machine: Machine) -> None:
     """Add the form of a drawing to the list of shapes."""
-    folders = desk.program_folders
-    files = lambda: {each.name: each.path for each in folders.drawings()}  # noqa: E731
+
+    def files() -> dict[str, Path]:
+        return {each.name: each.path for each in desk.program_folders.drawings()}
+
     shapes.added = (*shapes.added, AddedDrawing(files, partial(attempt, machine, shapes_at_hand)))
 
 

@@ -66,7 +66,8 @@ class Shapes(PanelModel):
 
     def close(self) -> None:
         """End the workers."""
-        for each in (self.worker, *self.added):
+        self.worker.close()
+        for each in self.added:
             each.close()
 
     def look(self) -> None:
