@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from app.compose.extra import extras
+
 OURS = ("app", "core", "drivers", "resources")
 QT = {"PySide6", "shiboken6"}
 SCREEN = "app.screen"
@@ -75,6 +77,16 @@ def test_only_the_commands_of_optional_features_know_the_command_line(imports: d
     extras = {m: used for m, used in imports.items() if m.startswith("app.extras.")}
     known = {m for m, used in extras.items() if any(name.startswith("app.cli") for name in used)}
     assert {m for m in known if not m.endswith("_command")} == set()
+
+
+def test_a_feature_knows_only_the_features_that_it_needs(imports: dict[str, set[str]]) -> None:
+    def owner(module: str) -> str:
+        parts = module.split(".")
+        return parts[2] if parts[1:2] == ["extras"] and len(parts) > 2 else ""
+
+    known = {(owner(m), owner(name)) for m, used in imports.items() if owner(m) for name in used}
+    needed = {(name, need) for name, extra in extras().items() for need in extra.needs}
+    assert {(a, b) for a, b in known if b and a != b} <= needed
 
 
 def test_no_modules_import_each_other_in_a_circle(imports: dict[str, set[str]]) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from app.cli import main
 from app.compose import extra
-from app.compose.extra import NAMES, command_modules, extras, insert_after
+from app.compose.extra import NAMES, command_modules, drawing_endings, extras, insert_after
 
 HOUSE = Path(__file__).parents[1]
 
@@ -28,7 +28,7 @@ def no_features(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def test_every_folder_of_a_feature_is_in_the_table() -> None:
     folders = {each.parent.name for each in (HOUSE / "app" / "extras").glob("*/extra.py")}
     cores = {each.name for each in (HOUSE / "core" / "extras").iterdir() if (each / "__init__.py").exists()}
-    assert sorted(folders) == sorted(NAMES)
+    assert folders <= set(NAMES)
     assert cores <= folders
 
 
@@ -41,8 +41,27 @@ def test_an_addition_follows_the_item_that_it_names() -> None:
     assert insert_after("ab", str, [("x", "a"), ("y", "x")]) == ["a", "x", "y", "b"]
 
 
+def test_additions_that_follow_the_same_item_keep_their_order() -> None:
+    assert insert_after("ab", str, [("x", "a"), ("y", "a")]) == ["a", "x", "y", "b"]
+
+
 def test_an_addition_whose_item_is_absent_is_the_last() -> None:
     assert insert_after("ab", str, [("x", "gone")]) == ["a", "b", "x"]
+
+
+def test_a_feature_without_one_that_it_needs_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = next(iter(extras()))
+    monkeypatch.setattr(type(extras()[name]), "needs", ("gone",))
+    extras.cache_clear()
+    assert name not in extras()
+    monkeypatch.undo()
+    extras.cache_clear()
+    assert name in extras()
+
+
+def test_a_feature_comes_after_those_that_it_needs() -> None:
+    for name, each in extras().items():
+        assert all(NAMES.index(need) < NAMES.index(name) for need in each.needs)
 
 
 @pytest.mark.usefixtures("no_features")
@@ -52,3 +71,8 @@ def test_without_features_their_commands_are_unknown(capsys: pytest.CaptureFixtu
         main.main(["share", "status"])
     assert stopped.value.code == 2
     assert "share" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("no_features")
+def test_without_features_no_drawing_is_listed() -> None:
+    assert drawing_endings() == ()

@@ -8,6 +8,7 @@ others.
 from __future__ import annotations
 
 import random
+import re
 from collections import Counter
 from collections.abc import Sequence
 from itertools import groupby
@@ -17,6 +18,7 @@ import pytest
 from xdist.scheduler.loadscope import LoadScopeScheduling
 from xdist.workermanage import WorkerController
 
+_OF_EXTRA = re.compile(r"^tests/extras/\w+/")
 STORIES = "tests/stories/"
 WAIT = (
     STORIES,
@@ -36,7 +38,12 @@ _SHARES = 8  # at least so many portions for each worker
 
 def waits(nodeid: str) -> bool:
     """Whether a test mostly waits."""
-    return nodeid.startswith(WAIT)
+    return _place(nodeid).startswith(WAIT)
+
+
+def _place(nodeid: str) -> str:
+    """A folder of an optional feature counts as the folder of that name in ``tests``."""
+    return _OF_EXTRA.sub("tests/", nodeid)
 
 
 def waits_first(worker: str) -> bool:
@@ -108,7 +115,7 @@ def in_order(items: Sequence[pytest.Item]) -> list[pytest.Item]:
     """
     places: list[tuple[float, list[pytest.Item]]] = []
     for folder in WAIT:
-        here = [item for item in items if item.nodeid.startswith(folder)]
+        here = [item for item in items if _place(item.nodeid).startswith(folder)]
         groups = [list(group) for _, group in groupby(here, key=lambda item: _unit(item.nodeid))]
         places += [((number + 0.5) / len(groups), group) for number, group in enumerate(groups)]
     waiting = [item for _, group in sorted(places, key=itemgetter(0)) for item in group]
@@ -127,4 +134,4 @@ def shuffled(items: Sequence[pytest.Item], seed: int) -> list[pytest.Item]:
 
 def _unit(nodeid: str) -> str:
     """A story is one for itself; all others lie together in a file, which makes what it needs once."""
-    return nodeid if nodeid.startswith(STORIES) else nodeid.partition("::")[0]
+    return nodeid if _place(nodeid).startswith(STORIES) else nodeid.partition("::")[0]

@@ -40,8 +40,6 @@ COMMANDS = (
     "shift",
     "scope",
     "setup",
-    "shapes",
-    "profile",
 )
 
 NO_DISPLAY = """\

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-NAMES = ("sharing", "analyses", "scheduler")
+NAMES = ("sharing", "analyses", "scheduler", "shapes", "drawings")
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -37,6 +37,9 @@ class Extra:
     ``app.extras.NAME.SUBCOMMAND_command``. ``threads`` maps each supervised thread to what an operator
     misses when the thread ends. ``needs`` names the features without which this feature is left out.
     ``proof_workers`` is the dotted name of a class of workers on other computers, which prove programs.
+    ``drawings`` are the endings of drawings from which this feature makes programs: the list of programs
+    shows them. ``editor_panel`` is the dotted name of a subclass of ``EditorPanel`` that writes lines in
+    the place of the editor's text.
     """
 
     needs: Sequence[str] = ()
@@ -44,6 +47,8 @@ class Extra:
     pages: Sequence[PageEntry] = ()
     threads: Mapping[str, str] = {}
     proof_workers = ""
+    drawings: Sequence[str] = ()
+    editor_panel: str = ""
 
     def machine_tables(self) -> Sequence[Driver]:
         """Return the tables that this feature adds to the machine file."""
@@ -51,6 +56,9 @@ class Extra:
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None) -> None:
         """Attach the models of this feature to the desk; without a ``journal`` nothing is saved."""
+
+    def extend(self, part: object, desk: Desk, machine: Machine) -> None:
+        """Add to ``part``, a model of a feature that this one needs, when that model is made."""
 
     def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
         """Start the threads of this feature, and return a function that ends them.
@@ -61,6 +69,10 @@ class Extra:
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
         """Return the declared outputs of --json of this feature, by the output that they follow."""
         return {}
+
+    def words(self) -> Sequence[str]:
+        """Return texts of the screen that look like names in the source, for the list of all texts."""
+        return ()
 
     def check(self, machine: Machine, answers: Answers) -> None:
         """Add the rows of this feature to ``turndesk machine check``."""
@@ -92,13 +104,22 @@ def proof_workers() -> str:
     return next((extra.proof_workers for extra in extras().values() if extra.proof_workers), "")
 
 
+def drawing_endings() -> tuple[str, ...]:
+    """Return the endings of all drawings from which an optional feature makes programs."""
+    return tuple(ending for extra in extras().values() for ending in extra.drawings)
+
+
 def insert_after(items: Iterable[T], name_of: Callable[[T], str], added: Iterable[tuple[T, str]]) -> list[T]:
     """Return ``items`` with each pair of ``added`` inserted after the item that the pair names.
 
-    If there is no item of that name, the addition becomes the last one.
+    If there is no item of that name, the addition becomes the last one. Additions that follow the same item
+    keep their order.
     """
     found = list(items)
+    newest: dict[str, str] = {}
     for item, after in added:
         names = [name_of(each) for each in found]
-        found.insert(names.index(after) + 1 if after in names else len(found), item)
+        place = newest.get(after, after)
+        found.insert(names.index(place) + 1 if place in names else len(found), item)
+        newest[after] = name_of(item)
     return found

@@ -34,5 +34,6 @@ def program_list(
         return errors[0] if errors else ""
 
     worker = Latest("editing-programs")
-    transfer = ImportExport(desk, own, persistence, worker, check, FolderChooser(Path.home()))
+    chooser = FolderChooser(Path.home(), takes=desk.program_folders.takes)
+    transfer = ImportExport(desk, own, persistence, worker, check, chooser)
     return ProgramList(desk, own, persistence, worker, Preview(workshop, thumbnail), transfer)

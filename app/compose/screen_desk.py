@@ -15,7 +15,7 @@ from app.compose.backends import connect
 from app.compose.desk_functions import furnish
 from app.compose.desk_quality import give_quality
 from app.compose.error_log import Log
-from app.compose.extra import extras
+from app.compose.extra import drawing_endings, extras
 from app.compose.jobs_desk import give_jobs
 from app.compose.journal import Journal
 from app.compose.kinematics_chain import kinematics_of
@@ -69,7 +69,6 @@ from drivers.waiting import RealClock
 
 if TYPE_CHECKING:
     from app.editor.editor import Editor
-    from app.shapes.shapes_model import Shapes
 
 # Threads beside the executor, and what an operator misses when they end.
 SUPERVISED = {
@@ -308,7 +307,7 @@ def _desk(
             workshop(machine, offsets, journal, left=left, shapes=shapes_at_hand, kept=kept),
             executor.post,
         ),
-        program_folders=ProgramFolders((data_folder() / "programs", samples())),
+        program_folders=ProgramFolders((data_folder() / "programs", samples()), drawing_endings()),
         station=connected.panel,
         two_hand=machine.interlocks.two_hand_start,
         with_c=machine.c_enabled,
@@ -331,7 +330,6 @@ def _desk(
     if machine.kind == "mill":
         desk.attach(MillTouch(desk, kinematics_of(machine)))
     give_part(desk, machine, keep)
-    desk.attach_later("app.shapes.shapes_model.Shapes", partial(_shapes, desk, machine))
     give_searchto(desk, machine)
     give_quality(desk, machine, journal)
     alone = workshop(machine, offsets, left=left, pictures=False)
@@ -339,12 +337,6 @@ def _desk(
     for extra in extras().values():
         extra.attach(desk, machine, journal)
     return desk
-
-
-def _shapes(desk: Desk, machine: Machine) -> Shapes:
-    from app.compose.shapes_desk import shapes_of
-
-    return shapes_of(desk, machine, shapes_at_hand)
 
 
 def _stops(journal: Journal) -> Sequence[EventRow]:

@@ -14,9 +14,9 @@ from pathlib import Path, PurePosixPath
 from typing import BinaryIO
 from xml.parsers import expat
 
+from app.compose.extra import drawing_endings
 from app.compose.machine_setup import read_machine
 from app.desk.command_errors import CommandError
-from core.drawings.drawing_file import is_drawing
 from core.input_file import TooLargeError, failures_as, input_bytes, open_input
 from core.language.source import SourceError, source_of
 from core.message import CodedError, Message, error_code
@@ -261,7 +261,8 @@ def _check_store(source: Path, store: Path) -> None:
 def _check_program(path: Path) -> None:
     """Raise SourceError for a file that is neither program text nor a drawing; an empty one is harmless."""
     data = input_bytes(path, MOST_BYTES[PROGRAMS])
-    if data and not (is_drawing(path.name) and b"\0" not in data):
+    drawing = path.name.lower().endswith(drawing_endings())
+    if data and not (drawing and b"\0" not in data):
         source_of(path.name, data)
 
 

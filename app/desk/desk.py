@@ -274,7 +274,7 @@ class Desk:
     def attach_later(self, kind: str, make: Callable[[], Attached]) -> None:
         """The same with one that is made, and whose class is loaded, when somebody first asks for it.
 
-        ``kind`` is its class with the module, as ``app.shapes.shapes_model.Shapes``.
+        ``kind`` is its class with the module, as ``app.editor.editor.Editor``.
         """
         self._made_later[kind] = make
 

@@ -16,13 +16,21 @@ from pathlib import Path
 
 from app.desk.program_loading import Loaded
 from app.desk.translation import tr
-from core.drawings.drawing_file import is_drawing
 from core.executor.raised_alarm import Attempt
 from core.language.source import Source, SourceError, load_source
 from core.message import Message
 
 LISTED = 2000  # a folder with more programs than this is typed into, not looked through
 ENDINGS = frozenset({"", ".nc", ".txt", ".tap", ".cnc", ".prg", ".h", ".mpf", ".spf"})
+
+
+Takes = Callable[[str], bool]
+"""Whether a file of this name is one of those that are wanted."""
+
+
+def is_program(name: str) -> bool:
+    """Whether a file is a program, by its ending."""
+    return Path(name).suffix.lower() in ENDINGS
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,18 +42,26 @@ class ListedProgram:
 
 
 class ProgramFolders:
-    """Program folders in the order of preference; a name in an earlier one hides the same in a later."""
+    """Program folders in the order of preference; a name in an earlier one hides the same in a later.
 
-    def __init__(self, folders: Sequence[Path]) -> None:
+    ``drawing_endings``: of the drawings from which a program can be made.
+    """
+
+    def __init__(self, folders: Sequence[Path], drawing_endings: tuple[str, ...] = ()) -> None:
         self.folders = tuple(folders)
+        self._drawing_endings = drawing_endings
+
+    def is_drawing(self, name: str) -> bool:
+        """Whether a file is a drawing, by its ending."""
+        return name.lower().endswith(self._drawing_endings)
+
+    def takes(self, name: str) -> bool:
+        """Whether a file is a program or a drawing, by its ending."""
+        return is_program(name) or self.is_drawing(name)
 
     def entries(self) -> tuple[ListedProgram, ...]:
         """What can be picked, by name; folders that are not there are empty."""
-        seen: dict[str, ListedProgram] = {}
-        for folder in self.folders:
-            for path in _files(folder, lambda name: Path(name).suffix.lower() in ENDINGS):
-                seen.setdefault(path.name.lower(), ListedProgram(path.name, path))
-        return tuple(sorted(seen.values(), key=lambda entry: entry.name.lower()))
+        return self._listed(is_program)
 
     def matching(self, typed: str) -> tuple[ListedProgram, ...]:
         """The entries whose name holds what was typed."""
@@ -54,9 +70,12 @@ class ProgramFolders:
 
     def drawings(self) -> tuple[ListedProgram, ...]:
         """The drawings beside the programs, by name: what a program can be made of."""
+        return self._listed(self.is_drawing)
+
+    def _listed(self, taken: Takes) -> tuple[ListedProgram, ...]:
         seen: dict[str, ListedProgram] = {}
         for folder in self.folders:
-            for path in _files(folder, is_drawing):
+            for path in _files(folder, taken):
                 seen.setdefault(path.name.lower(), ListedProgram(path.name, path))
         return tuple(sorted(seen.values(), key=lambda entry: entry.name.lower()))
 
@@ -79,7 +98,7 @@ class ProgramFolders:
         return next((e.path for e in entries if e.path.stem.lower() == wanted), None)
 
 
-def _files(folder: Path, taken: Callable[[str], bool]) -> Iterator[Path]:
+def _files(folder: Path, taken: Takes) -> Iterator[Path]:
     try:
         paths = sorted(folder.iterdir(), key=lambda path: path.name.lower())
     except OSError:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from core.language.source import Dialect
-from core.shapes.sketch import Dim, Outline, Sketch, cut, part, sketch
+from core.sketch import Dim, Outline, Sketch, cut, part, sketch
 from core.tool_edges import TIP_DIRECTIONS
 
 Point = tuple[float, float]

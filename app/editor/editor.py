@@ -74,6 +74,7 @@ class Editor:
     text_number: int = 0  # counts texts put into the field from here: opened, created, restored
     text: str = ""  # the last of them
     wanted: str = ""  # a name typed where a program is chosen: it is what the editor is entered for
+    made_of: Path | None = None  # a file of which an optional feature makes the text of this program
     restored: bool = False  # it takes the place of what was typed, as one step that can be undone
     block_delete: bool = False
     usual_ending: str = ".nc"  # of a new program: that of the language that this machine is typed in

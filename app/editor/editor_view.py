@@ -5,9 +5,10 @@ Everything is done by keys alone, and every function key is a target for a finge
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from enum import StrEnum
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QObject, Qt
@@ -15,7 +16,6 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.arithmetic import line_of
-from app.desk.desk import Desk
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.prompt_line import MOVING
@@ -33,21 +33,18 @@ from app.editor.versions_view import VersionList
 from app.path.measuring import measuring_words
 from app.path.part_player import player_of
 from app.screen import page_table
+from app.screen.editor_panel import EditorPanel
 from app.screen.letter_keys import PROGRAMS, LetterPad, strike
 from app.screen.page_base import Host, KeyActions, Page
-from app.shapes.shapes_model import FORMS, Shapes, written_in
-from app.shapes.shapes_view import ShapesView
 from app.working_plane.plane_instant import at_line, plane_words
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
 from core.language.source import dialect_of
 from core.message import Message
-from core.shapes.shape_table import HELPERS
 
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
     from core.language.diagnostics import Diagnostic
-from core.shapes.shape import Shape
 
 Keys = dict[int, Key]
 Actions = dict[int, Callable[[], None]]
@@ -64,7 +61,7 @@ class Mode(StrEnum):
     OFFER = "offer"
     CODES = "codes"  # the list of codes is looked through
     LOOK = "look"  # at the path: the keyboard measures in it
-    SHAPES = "shapes"  # a form writes the lines
+    PANEL = "panel"  # a form of an optional feature writes the lines
 
 
 ASKING = frozenset({Mode.FIND, Mode.GO_TO, Mode.NAME})
@@ -92,9 +89,7 @@ class EditorPage(Page):
         self._target = page_table.AUTOMATIC  # where leaving leads to
         self._moving = False
         self._with_letters = False
-        self.head = HeadLine(
-            look, self.turn_letters, self.open_shapes, partial(self.open_shapes, HELPERS), self
-        )
+        self.head = HeadLine(look, self.turn_letters, self.open_panel, self)
         self.letters = LetterPad(look, self._strike, self, PROGRAMS)
         self.field = TextField(look, self)
         self.path = EditedPath(look, self.go_to, self, player_of(host.desk))
@@ -107,8 +102,8 @@ class EditorPage(Page):
         self.ask = AskLine(look, self, self)
         self.finder = Finder(self.field, self.ask)
         self.typed_text = TypedText(self.field, self.editor)
-        self.shapes = ShapesView(look, _shapes_of(host.desk), self.touched, self)
-        self._shown_shapes = (0, 0)  # texts of the shapes that were proved, and put into the field
+        self.panel: EditorPanel = page_table.editor_panel(EditorPanel)(host, self)
+        self._shown_panel = (0, 0)  # texts of the panel that were proved, and put into the field
 
     # --- the frame's calls ---------------------------------------------------------------------------
 
@@ -139,8 +134,7 @@ class EditorPage(Page):
         """The function keys of the moment."""
         found = {f"F{number}": key.action for number, key in self._keys().items()}
         found["Codes"] = self.look_up
-        found["Shapes"] = self.open_shapes
-        found["Calculators"] = partial(self.open_shapes, HELPERS)
+        found |= {name: partial(self.open_panel, name) for name in self.panel.KEYS}
         if self.mode is Mode.LOOK:  # keys of the Automatic page that mean the same here
             path = self.path
             found |= {"Zoom in": partial(path.zoom, 1), "Zoom out": partial(path.zoom, -1)}
@@ -158,7 +152,7 @@ class EditorPage(Page):
         elif self.editor.stage is Stage.OFFERED:
             self.editor.abort()
         elif self.mode is not Mode.TEXT:
-            if self.mode is not Mode.SHAPES or not self.shapes.model.escape():
+            if self.mode is not Mode.PANEL or not self.panel.model.escape():
                 self.back()
         elif self.editor.notice:
             self.editor.clear()
@@ -181,7 +175,7 @@ class EditorPage(Page):
             return self.editor.notice
         if self._moving:
             return messages.RUNS_OLD
-        own = {Mode.LOOK: measuring_words, Mode.SHAPES: self.shapes.model.prompt}.get(self.mode)
+        own = {Mode.LOOK: measuring_words, Mode.PANEL: self.panel.model.prompt}.get(self.mode)
         if own is not None or self.mode in PROMPTS:
             return own() if own is not None else PROMPTS[self.mode]
         line = self.field.line
@@ -202,8 +196,8 @@ class EditorPage(Page):
             return
         self.typed_text.refresh()
         self._follow_stage()
-        if self.mode is Mode.SHAPES:
-            self._follow_shapes()
+        if self.mode is Mode.PANEL:
+            self._follow_panel()
         self.show_text()
         if self.mode is Mode.LOOK and self.path.ruler is None:
             self.back()  # measuring has ended: the keyboard is the text's again
@@ -219,8 +213,8 @@ class EditorPage(Page):
             self.enter(Mode.OFFER)
         elif stage is Stage.OPEN and self.mode in {Mode.NAME, Mode.OFFER}:
             self.enter(Mode.TEXT)
-        elif stage is Stage.OPEN and self.mode is Mode.TEXT and self.shapes.model.wanted is not None:
-            self._open_drawing()
+        elif stage is Stage.OPEN and self.mode is Mode.TEXT and self.editor.made_of is not None:
+            self._make_of(self.editor.made_of)
 
     # --- the function keys ---------------------------------------------------------------------------
 
@@ -233,10 +227,10 @@ class EditorPage(Page):
             Mode.FIND: lambda: self.finder.keys() | undo,
             Mode.HISTORY: lambda: {2: Key("RESTORE", self.restore), **self.versions.keys()},
             Mode.CODES: self.codes.keys,
-            Mode.SHAPES: self.shapes.model.keys,
+            Mode.PANEL: self.panel.model.keys,
             Mode.LOOK: lambda: {3: Key("GO TO LINE", self._to_line), **self.path.keys()},
         }
-        if self.mode is Mode.SHAPES and not self.shapes.model.listing:
+        if self.mode is Mode.PANEL and not self.panel.model.listing:
             return {**of_mode[self.mode](), 10: back}  # what a form holds is written or dropped first
         if self.mode in of_mode:
             return {1: menu, **of_mode[self.mode](), 10: back}
@@ -275,9 +269,9 @@ class EditorPage(Page):
             self.history.look(self.editor.name, self.typed_text.now())
         if mode is Mode.CODES:
             self.codes.raise_()
-        if mode is Mode.SHAPES:
-            self.shapes.raise_()
-        if mode in {Mode.HISTORY, Mode.OFFER, Mode.CODES, Mode.SHAPES}:
+        if mode is Mode.PANEL:
+            self.panel.raise_()
+        if mode in {Mode.HISTORY, Mode.OFFER, Mode.CODES, Mode.PANEL}:
             self.setFocus()
         elif mode is Mode.TEXT:
             self.field.setFocus()
@@ -285,7 +279,7 @@ class EditorPage(Page):
     def back(self) -> None:
         """From what is asked or looked at back to the text."""
         self.editor.keep_no_name()
-        if self.mode is Mode.SHAPES:
+        if self.mode is Mode.PANEL:
             self.typed_text.stale = True  # what is proved now may be what a form would make of it
         self.enter(Mode.TEXT)
 
@@ -349,53 +343,48 @@ class EditorPage(Page):
         else:
             self.editor.notice = messages.NO_PATH
 
-    def open_shapes(self, table: Mapping[str, Shape] = FORMS) -> None:
-        """The form of the shape at the cursor, or the list of shapes; from them back to the text.
-
-        ``table``: shapes, or calculators and templates.
-        """
-        if self.mode is Mode.SHAPES:
+    def open_panel(self, key: str = "") -> None:
+        """Open the panel of an optional feature with this key; from it back to the text."""
+        if self.mode is Mode.PANEL:
             self.back()
         elif self.editor.stage is Stage.OPEN and self.mode is Mode.TEXT:
-            model = self.shapes.model
-            self.editor.notice = model.open(self.editor.name, self.typed_text.now(), self.field.line, table)
+            panel, now = self.panel, self.typed_text.now()
+            self.editor.notice = panel.open_at(key, self.editor.name, now, self.field.line)
             if not self.editor.notice:
                 self.desk.clear()
-                self._shown_shapes = (model.number, model.written)
-                self.enter(Mode.SHAPES)
+                self._shown_panel = (panel.model.number, panel.model.written)
+                self.enter(Mode.PANEL)
 
-    def _open_drawing(self) -> None:
-        """The form of the drawing that this program is to be made of."""
-        model = self.shapes.model
-        wanted, model.wanted = model.wanted, None
-        self.open_shapes()
-        if self.mode is Mode.SHAPES:
-            model.wanted = wanted
-            model.open_wanted()
+    def _make_of(self, file: Path) -> None:
+        """The form of the file that this program is to be made of."""
+        self.editor.made_of = None
+        self.open_panel()
+        if self.mode is Mode.PANEL:
+            self.panel.model.open_file(file)
 
-    def _follow_shapes(self) -> None:
+    def _follow_panel(self) -> None:
         """What the form makes of the text is proved; what it has written comes into the field."""
-        model, (proved, written) = self.shapes.model, self._shown_shapes
+        model, (proved, written) = self.panel.model, self._shown_panel
         model.look()
         if model.written != written:
             self.field.put_text(model.text, afresh=False)
             self.field.go_to(model.at)
         if model.number != proved and not self.typed_text.stale:
             self.editor.preview(model.text)
-        self._shown_shapes = (model.number, model.written)
-        self.shapes.refresh()
+        self._shown_panel = (model.number, model.written)
+        self.panel.refresh()
 
     def typed(self, key: str) -> bool:
-        """A key for the form of a shape, or for their list."""
-        return self.mode is Mode.SHAPES and self.shapes.model.typed(key)
+        """A key for a form of the panel, or for its list."""
+        return self.mode is Mode.PANEL and self.panel.model.typed(key)
 
     def takes(self, key: str) -> bool:
         """Whether a character is text of the form."""
-        return self.mode is Mode.SHAPES and self.shapes.model.takes(key)
+        return self.mode is Mode.PANEL and self.panel.model.takes(key)
 
     def has_field(self) -> bool:
         """The form has the keyboard."""
-        return self.mode is Mode.SHAPES
+        return self.mode is Mode.PANEL
 
     def _to_line(self) -> None:
         """The cursor to the line whose path the cross stands on."""
@@ -435,11 +424,12 @@ class EditorPage(Page):
         """Heading, findings and picture of what is in the field now."""
         editor = self.editor
         line, column, count = self.field.line, self.field.column, self.field.blockCount()
-        if self.mode is Mode.SHAPES:  # of the text with what the form writes
-            line, count = self.shapes.model.line, self.shapes.model.text.count("\n") + 1
+        if self.mode is Mode.PANEL:  # of the text with what the form writes
+            line, count = self.panel.model.line, self.panel.model.text.count("\n") + 1
         place = Message("LINE {line} OF {count}  ·  COL {column}", line=line, count=count, column=column)
         self.head.heading = Heading(editor.name, self.typed_text.mark, place)
-        self.head.with_shapes, self.codes.dialect = written_in(editor.name), dialect_of(editor.name)
+        self.head.panel_keys = tuple(self.panel.head_keys(editor.name))
+        self.codes.dialect = dialect_of(editor.name)
         findings = editor.proof.now
         self.field.show_findings(findings.by_line)
         self.findings.show_findings(findings, line)
@@ -465,9 +455,9 @@ class EditorPage(Page):
         self.path.measure(on=self.mode is Mode.LOOK)
         self.versions.setVisible(self.mode is Mode.HISTORY)
         self.codes.setVisible(self.mode is Mode.CODES)
-        self.shapes.setVisible(self.mode is Mode.SHAPES)
+        self.panel.setVisible(self.mode is Mode.PANEL)
         self.field.setVisible(
-            self.mode not in {Mode.OFFER, Mode.SHAPES}
+            self.mode not in {Mode.OFFER, Mode.PANEL}
         )  # what was edited last is not what is offered
         for part in (self.path, self.findings, self.code):
             part.setVisible(self.mode is not Mode.OFFER and not self.lettered)
@@ -507,7 +497,7 @@ class EditorPage(Page):
             (self.findings, at.findings),
             (self.code, at.code),
             (self.codes, at.codes),
-            (self.shapes, at.text),
+            (self.panel, at.text),
             (self.versions, at.body),
             (self.ask, at.ask),
             (self.letters, at.keys),
@@ -584,12 +574,3 @@ class EditorPage(Page):
             self.desk.say(self.editor.notice)
             self.editor.clear()
         self.host.go(self._target)
-
-
-def _shapes_of(desk: Desk) -> Shapes:
-    """Those of the desk; one that was put together without gets some, which know no machine."""
-    found = desk.attached(Shapes)
-    if found is None:
-        found = Shapes()
-        desk.attach(found)
-    return found

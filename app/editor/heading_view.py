@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 from PySide6.QtCore import QRectF
@@ -11,11 +12,12 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
 from app.screen.code_choices_view import CODE_LINE
+from app.screen.editor_panel import HeadKey
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER, Rect
 
-KEYS = 14.0  # units: width of the place that shows the keyboard, and of that which opens the shapes
+KEYS = 14.0  # units: width of the place that shows the keyboard, and of those that open a panel
 
 
 class Heading(NamedTuple):
@@ -31,19 +33,14 @@ class HeadLine(Panel):
 
     ground = "panel"
     heading = Shown(Heading())
-    with_shapes = Shown(True)  # whether shapes can be written into this program
+    panel_keys: Shown[tuple[HeadKey, ...]] = Shown(())  # what optional features write into this program
 
     def __init__(
-        self,
-        look: Look,
-        keys: Callable[[], None],
-        shapes: Callable[[], None],
-        sums: Callable[[], None],
-        parent: QWidget,
+        self, look: Look, keys: Callable[[], None], panel: Callable[[str], None], parent: QWidget
     ) -> None:
-        """``keys`` shows the drawn keyboard, or takes it away; ``shapes`` and ``sums`` open their lists."""
+        """``keys`` shows the drawn keyboard, or takes it away; ``panel`` is told the key that opens it."""
         super().__init__(look, parent)
-        self._keys, self._shapes, self._sums = keys, shapes, sums
+        self._keys, self._panel = keys, panel
 
     def draw(self, painter: Painter) -> None:
         look, u, high, now = self.look, self.look.u, self.height(), self.heading
@@ -58,11 +55,9 @@ class HeadLine(Panel):
         painter.write(place, now.place, 1.9, "soft", at=RIGHT, bold=False, fit=False)
         key = QRectF(self.width() - KEYS * u, 0, KEYS * u, high)
         self.key(painter, key, tr("KEYBOARD"), 1.9, self._keys, ink="accent", margin=1.0)
-        if self.with_shapes:
+        for label, name in self.panel_keys:
             key = key.translated(-(KEYS + 0.6) * u, 0)  # a place of its own: the one before is kept
-            self.key(painter, key, tr("SHAPES ⇧F3"), 1.9, self._shapes, ink="accent", margin=1.0)
-        key = key.translated(-(KEYS + 0.6) * u, 0)
-        self.key(painter, key, tr("CALCULATOR ⇧F4"), 1.9, self._sums, ink="accent", margin=1.0)
+            self.key(painter, key, label, 1.9, partial(self._panel, name), ink="accent", margin=1.0)
 
 
 # --- where everything stands on the page, in the unit of the Automatic page --------------------------------

@@ -12,14 +12,13 @@ from pathlib import Path
 from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.persistence import Persistence
-from app.desk.program_folder import ENDINGS
+from app.desk.program_folder import ENDINGS, Takes, is_program
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.sheet import Entry
 from app.desk.translation import tr
 from app.programs.program_rows import Program
 from app.programs.whole_file import FileError, present, write_whole
 from core.access.access_table import Act
-from core.drawings.drawing_file import is_drawing
 from core.message import Message
 from core.store.program_records import check_name
 from core.store.store_errors import StoreError
@@ -30,12 +29,12 @@ BUSY = "STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE"
 COPY, RENAME = "NAME FOR THE COPY?", "NEW NAME?"
 
 
-def checked_name(name: str, like: Path) -> str:
+def checked_name(name: str, like: Path, takes: Takes = is_program) -> str:
     """``name`` with the ending of ``like`` where it has none. Raises FileError for what names no program."""
     name = name.strip()
     if not name:
         raise FileError("TYPE A NAME FIRST")
-    if Path(name).suffix.lower() not in ENDINGS - {""} and not is_drawing(name):
+    if not Path(name).suffix or not takes(name):
         name += like.suffix
     try:
         check_name(name)
@@ -61,17 +60,17 @@ def same_name_in(folder: Path, name: str) -> str:
     return next((other for other in names if other.lower() == name.lower()), "")
 
 
-def copy_program(source: Path, folder: Path, name: str) -> str:
+def copy_program(source: Path, folder: Path, name: str, takes: Takes = is_program) -> str:
     """A copy in the operator's folder; its name. Raises FileError."""
-    name = checked_name(name, source)
+    name = checked_name(name, source, takes)
     _free(folder, name)
     write_whole(folder / name, _read(source))
     return name
 
 
-def rename_program(source: Path, name: str, persistence: Persistence) -> str:
+def rename_program(source: Path, name: str, persistence: Persistence, takes: Takes = is_program) -> str:
     """Another name; versions, count and record go along. Raises FileError."""
-    name = checked_name(name, source)
+    name = checked_name(name, source, takes)
     if name == source.name:
         raise FileError(Message("THE PROGRAM IS ALREADY NAMED {name}", name=name))
     if name.lower() != source.name.lower():
@@ -171,14 +170,17 @@ class CopyRenameDelete:
     def answer(self) -> None:
         """Return: what was typed is the name."""
         here, name, question = self.marked_program(), self.entry.text, self.question
+        takes = self.desk.program_folders.takes
         if here is None:
             self.question = ""
         elif self.desk.refused(Act.PROGRAMS):
             return  # what is typed stays until somebody has signed in
         elif question == COPY:
-            self._change(lambda: copy_program(here.path, self.own, name), "COPIED AS {name}")
+            self._change(lambda: copy_program(here.path, self.own, name, takes), "COPIED AS {name}")
         else:
-            self._change(lambda: rename_program(here.path, name, self.persistence), "RENAMED TO {name}")
+            self._change(
+                lambda: rename_program(here.path, name, self.persistence, takes), "RENAMED TO {name}"
+            )
 
     def delete(self) -> None:
         """The marked program, after asking; its text stays among the versions."""

@@ -7,12 +7,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk import formats
-from app.desk.program_folder import ENDINGS
+from app.desk.program_folder import Takes, is_program
 from app.desk.sheet import Row, Sheet
 from app.desk.translation import tr
 from app.programs.removable_media import Medium, Stick, sticks, why_not
 from app.programs.whole_file import FileError
-from core.drawings.drawing_file import is_drawing
 from core.message import join_messages
 
 UP = ".."
@@ -36,6 +35,7 @@ class FolderChooser:
 
     home: Path
     plugged: Callable[[], Sequence[Stick]] = sticks
+    takes: Takes = is_program
     at: Path | None = None
     top: Path | None = None  # the place it belongs to; the way up ends there
     lines: tuple[FolderLine, ...] = ()
@@ -53,7 +53,7 @@ class FolderChooser:
             self.medium = Medium.of(self.top or self.at)
         self.medium.check()
         try:
-            return (FolderLine(UP, self.at.parent, True), *_inside(self.at))
+            return (FolderLine(UP, self.at.parent, True), *_inside(self.at, self.takes))
         except OSError as error:
             raise FileError(why_not(error, self.at)) from error
 
@@ -83,12 +83,11 @@ class FolderChooser:
         return tuple(line.path for line in self.lines if not line.folder)
 
 
-def _inside(folder: Path) -> list[FolderLine]:
+def _inside(folder: Path, takes: Takes) -> list[FolderLine]:
     paths = sorted(folder.iterdir(), key=lambda path: path.name.lower())[:MOST]
     seen = [path for path in paths if not path.name.startswith(".")]
     folders = [FolderLine(path.name, path, True) for path in seen if path.is_dir()]
-    taken = [path for path in seen if path.suffix.lower() in ENDINGS or is_drawing(path.name)]
-    files = [path for path in taken if path.is_file()]
+    files = [path for path in seen if takes(path.name) and path.is_file()]
     return folders + [FolderLine(path.name, path, False, path.stat().st_size) for path in files]
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.persistence import Persistence
+from app.desk.program_folder import Takes, is_program
 from app.desk.sheet import STEPS, Key, Sheet
 from app.desk.translation import tr
 from app.programs.copy_rename_delete import BUSY, checked_name, same_name_in
@@ -22,7 +23,6 @@ from app.programs.folder_chooser import FolderChooser, chooser_sheet
 from app.programs.removable_media import Medium, why_not
 from app.programs.whole_file import FileError, present, settle, write_out, write_whole
 from core.access.access_table import Act
-from core.drawings.drawing_file import is_drawing
 from core.input_file import TooLargeError, input_bytes
 from core.language.source import SourceError, load_source
 from core.message import Message
@@ -54,13 +54,19 @@ def import_programs(
     check: Check,
     *,
     replace: bool,
+    is_drawing: Takes = lambda _name: False,
     told: Told = lambda _done, _of: None,
 ) -> Carried:
-    """Programs into the operator's folder, each proved. Raises FileError.
+    """Programs into the operator's folder, each proved, and drawings, read later. Raises FileError.
 
     Nothing is written as long as one stands there that differs and ``replace`` is not allowed.
     """
-    texts = {checked_name(path.name, path): _program(path) for path in sources}
+    texts = {
+        checked_name(path.name, path, lambda name: is_program(name) or is_drawing(name)): (
+            _bytes(path) if is_drawing(path.name) else _program(path)
+        )
+        for path in sources
+    }
     differing = _differing(texts, folder)
     if differing and not replace:
         return Carried(differing=differing)
@@ -118,10 +124,8 @@ def _on(medium: Medium, done: int, of: int) -> Iterator[None]:
 
 
 def _program(path: Path) -> bytes:
-    """The text, read as a program first: what is none does not come in. A drawing is read later."""
+    """The text, read as a program first: what is none does not come in."""
     data = _bytes(path)
-    if is_drawing(path.name):
-        return data
     try:
         load_source(path)
     except SourceError as error:
@@ -304,8 +308,16 @@ class ImportExport:
         if self.out:
             work = partial(export_programs, paths, at, replace=replace, medium=self.chooser.medium, told=told)
         else:
-            own, persistence, check = self.own, self.persistence, self.check
-            work = partial(import_programs, paths, own, persistence, check, replace=replace, told=told)
+            work = partial(
+                import_programs,
+                paths,
+                self.own,
+                self.persistence,
+                self.check,
+                replace=replace,
+                is_drawing=self.desk.program_folders.is_drawing,
+                told=told,
+            )
         self.worker.queue(partial(self._carried, work, self.chooser.medium), self._done, self._failed)
 
     def _count(self, done: int, of: int) -> None:

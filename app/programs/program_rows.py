@@ -12,7 +12,6 @@ from pathlib import Path
 from app.desk import formats
 from app.desk.persistence import Persistence
 from app.desk.program_folder import LISTED, ProgramFolders
-from core.drawings.drawing_file import is_drawing
 from core.language.source import SourceError, load_source
 from core.store.program_records import key_of_text
 from core.store.store_rows import RunRow
@@ -28,11 +27,7 @@ class Program:
     changed: float
     sample: bool
     run: RunRow
-
-    @property
-    def drawing(self) -> bool:
-        """Whether it is a drawing, of which a program can be made."""
-        return is_drawing(self.name)
+    drawing: bool = False  # of which a program can be made
 
     @property
     def key(self) -> tuple[str, float, int]:
@@ -49,21 +44,20 @@ def list_programs(
     cannot be read.
     """
     runs = persistence.runs_by_text()
-    return tuple(
-        Program(entry.name, entry.path, status.st_size, status.st_mtime, entry.path.parent != own, run)
-        for entry in (*program_folders.entries(), *program_folders.drawings())
-        if (status := _status(entry.path)) is not None
-        for run in (runs.get(_text_key(entry.path, status), RunRow(entry.name)),)
-    )
-
-
-def _text_key(path: Path, status: os.stat_result) -> str:
-    """Return the record key of the text in a file; empty for a drawing and for what is not program text."""
-    return "" if is_drawing(path.name) else _key_in(path, status.st_mtime_ns, status.st_size)
+    found = []
+    for entry in (*program_folders.entries(), *program_folders.drawings()):
+        if (status := _status(entry.path)) is not None:
+            path, drawing = entry.path, program_folders.is_drawing(entry.name)
+            key = "" if drawing else _key_in(path, status.st_mtime_ns, status.st_size)
+            run = runs.get(key, RunRow(entry.name))
+            sample = path.parent != own
+            found.append(Program(entry.name, path, status.st_size, status.st_mtime, sample, run, drawing))
+    return tuple(found)
 
 
 @lru_cache(maxsize=2 * LISTED)
 def _key_in(path: Path, _changed: int, _size: int) -> str:
+    """Return the record key of the text in a file; empty for what is not program text."""
     try:
         return key_of_text(load_source(path).text)
     except SourceError:

@@ -27,7 +27,6 @@ from app.screen.look import Painter
 from app.screen.page_base import Host, KeyActions
 from app.screen.panel import Panel, Shown
 from app.screen.sheet_panel import ListPage, SheetPanel
-from app.shapes.shapes_model import Shapes
 from app.working_plane.plane_instant import at_line
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
@@ -144,12 +143,10 @@ class ProgramsPage(ListPage):
         if here is None or editor is None:
             self.desk.say(NONE)
             return
-        shapes = self.desk.attached(Shapes)
-        if here.drawing and shapes is not None:
-            shapes.wanted = here.path
+        editor.made_of = here.path if here.drawing else None
         editor.wanted = f"{here.path.stem}.nc" if here.drawing else str(here.path)
-        if not self.host.go(page_table.EDITOR) and shapes is not None:
-            shapes.wanted = None
+        if not self.host.go(page_table.EDITOR):
+            editor.made_of = None
 
     def _job(self) -> None:
         """The marked program as one more job of the queue; how many parts is asked on its page."""

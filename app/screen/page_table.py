@@ -30,6 +30,7 @@ _PATH = (
     "app.path.part_bar_view.PartBar",
     "app.path.part_section.metal_of",
 )
+_PANELS = tuple(extra.editor_panel for extra in extras().values() if extra.editor_panel)
 
 
 _OWN_PAGES = (
@@ -49,6 +50,7 @@ _OWN_PAGES = (
         "F3",
         "EDIT",
         "write and prove programs",
+        later=_PANELS,
     ),
     PageEntry(
         MDI,
@@ -232,6 +234,11 @@ def class_of(dotted: str) -> Any:
     """The class of this dotted name, imported now."""
     module, _, name = dotted.rpartition(".")
     return getattr(import_module(module), name)
+
+
+def editor_panel(none: Any) -> Any:
+    """The class of the panel that an optional feature adds to the editor; ``none`` where there is no such."""
+    return class_of(_PANELS[0]) if _PANELS else none
 
 
 def _model(entry: PageEntry, host: Host) -> object:

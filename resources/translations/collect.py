@@ -14,7 +14,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Container, Mapping
 from pathlib import Path
 
-from app.shapes.drawing_form import PROFILE
+from app.compose.extra import extras
 from core.access.access_table import Act, Level
 from core.alarms import CATALOGUE
 from core.interpreter.dialects import code_book
@@ -24,9 +24,6 @@ from core.language.sinumerik.cycle_names import CYCLES_OUTSIDE
 from core.language.sinumerik.outside_words import OUTSIDE
 from core.language.sinumerik.word_table import FUNCTIONS, IDLE
 from core.language.source import Dialect
-from core.shapes.shape_fields import Field, choice_text
-from core.shapes.shape_table import HELPERS, SHAPES, SINUMERIK_HELPERS, SINUMERIK_SHAPES
-from core.shapes.thread_series import Series
 from resources.translations.message_list import write_list
 from resources.translations.reading import marked, texts_of
 
@@ -61,12 +58,12 @@ ROOMS = (
         "app/programs",
         "app/quality",
     ),
-    *("app/scope", "app/screen", "app/searchto", "app/shapes", "app/extras"),
+    *("app/scope", "app/screen", "app/searchto", "app/extras"),
     *("app/special", "app/transfer"),
     "app/working_plane",
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
-    *("core/drawings", "core/quality", "core/records", "core/shapes", "core/extras", "core/access"),
+    *("core/quality", "core/records", "core/extras", "core/access"),
     "app/shopfloor",
 )
 # Where much is told to programs: what is marked alone.
@@ -89,9 +86,11 @@ APART = frozenset(
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
         *("shared_database.py", "sharing/version_record.py", "share_command.py", "place_answer.py"),
-        *("sharing_table.py", "sharing_check.py", "sharing/extra.py"),
-        *("screen/pdf_pages.py", "shapes/sinumerik_lines.py", "shapes/bar_lines.py"),
-        *("shapes/live_lines.py", "shapes/sinumerik_live_lines.py"),
+        *("sharing_table.py", "sharing_check.py", "share_json_keys.py"),
+        *("profile_command.py", "profile_json_keys.py", "shapes_json_keys.py"),
+        *("shapes_command.py", "shape_steps.py"),
+        *("screen/pdf_pages.py", "lines/sinumerik_lines.py", "lines/bar_lines.py"),
+        *("lines/live_lines.py", "lines/sinumerik_live_lines.py"),
         *(
             "sinumerik/cycle_names.py",
             "word_table.py",
@@ -180,10 +179,6 @@ ALSO = (
     "approach",
     "departure",
     "the C axis turns",
-    # A choice that the drawing itself brings.
-    "DRAWING UNIT: INCH",
-    "DRAWING UNIT: AS DRAWN",
-    "LAYER: ALL",
     "PgUp",
     "PgDn",
     # Of the event log: its kinds; what has changed in the file are its own words.
@@ -212,6 +207,7 @@ _NO_TEXT = re.compile(
     r"|^F\d+$|^:memory:$|^[A-Z]{1,3}$|^XYZABC$|^Callable|^finger|^\(?\?|.*[{;]\s*$|^%[YHd]|.*QLineEdit"
     r"|(?!.*\{\w*\}$).*\}\s*$"  # a bracket that ends no hole
     r"|^(Page|Zoom|Pan|Shift) \w+$|^QWERTY|.*\\|^[A-Z]{2}\d"
+    r"|^[\w ,.-]* --json$"  # a command in the reference of outputs
     r"|^<\w+ |^[^ ]*=\{[^ ]*; |^\s*WHERE .*= \?.*$|^KeptPass|^'?mill tool'?$|^CYCLE (DEF|CALL)$"
 )
 _WORDS = re.compile(r"[^\W\d_]{2,}.*\s+.*[^\W\d_]{2,}|[^\W\d_]{2,}\s*[:.?…]$")
@@ -260,7 +256,7 @@ def texts() -> dict[str, str]:
             if not _is_apart(path, room):
                 for text in _texts_of_file(path, loud, room in MARKED_ALONE):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
-    tables = [*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_shapes()]
+    tables = [*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_extras()]
     return {**dict.fromkeys(tables, ""), **found}
 
 
@@ -314,21 +310,9 @@ def _of_books() -> list[str]:
     return sorted(shown | refused | {*FUNCTIONS.values(), *IDLE.values()})
 
 
-def _of_shapes() -> list[str]:
-    """Names of shapes and of their fields: many are single words."""
-    tables = (SHAPES, SINUMERIK_SHAPES, HELPERS, SINUMERIK_HELPERS)
-    shapes = (*(shape for table in tables for shape in table.values()), PROFILE)
-    fields = [field for shape in shapes for field in shape.fields]
-    labels = {field.label for field in fields if len(field.label) > 1}
-    choices = {choice_text(field, choice) for field in fields for choice in _in_words(field)}
-    return sorted({shape.name for shape in shapes} | labels | choices)
-
-
-def _in_words(field: Field) -> tuple[str, ...]:
-    """The choices that are words: series and classes of threads have names that all languages use."""
-    if field.word == "SERIES":
-        return (Series.OWN.value,)
-    return () if field.word in {"CLASS", "SIZE"} else field.choices
+def _of_extras() -> list[str]:
+    """What the optional features say in tables of their own."""
+    return [text for extra in extras().values() for text in extra.words()]
 
 
 def _loud_alarms() -> list[str]:

@@ -13714,312 +13714,312 @@
       <translation>{which}: NINGUNA</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>AXIS</source>
       <translation>EJE</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>BLADE</source>
       <translation>BLADE</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>COMP</source>
       <translation>COMP</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>CONTOUR</source>
       <translation>CONTORNO</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>DRAWING UNIT</source>
       <translation>UNIDAD DEL DIBUJO</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>DUNIT</source>
       <translation>DUNIT</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>FACE SIDE IN DRAWING</source>
       <translation>LADO DE LA CARA EN EL DIBUJO</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>FROM</source>
       <translation>FROM</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>FRONT</source>
       <translation>FRENTE</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>GROOVING TOOL</source>
       <translation>ÚTIL DE RANURAR</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>HOLE</source>
       <translation>HOLE</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>HOLE DIAMETER</source>
       <translation>DIÁMETRO DEL AGUJERO</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>LAYER</source>
       <translation>CAPA</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>MATERIAL</source>
       <translation>MATERIAL</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>NOSE COMPENSATION: D NUMBER</source>
       <translation>COMPENSACIÓN DE PUNTA: NÚMERO D</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8.</source>
       <translation>No hay dibujos en la carpeta de programas: copie en ella un archivo DXF o SVG con F6 y luego F8.</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>ROUGH</source>
       <translation>ROUGH</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>ROUGHING DEPTH OF CUT</source>
       <translation>PROFUNDIDAD DE DESBASTE</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>Reading was canceled. Press F6 to read the drawing again.</source>
       <translation>Lectura cancelada. Pulse F6 para leer el dibujo de nuevo.</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>SHIFT</source>
       <translation>SHIFT</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>STEEL</source>
       <translation>ACERO</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>STOCK DIAMETER</source>
       <translation>DIÁMETRO DEL MATERIAL</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>STOCK ON THE FACE</source>
       <translation>MATERIAL EN LA CARA</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>Z OF REFERENCE POINT</source>
       <translation>Z DEL PUNTO DE REFERENCIA</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>Z REFERENCE POINT</source>
       <translation>PUNTO DE REFERENCIA Z</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_form.py" />
+      <location filename="app/extras/drawings/drawing_form.py" />
       <source>facing, roughing, finishing and grooving of a profile from a DXF or SVG drawing</source>
       <translation>refrentado, desbastado, acabado y ranurado de un perfil de un dibujo DXF o SVG</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_plan.py" />
+      <location filename="app/extras/drawings/drawing_plan.py" />
       <source>AS DRAWN</source>
       <translation>COMO EN EL DIBUJO</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_plan.py" />
+      <location filename="app/extras/drawings/drawing_plan.py" />
       <source>Boring needs a predrilled hole: enter its diameter.</source>
       <translation>El mandrinado necesita un agujero previo: introduzca su diámetro.</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_plan.py" />
+      <location filename="app/extras/drawings/drawing_plan.py" />
       <source>CONTOUR {item}</source>
       <translation>CONTORNO {item}</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_plan.py" />
+      <location filename="app/extras/drawings/drawing_plan.py" />
       <source>{drawing} does not specify its unit: choose MM or INCH.</source>
       <translation>{drawing} no indica su unidad: elija MM o PULGADAS.</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_plan.py" />
+      <location filename="app/extras/drawings/drawing_plan.py" />
       <source>{drawing} has no contour for the selected axis: choose another layer or axis.</source>
       <translation>{drawing} no tiene ningún contorno para el eje elegido: elija otra capa u otro eje.</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_plan.py" />
+      <location filename="app/extras/drawings/drawing_plan.py" />
       <source>{drawing} has no contour on layer {layer}: choose another layer or axis.</source>
       <translation>{drawing} no tiene ningún contorno en la capa {layer}: elija otra capa u otro eje.</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_plan.py" />
+      <location filename="app/extras/drawings/drawing_plan.py" />
       <source>{drawing} has no layer {layer}: choose another layer.</source>
       <translation>{drawing} no tiene la capa {layer}: elija otra capa.</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_plan.py" />
+      <location filename="app/extras/drawings/drawing_plan.py" />
       <source>{drawing} has {nets_count} contours: choose 1 to {nets_count2}.</source>
       <translation>{drawing} tiene {nets_count} contornos: elija de 1 a {nets_count2}.</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_plan.py" />
+      <location filename="app/extras/drawings/drawing_plan.py" />
       <source>{drawing} is {wrong}, which is too large for this machine. The drawing fits if its unit is {wrong2}: choose {wrong3}.</source>
       <translation>{drawing} mide {wrong}, demasiado para esta máquina. El dibujo cabe si su unidad es {wrong2}: elija {wrong3}.</translation>
     </message>
     <message>
-      <location filename="app/shapes/drawing_plan.py" />
+      <location filename="app/extras/drawings/drawing_plan.py" />
       <source>{path} cannot be read: {cause}.</source>
       <translation>no se puede leer {path}: {cause}.</translation>
     </message>
     <message>
-      <location filename="app/shapes/shape_form.py" />
+      <location filename="app/extras/shapes/shape_form.py" />
       <source>CLASS</source>
       <translation>CLASE</translation>
     </message>
     <message>
-      <location filename="app/shapes/shape_form.py" />
+      <location filename="app/extras/shapes/shape_form.py" />
       <source>These values do not make a valid shape: check the last value that you entered.</source>
       <translation>Estos valores no dan una forma válida: revise el último valor que introdujo.</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>1 SHAPE EDITED BY HAND WAS NOT CHANGED</source>
       <translation>1 FORMA EDITADA A MANO NO SE CAMBIÓ</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>CALCULATING THE CONTOUR. PRESS F6 TO CANCEL</source>
       <translation>CALCULANDO EL CONTORNO. PULSE F6 PARA CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>F6: DELETE THE {count} LINES OF THIS SHAPE   ESC: KEEP THEM</source>
       <translation>F6: BORRAR LAS {count} LÍNEAS DE ESTA FORMA   ESC: CONSERVARLAS</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>F6: REPLACE {count} EDITED LINES STARTING AT LINE {line}   ESC: KEEP</source>
       <translation>F6: SUSTITUIR {count} LÍNEAS EDITADAS A PARTIR DE LA LÍNEA {line}   ESC: CONSERVAR</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>FIRST PRESS N AND FILL IN THE PROGRAM HEADER (HEAD)</source>
       <translation>PRIMERO PULSE N Y RELLENE LA CABECERA DEL PROGRAMA</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>KEYPAD</source>
       <translation>TECLAS</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS</source>
       <translation>IZQUIERDA/DERECHA: CAMBIAR   TOCAR DIBUJO: CONTORNO O EJE</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>LETTER: OPEN CALCULATOR OR TEMPLATE   F10: GO TO TEXT</source>
       <translation>LETRA: ABRIR CALCULADORA O PLANTILLA   F10: IR AL TEXTO</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>LETTER: OPEN SHAPE   RIGHT: SHAPES IN PROGRAM   F10: TEXT</source>
       <translation>LETRA: ABRIR FORMA   DERECHA: FORMAS DEL PROGRAMA   F10: TEXTO</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>LINE {line} EDITED BY HAND. FORM SHOWS VALUES STORED IN COMMENT</source>
       <translation>LÍNEA {line} EDITADA A MANO. EL FORMULARIO MUESTRA LOS VALORES DEL COMENTARIO</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>LINE {line}: EDITED {shape} COMMENT CANNOT BE READ. UNDO THE EDIT</source>
       <translation>LÍNEA {line}: COMENTARIO DE {shape} EDITADO, ILEGIBLE. DESHAGA EL CAMBIO</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>READ</source>
       <translation>LEÍDAS</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL</source>
       <translation>LEYENDO EL DIBUJO: {seconds} s. PULSE F6 PARA CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS</source>
       <translation>LAS FORMAS SOLO FUNCIONAN EN PROGRAMAS OMNITURN Y SINUMERIK</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>THE DRAWING CANNOT BE PROCESSED: {why}</source>
       <translation>NO SE PUEDE PROCESAR EL DIBUJO: {why}</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>THE FORM USES THESE VALUES EDITED BY HAND IN THE TEXT: {fields}</source>
       <translation>LA FICHA USA ESTOS VALORES EDITADOS A MANO EN EL TEXTO: {fields}</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>TOOL DATA CANNOT BE READ: {why}</source>
       <translation>NO SE PUEDEN LEER LOS DATOS DE HERRAMIENTA: {why}</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE</source>
       <translation>ESCRIBA UN NÚMERO O EXPRESIÓN   ENTER: CAMPO SIGUIENTE   F2: ESCRIBIR</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE</source>
       <translation>X Z C R A: IR A LA COLUMNA   ENTER: PUNTO SIGUIENTE   F2: ESCRIBIR</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shapes_model.py" />
       <source>{count} SHAPES EDITED BY HAND WERE NOT CHANGED</source>
       <translation>{count} FORMAS EDITADAS A MANO NO SE CAMBIARON</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_view.py" />
+      <location filename="app/extras/shapes/shapes_view.py" />
       <source>CALCULATORS AND TEMPLATES</source>
       <translation>CALCULADORAS Y PLANTILLAS</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_view.py" />
+      <location filename="app/extras/shapes/shapes_view.py" />
       <source>LINES</source>
       <translation>LÍNEAS</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_view.py" />
+      <location filename="app/extras/shapes/shapes_view.py" />
       <source>SHAPES</source>
       <translation>FORMAS</translation>
     </message>
     <message>
-      <location filename="app/shapes/shapes_view.py" />
+      <location filename="app/extras/shapes/shapes_view.py" />
       <source>SHAPES  ·  IN THIS PROGRAM, BY LINE</source>
       <translation>FORMAS  ·  EN ESTE PROGRAMA, POR LÍNEA</translation>
     </message>
@@ -30034,57 +30034,57 @@
       <translation>este intervalo no contiene ninguna pasada de rosca, porque ningún eje avanza a velocidad uniforme durante dos vueltas del husillo</translation>
     </message>
     <message>
-      <location filename="core/shapes/bar_work.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>A bar feed loop cannot be inside another bar feed loop: write this shape before or after the other loop.</source>
       <translation>Un bucle de avance de barra no puede estar dentro de otro: escriba esta forma antes o después del otro bucle.</translation>
     </message>
     <message>
-      <location filename="core/shapes/bar_work.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>BAR FEED PER MINUTE</source>
       <translation>AVANCE DE BARRA POR MINUTO</translation>
     </message>
     <message>
-      <location filename="core/shapes/bar_work.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>BAR LENGTH PER PART + CUT-OFF</source>
       <translation>LARGO DE BARRA POR PIEZA + CORTE</translation>
     </message>
     <message>
-      <location filename="core/shapes/bar_work.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>BAR LOOP</source>
       <translation>BUCLE DE BARRA</translation>
     </message>
     <message>
-      <location filename="core/shapes/bar_work.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>EACH PART</source>
       <translation>CADA PIEZA</translation>
     </message>
     <message>
-      <location filename="core/shapes/bar_work.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>FACING ALLOWANCE</source>
       <translation>SOBRANTE PARA CAREAR</translation>
     </message>
     <message>
-      <location filename="core/shapes/bar_work.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>FEED THE BAR</source>
       <translation>SACAR LA BARRA</translation>
     </message>
     <message>
-      <location filename="core/shapes/bar_work.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>PART SUBROUTINE NUMBER</source>
       <translation>NÚMERO DE SUBRUTINA</translation>
     </message>
     <message>
-      <location filename="core/shapes/bar_work.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>TOOL USED AS STOP</source>
       <translation>HERRAMIENTA DE TOPE</translation>
     </message>
     <message>
-      <location filename="core/shapes/bar_work.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>This machine has no M codes that open and close the chuck: assign two M codes to the output named collet under [m_codes] in the machine file.</source>
       <translation>Esta máquina no tiene códigos M que abran y cierren el plato: asigne dos códigos M a la salida llamada collet bajo [m_codes] en el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/shapes/bar_work.py" />
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>feeds the bar to a stop and repeats the following lines for a number of parts; these lines make the part</source>
       <translation>saca la barra hasta un tope y repite las líneas siguientes para varias piezas; esas líneas hacen la pieza</translation>
     </message>
@@ -30284,387 +30284,387 @@
       <translation>El primer punto es el inicio del contorno: introduzca X y Z.</translation>
     </message>
     <message>
-      <location filename="core/shapes/cutting_data.py" />
+      <location filename="core/extras/shapes/cutting_data.py" />
       <source>ALLOY STEEL</source>
       <translation>ACERO ALEADO</translation>
     </message>
     <message>
-      <location filename="core/shapes/cutting_data.py" />
+      <location filename="core/extras/shapes/cutting_data.py" />
       <source>CAST IRON</source>
       <translation>FUNDICIÓN</translation>
     </message>
     <message>
-      <location filename="core/shapes/cutting_data.py" />
+      <location filename="core/extras/shapes/cutting_data.py" />
       <source>FREE STEEL</source>
       <translation>ACERO DE FÁCIL MECANIZADO</translation>
     </message>
     <message>
-      <location filename="core/shapes/cutting_data.py" />
+      <location filename="core/extras/shapes/cutting_data.py" />
       <source>TOOL STEEL</source>
       <translation>ACERO PARA HERRAMIENTAS</translation>
     </message>
     <message>
-      <location filename="core/shapes/drilling.py" />
+      <location filename="core/extras/shapes/forms/drilling.py" />
       <source>A peck of {peck} is deeper than the hole: enter 0 for no pecking.</source>
       <translation>Un picoteo de {peck} es más hondo que el agujero: introduzca 0 para no picotear.</translation>
     </message>
     <message>
-      <location filename="core/shapes/drilling.py" />
+      <location filename="core/extras/shapes/forms/drilling.py" />
       <source>DEPTH AT DRILL POINT</source>
       <translation>PROFUNDIDAD DE LA PUNTA</translation>
     </message>
     <message>
-      <location filename="core/shapes/drilling.py" />
+      <location filename="core/extras/shapes/forms/drilling.py" />
       <source>DRILL DIAMETER</source>
       <translation>DIÁMETRO DE LA BROCA</translation>
     </message>
     <message>
-      <location filename="core/shapes/drilling.py" />
+      <location filename="core/extras/shapes/forms/drilling.py" />
       <source>Drilling {depth} diameters deep without pecking clogs the drill: enter a peck depth.</source>
       <translation>Taladrar {depth} diámetros de profundidad sin picoteo atasca la broca: introduzca una profundidad de picoteo.</translation>
     </message>
     <message>
-      <location filename="core/shapes/drilling.py" />
+      <location filename="core/extras/shapes/forms/drilling.py" />
       <source>PREDRILLED DEPTH</source>
       <translation>PROFUNDIDAD YA TALADRADA</translation>
     </message>
     <message>
-      <location filename="core/shapes/drilling.py" />
+      <location filename="core/extras/shapes/forms/drilling.py" />
       <source>The drill diameter in the tool data of {name} is {diameter}: enter that diameter.</source>
       <translation>El diámetro de broca en los datos de herramienta de {name} es {diameter}: introduzca ese diámetro.</translation>
     </message>
     <message>
-      <location filename="core/shapes/drilling.py" />
+      <location filename="core/extras/shapes/forms/drilling.py" />
       <source>The hole starts at a depth of {start} and ends at {depth}, so nothing is drilled.</source>
       <translation>El agujero empieza a {start} de profundidad y acaba en {depth}, así que no se taladra nada.</translation>
     </message>
     <message>
-      <location filename="core/shapes/drilling.py" />
+      <location filename="core/extras/shapes/forms/drilling.py" />
       <source>a hole on the spindle centerline, drilled in one pass or with pecking</source>
       <translation>un agujero en el centro del husillo, de una vez o con picoteo</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>A blade cannot reach under a wall that overhangs the groove: enter 0 or more.</source>
       <translation>Una cuchilla no llega debajo de una pared que cubre la ranura: introduzca 0 o más.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>A groove in a bore of {top} is cut outward, so bottom diameter {bottom} is too small.</source>
       <translation>Una ranura en un taladro de {top} se corta hacia fuera, así que el diámetro del fondo {bottom} es demasiado pequeño.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>BOTTOM DIAMETER</source>
       <translation>DIÁMETRO DEL FONDO</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>CHAMFER AT BOTH EDGES</source>
       <translation>CHAFLÁN EN AMBOS CANTOS</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>CYCLE93 can cut only square walls in this shape: enter 0 for the slope or, to use G1 instead, enter 0 as the D number of the other blade corner.</source>
       <translation>En esta forma, CYCLE93 solo puede cortar paredes rectas: introduzca 0 para la inclinación o, para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>CYCLE93 cannot chamfer these edges: enter 0 for the chamfer or, to use G1 instead, enter 0 as the D number of the other blade corner.</source>
       <translation>CYCLE93 no puede achaflanar estos cantos: introduzca 0 para el chaflán o, para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>CYCLE93 does not support a tool at negative X: to use G1 instead, enter 0 as the D number of the other blade corner.</source>
       <translation>CYCLE93 no admite herramientas en X negativa: para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>CYCLE93: D OF OTHER CORNER</source>
       <translation>CYCLE93: D DE LA OTRA ESQUINA</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>D1 is the cutting corner of the blade: enter the D number of the other corner, or 0 to use G1 instead of CYCLE93.</source>
       <translation>D1 es la esquina de corte de la cuchilla: introduzca el número D de la otra esquina, o 0 para usar G1 en lugar de CYCLE93.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>DIAMETER TO CLEAR</source>
       <translation>DIÁMETRO QUE HAY QUE LIBRAR</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>DISTANCE FROM Z0 TO START</source>
       <translation>DISTANCIA DE Z0 AL INICIO</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>DWELL AT BOTTOM</source>
       <translation>PAUSA EN EL FONDO</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>Diameter {excess} is less than diameter {top}, so the tool has nothing to clear: enter 0.</source>
       <translation>El diámetro {excess} es menor que el diámetro {top}, así que nada estorba el paso de la herramienta: introduzca 0.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>Diameter {excess} is more than the bore diameter of {top}, so the tool has nothing to clear: enter 0.</source>
       <translation>El diámetro {excess} es mayor que el diámetro interior de {top}, así que nada estorba el paso de la herramienta: introduzca 0.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>Edges of sloped walls cannot be chamfered in this shape: enter 0.</source>
       <translation>En esta forma no se pueden achaflanar los cantos de paredes inclinadas: introduzca 0.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>GROOVE WIDTH</source>
       <translation>ANCHO DE LA RANURA</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>Grooves of width {long} overlap at a pitch of {number}: enter a larger pitch.</source>
       <translation>Ranuras de ancho {long} se juntan a un paso de {number}: introduzca un paso mayor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>NUMBER OF GROOVES</source>
       <translation>NÚMERO DE RANURAS</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>SLOPE OF CHUCK-SIDE WALL</source>
       <translation>INCLINACIÓN DE LA PARED DEL PLATO</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>SLOPE OF FACE-SIDE WALL</source>
       <translation>INCLINACIÓN DE LA PARED DE LA CARA</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>The chamfer is at least as deep as the groove: enter a smaller chamfer.</source>
       <translation>El chaflán es al menos tan hondo como la ranura: introduzca un chaflán menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>The groove bottom diameter {bottom} must be less than {top}, the diameter at which the groove starts.</source>
       <translation>El diámetro del fondo de la ranura, {bottom}, debe ser menor que {top}, el diámetro donde empieza la ranura.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>The groove is {long} wide, but the blade is {wide} wide: use a narrower blade.</source>
       <translation>La ranura tiene {long} de ancho, pero la cuchilla tiene {wide} de ancho: use una cuchilla más estrecha.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>With these walls, the groove bottom is {bottom} wide, but the blade is {wide} wide: use a narrower blade, or check the angles.</source>
       <translation>Con estas paredes, el fondo de la ranura mide {bottom} de ancho, pero la cuchilla mide {wide}: use una cuchilla más estrecha, o revise los ángulos.</translation>
     </message>
     <message>
-      <location filename="core/shapes/grooving.py" />
+      <location filename="core/extras/shapes/forms/grooving.py" />
       <source>one or more grooves on the outside, in a bore or with a rear tool, with chamfered edges and square or sloped walls</source>
       <translation>una o varias ranuras por fuera, en un interior o con herramienta trasera, con chaflanes y paredes rectas o inclinadas</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>ACROSS FLATS</source>
       <translation>ENTRE CARAS</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>ANGLE AROUND THE PART</source>
       <translation>ÁNGULO ALREDEDOR DE LA PIEZA</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>ANGLE BETWEEN HOLES</source>
       <translation>ÁNGULO ENTRE AGUJEROS</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>ANGLE BETWEEN SLOTS</source>
       <translation>ÁNGULO ENTRE RANURAS</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>CROSS DRILL</source>
       <translation>TALADRADO TRANSVERSAL</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>CUTTER DIAMETER</source>
       <translation>DIÁMETRO DE LA FRESA</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>DEPTH PER PASS</source>
       <translation>PROFUNDIDAD DE PASADA</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>DISTANCE FROM Z0 TO CENTER</source>
       <translation>DISTANCIA DE Z0 AL CENTRO</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>Depth {depth} is more than the diameter of {across}: the drill would come out on the far side.</source>
       <translation>La profundidad {depth} es más que el diámetro de {across}: la broca saldría por el otro lado.</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>Depth {number} goes past the spindle centerline of a part {number2} in diameter: enter a smaller depth.</source>
       <translation>La profundidad {number} pasa del centro del husillo en una pieza de diámetro {number2}: introduzca una profundidad menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>FIRST ANGLE</source>
       <translation>PRIMER ÁNGULO</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>LENGTH ALONG Z</source>
       <translation>LONGITUD EN Z</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>LIVE TOOL SPEED</source>
       <translation>VELOCIDAD DE LA MOTORIZADA</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>MILL FLATS</source>
       <translation>FRESADO DE CARAS</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>MILL SLOT</source>
       <translation>FRESADO DE RANURA</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>PART DIAMETER</source>
       <translation>DIÁMETRO DE LA PIEZA</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>The depth per pass is more than the length of the flats: enter a smaller depth.</source>
       <translation>La profundidad de pasada es más que el largo de las caras: introduzca una profundidad menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>The depth per pass is more than the slot depth: enter a smaller depth per pass.</source>
       <translation>La profundidad de pasada es más que la de la ranura: introduzca una profundidad de pasada menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>The slot has no length: enter its length along Z, or its angle around the part.</source>
       <translation>La ranura no tiene longitud: introduzca su longitud en Z, o su ángulo alrededor de la pieza.</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>The third axis of this machine is named Y, but the plane of this shape needs a separate Y axis: mill this shape on another machine.</source>
       <translation>El tercer eje de esta máquina se llama Y, pero el plano de esta forma necesita un eje Y separado: frese esta forma en otra máquina.</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>This machine has no output that drives a live tool: define an output named live under [io.out] in the machine file.</source>
       <translation>Esta máquina no tiene una salida que mueva una herramienta motorizada: defina una salida llamada live bajo [io.out] en el archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>This machine has no third axis that holds and turns the part.</source>
       <translation>Esta máquina no tiene un tercer eje que sujete y gire la pieza.</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>a keyway along Z, around the part or on a helix, in the ZC plane</source>
       <translation>un chavetero a lo largo de Z, alrededor de la pieza o en hélice, en el plano ZC</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>flats or a hexagon on the end of the part, in the XC plane</source>
       <translation>caras o un hexágono en el extremo de la pieza, en el plano XC</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>radial holes around the part, drilled with the spindle stopped in position</source>
       <translation>agujeros radiales alrededor de la pieza, taladrados con el husillo parado en posición</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>{across} across flats is not less than the part diameter of {stock}, so nothing is cut.</source>
       <translation>{across} entre caras no es menos que el diámetro de la pieza de {stock}, así que no se corta nada.</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>{many} flats at {across} across flats have corners at diameter {corner}, but the part diameter is {stock}: enter a smaller value, or set CORNERS to ROUND.</source>
       <translation>{many} caras con {across} entre caras tienen esquinas en el diámetro {corner}, pero el diámetro de la pieza es {stock}: introduzca un valor menor, o ponga las esquinas en ROUND.</translation>
     </message>
     <message>
-      <location filename="core/shapes/live_tools.py" />
+      <location filename="core/extras/shapes/forms/live_tools.py" />
       <source>{number} holes spaced {number2}° apart go around the part more than once: enter a smaller angle.</source>
       <translation>{number} agujeros separados {number2}° dan más de una vuelta a la pieza: introduzca un ángulo menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/parting.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>A chamfer of {word} removes the whole wall: enter a smaller chamfer.</source>
       <translation>Un chaflán de {word} quita toda la pared: introduzca un chaflán menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/parting.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>CHAMFER ON THE BAR</source>
       <translation>CHAFLÁN DE LA BARRA</translation>
     </message>
     <message>
-      <location filename="core/shapes/parting.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>CHAMFER ON THE PART</source>
       <translation>CHAFLÁN DE LA PIEZA</translation>
     </message>
     <message>
-      <location filename="core/shapes/parting.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>END DIAMETER</source>
       <translation>DIÁMETRO FINAL</translation>
     </message>
     <message>
-      <location filename="core/shapes/parting.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>PART LENGTH</source>
       <translation>LONGITUD DE LA PIEZA</translation>
     </message>
     <message>
-      <location filename="core/shapes/parting.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>PART OFF</source>
       <translation>TRONZADO</translation>
     </message>
     <message>
-      <location filename="core/shapes/parting.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>Parting off starts at diameter {top} and runs inward: end diameter {end} must be less.</source>
       <translation>El tronzado empieza en el diámetro {top} y va hacia dentro: el diámetro final {end} debe ser menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/parting.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>The chamfer is longer than the part: enter a smaller chamfer.</source>
       <translation>El chaflán es más largo que la pieza: introduzca un chaflán menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/parting.py" />
+      <location filename="core/extras/shapes/forms/parting.py" />
       <source>parts off to the center or to a bore, with chamfers on both sides of the cut</source>
       <translation>tronza hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
     </message>
     <message>
-      <location filename="core/shapes/program_head.py" />
+      <location filename="core/extras/shapes/forms/program_head.py" />
       <source>BAR DIAMETER</source>
       <translation>DIÁMETRO DE LA BARRA</translation>
     </message>
     <message>
-      <location filename="core/shapes/program_head.py" />
+      <location filename="core/extras/shapes/forms/program_head.py" />
       <source>TOOL CHANGE AT Z</source>
       <translation>CAMBIO DE HERRAMIENTA EN Z</translation>
     </message>
     <message>
-      <location filename="core/shapes/program_head.py" />
+      <location filename="core/extras/shapes/forms/program_head.py" />
       <source>the start of the program: units, diameter programming, rapid rates, material</source>
       <translation>el inicio del programa: unidades, programación en diámetros, avances rápidos, material</translation>
     </message>
@@ -30729,62 +30729,62 @@
       <translation>avance por minuto equivalente: G94 F{number}</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>A pitch of {pitch} is more than the largest feed, {maximum}: cut the thread with G33.</source>
       <translation>Un paso de {pitch} es más que el avance máximo, {maximum}: corte la rosca con G33.</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>A rigid tap turns with the C axis, which reaches {maximum} rpm: enter {maximum2} or less.</source>
       <translation>Un macho rígido gira con el eje C, que alcanza {maximum} rpm: introduzca {maximum2} o menos.</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: enter a lower speed.</source>
       <translation>Con S{number} el eje necesita {speed} in/min, pero el límite del eje es 300 in/min: introduzca una velocidad menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>DWELL DURING REVERSAL</source>
       <translation>ESPERA DURANTE LA INVERSIÓN</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>STOP DISTANCE BEFORE DEPTH</source>
       <translation>DISTANCIA DE PARO ANTES DEL FONDO</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>The spindle of this machine cannot be positioned and turned in sync with Z: use a floating tap holder.</source>
       <translation>El husillo de esta máquina no se puede posicionar y girar en sincronía con Z: use un portamachos con compensación.</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>The tap would stop {number} short of depth {number2}, so nothing is cut.</source>
       <translation>El macho pararía {number} antes de la profundidad {number2}, así que no se corta nada.</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>The tool data of {name} specifies a pitch of {pitch}, but this thread has a pitch of {needed}: use another tap.</source>
       <translation>Los datos de herramienta de {name} indican un paso de {pitch}, pero esta rosca tiene un paso de {needed}: use otro macho.</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>hole diameter before tapping: {crest}; limits {minimum} to {maximum}</source>
       <translation>diámetro del agujero antes de roscar: {crest}; límites {minimum} a {maximum}</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>tap drill: {series}</source>
       <translation>broca para el macho: {series}</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>tapping on the spindle centerline: feed in, reverse the spindle, feed out at the pitch</source>
       <translation>roscado con macho en el centro del husillo: entra, invierte el husillo, sale al paso</translation>
     </message>
     <message>
-      <location filename="core/shapes/tapping.py" />
+      <location filename="core/extras/shapes/threads/tapping.py" />
       <source>{series} threads cannot be tapped with this shape: cut the thread with G33.</source>
       <translation>Las roscas {series} no se pueden roscar con macho en esta forma: corte la rosca con G33.</translation>
     </message>
@@ -30834,262 +30834,262 @@
       <translation>unidades, programación en diámetros, avances rápidos, refrigerante</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>A lead of {lead} is more than the maximum that the control can cut, {coarse}.</source>
       <translation>Un avance de rosca de {lead} es más que el máximo que puede cortar el control, {coarse}.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>A relief width of {relief} is less than {lead}, which is 1.5 times the lead.</source>
       <translation>Un ancho de salida de {relief} es menos que {lead}, que es 1.5 veces el avance de rosca.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>An external thread is cut inward, so the diameter at the last pass, {root}, must be smaller than the diameter before threading, {crest}.</source>
       <translation>Una rosca exterior se corta hacia dentro, así que el diámetro en la última pasada, {root}, debe ser menor que el diámetro antes de roscar, {crest}.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>An infeed angle of {angle}° is more than the flank angle of {flank}°, so the first passes would cut into the flank. Enter {limit} or less.</source>
       <translation>Un ángulo de penetración de {angle}° es más que el del flanco, {flank}°, así que las primeras pasadas cortarían el flanco. Introduzca {limit} o menos.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>An internal thread is cut outward, so the diameter at the last pass, {root}, must be larger than the diameter before threading, {crest}.</source>
       <translation>Una rosca interior se corta hacia fuera, así que el diámetro en la última pasada, {root}, debe ser mayor que el diámetro antes de roscar, {crest}.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: enter S{slow} or less.</source>
       <translation>Con S{number} el eje necesita {speed} in/min, pero el límite del eje es 300 in/min: introduzca S{slow} o menos.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>CLASS {tolerance} is not valid: choose one of {allowed}.</source>
       <translation>La CLASE {tolerance} no es válida: elija una de {allowed}.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>DIAMETER AT LAST PASS</source>
       <translation>DIÁMETRO DE LA ÚLTIMA PASADA</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>DIAMETER BEFORE THREADING</source>
       <translation>DIÁMETRO ANTES DE ROSCAR</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>INFEED ANGLE</source>
       <translation>ÁNGULO DE PENETRACIÓN</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>PULL OUT WHILE FEEDING</source>
       <translation>SALIR SIN PARAR</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>RELIEF WIDTH</source>
       <translation>ANCHO DE LA SALIDA</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>TAPER ON THE DIAMETER</source>
       <translation>CONICIDAD EN DIÁMETRO</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>The bar of {name} does not fit into a bore of {number}.</source>
       <translation>La barra de {name} no cabe en un taladro de {number}.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>The thread is {filled} deep, but at a pitch of {pitch} its flanks meet at a depth of {sharp}. Check both diameters.</source>
       <translation>La rosca tiene {filled} de hondo, pero con un paso de {pitch} sus flancos se juntan a {sharp} de hondo. Revise los dos diámetros.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>Thread relief missing: the tool cuts a ring where it stops. Enter the relief width, or set pull-out to YES.</source>
       <translation>Falta la salida de rosca: la herramienta corta un anillo donde para. Introduzca su ancho, o ponga SÍ en salir sin parar.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>Thread relief missing: the tool cuts a ring where it stops. Enter the relief width.</source>
       <translation>Falta la salida de rosca: la herramienta corta un anillo donde para. Introduzca su ancho.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>a thread defined by series, size and class (UNC, UNF, M, NPT, BSP, ACME) or by custom dimensions</source>
       <translation>una rosca definida por serie, medida y clase (UNC, UNF, M, NPT, BSP, ACME) o por medidas propias</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>major diameter {minimum} to {maximum}, pitch diameter {low} to {high}</source>
       <translation>diámetro exterior {minimum} a {maximum}, diámetro de flancos {low} a {high}</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>minor diameter {minimum} to {maximum}, pitch diameter {low} to {high}</source>
       <translation>diámetro interior {minimum} a {maximum}, diámetro de flancos {low} a {high}</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>pitch diameter {low} at the start of the thread</source>
       <translation>diámetro de flancos {low} al inicio de la rosca</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>taper before threading: diameter {number} at the start, {distance} at the end</source>
       <translation>cono previo al roscado: diámetro {number} al inicio, {distance} al final</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>{name} cuts a thread angle of {point}°, but this thread needs {angle}°: use another insert.</source>
       <translation>{name} corta un ángulo de rosca de {point}°, pero esta rosca necesita {angle}°: use otra plaquita.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>{name} is made for a pitch of {pitch}, not {needed}: use another insert.</source>
       <translation>{name} está hecha para un paso de {pitch}, no {needed}: use otra plaquita.</translation>
     </message>
     <message>
-      <location filename="core/shapes/threading.py" />
+      <location filename="core/extras/shapes/threads/threading.py" />
       <source>{series} does not include size {size}: choose a size with the arrows.</source>
       <translation>{series} no incluye la medida {size}: elija una medida con las flechas.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>A finishing allowance of {leave} is more than a pass of {rough}: enter a smaller allowance.</source>
       <translation>Un sobrante para acabado de {leave} es más que una pasada de {rough}: introduzca un sobrante menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>A pass would be {depth} deep, but the insert of T{number} allows a depth of only {maximum}: enter a smaller depth of cut.</source>
       <translation>Una pasada tendría {depth} de profundidad, pero la plaquita de T{number} solo admite una profundidad de {maximum}: introduzca una profundidad de pasada menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>An edge size of {edge} is more than half of diameter {across}: enter {across2} or less.</source>
       <translation>Un canto de {edge} es más que la mitad del diámetro {across}: introduzca {across2} o menos.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>CHAMFER AT BORE MOUTH</source>
       <translation>CHAFLÁN EN LA BOCA</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>CONTOUR NUMBER</source>
       <translation>NÚMERO DEL CONTORNO</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>DISTANCE FROM Z0 TO FACE</source>
       <translation>DISTANCIA DE Z0 A LA CARA</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>Diameter {number} is more than the stock diameter of {number2}.</source>
       <translation>El diámetro {number} es más que el diámetro del material de {number2}.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>EDGE TURN</source>
       <translation>MATAR CANTOS</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>FACE AT Z</source>
       <translation>CARA EN Z</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>Facing starts at diameter {number} and runs inward: end diameter {number2} must be less.</source>
       <translation>El refrentado empieza en el diámetro {number} y va hacia dentro: el diámetro final {number2} debe ser menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>G41 does not work in a subroutine, and a bar feed loop runs this shape in a subroutine: enter 0.</source>
       <translation>G41 no funciona en una subrutina, y un bucle de avance de barra ejecuta esta forma en una subrutina: introduzca 0.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>Point {position} is outside the stock diameter of {number}: enter a smaller X.</source>
       <translation>El punto {position} está fuera del diámetro del material de {number}: introduzca una X menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>Point {position} runs back toward the face, but roughing can move only toward the chuck along Z.</source>
       <translation>El punto {position} vuelve hacia la cara, pero el desbaste solo puede ir por Z hacia el plato.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>ROUGHING FEED</source>
       <translation>AVANCE DE DESBASTE</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>START DIAMETER</source>
       <translation>DIÁMETRO INICIAL</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>TAPER TURN</source>
       <translation>CONO</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>The boring bar of T{number} has a diameter of {diameter}, but the hole diameter is {hole}, so the bar does not fit; drill a larger hole, or use a smaller boring bar.</source>
       <translation>La barra de mandrinar de T{number} tiene un diámetro de {diameter}, pero el diámetro del agujero es {hole}, así que la barra no entra; taladre un agujero mayor o use una barra de mandrinar menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>The chamfer is at least as long as the bore depth of {depth}: enter a smaller chamfer.</source>
       <translation>El chaflán es al menos tan largo como la profundidad del taladro de {depth}: introduzca un chaflán menor.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>The contour cuts deeper directly after its first point, and roughing cannot return past that point: add a point before the first point, at the same Z and at the lowest X.</source>
       <translation>El contorno corta más hondo justo después de su primer punto, y el desbaste no puede volver más allá de ese punto: añada un punto antes del primer punto, en la misma Z y en la X más baja.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>The hole diameter of {hole} is not less than the bore diameter of {across}, so nothing is cut.</source>
       <translation>El diámetro del agujero, {hole}, no es menor que el diámetro del mandrinado, {across}, así que no se corta nada.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>The reach of T{number} is only {stick_out}, but the bore is {depth} deep: use a longer boring bar.</source>
       <translation>El alcance de T{number} es de solo {stick_out}, pero el taladro tiene {depth} de hondo: use una barra de mandrinar más larga.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>The taper gets smaller toward the chuck, so a turning tool would run into the stock.</source>
       <translation>El cono se estrecha hacia el plato, así que una herramienta de torneado chocaría con el material.</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>a chamfer or a radius on an edge, on the outside or in a bore</source>
       <translation>un chaflán o un radio en un canto, por fuera o en un taladro</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>a drilled hole bored to a diameter, with a chamfer at the mouth of the hole</source>
       <translation>un agujero taladrado que se mandrina a un diámetro, con chaflán en la boca del agujero</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>a profile of points, corners and arcs, with or without roughing</source>
       <translation>un perfil de puntos, esquinas y arcos, con o sin desbaste</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>a taper defined by two diameters, or by one diameter and an angle</source>
       <translation>un cono definido por dos diámetros, o por un diámetro y un ángulo</translation>
     </message>
     <message>
-      <location filename="core/shapes/turning.py" />
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>the end of the part faced square, in one or more passes</source>
       <translation>el extremo de la pieza refrentado a escuadra, en una o varias pasadas</translation>
     </message>

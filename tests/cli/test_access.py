@@ -19,6 +19,7 @@ from app.cli.main import build_parser, main
 from core.access import pins
 from core.message import CodedError
 from core.store.store import Store
+from tests.extras.modules import of_extras
 from tests.texts import text as wording
 
 Captured = pytest.CaptureFixture[str]
@@ -155,10 +156,10 @@ CHANGES: dict[str, tuple[str, ...]] = {
     "serial receive": ("--port", "/dev/null"),
     "prove": ("{program}", "--stock", "bar:1.0", "--keep-stock"),
     "run": ("{program}", "--headless", "--stock", "bar:1.0", "--keep-stock"),
-    "profile": ("{file}", "--out", "{folder}/new.nc"),
-    "shapes": ("{file}", "--out", "{folder}/new.nc"),
 }  # fmt: skip
 """Each command that changes something, with what it needs to come to the question who does it."""
+for _each in of_extras("options"):
+    CHANGES |= getattr(_each, "CHANGES", {})
 
 READS = {
     "expand", "trace", "alarms", "parts", "shift", "scope", "offsets show", "offsets history",
@@ -264,10 +265,10 @@ def test_a_store_that_cannot_be_read_lets_nobody_restore(
 
 
 def test_nothing_of_a_level_is_done_where_the_people_cannot_be_read(
-    say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
+    say: Say, people: None, home: Path, refusals: list[CodedError]
 ) -> None:
     (home / "turndesk.db").write_bytes(b"no store any more")
-    words = ("shapes", tmp_path / "b.toml", "--out", tmp_path / "new.nc")
+    words = ("serial", "receive", "--port", "/dev/null")
     assert say(*words, typed="RESET", terminal=True)[0] == 2
     assert codes(refusals) == ["not-a-database"]
 

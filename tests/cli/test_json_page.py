@@ -6,13 +6,14 @@ import csv
 from datetime import UTC, datetime, timedelta
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import pytest
 
 import resources
 from app.cli import json_keys
 from app.cli.json_page import document, main
+from app.compose.extra import NAMES, extras
 from app.shopfloor import json_keys as floor_keys
 from core.access.access_table import Level
 from core.access.pins import hashed
@@ -28,14 +29,13 @@ from core.store.table_keys import RUNS_FILE
 from core.store.table_keys import TABLES as PUBLIC
 from tests.cli.conftest import Turndesk
 from tests.cli.json_output import declared_alone, whole
-from tests.cli.test_profile import SHEET
-from tests.drawings.hand import chain, dxf
 
 PAGE = Path(__file__).parents[2] / "docs" / "json.md"
 PROGRAMS = Path(resources.__file__).parent / "programs"
 HEAD = "G90G94F300\nM03S600\nT1\n"
 
 
+@pytest.mark.skipif(len(extras()) < len(NAMES), reason="the page describes all optional features")
 def test_the_page_is_up_to_date() -> None:
     assert PAGE.read_text("utf-8") == document(), "python -m app.cli.json_page docs/json.md"
 
@@ -281,36 +281,7 @@ def test_exported_files_have_the_declared_columns(turndesk: Turndesk, filled: Pa
     assert {table.file: table.name for table in PUBLIC if table.file} == TABLES
 
 
-# --- Shared programs, drawings, shapes, scope.
-
-
-def test_shapes(turndesk: Turndesk, tmp_path: Path) -> None:
-    path = tmp_path / "form.toml"
-    path.write_text('[[step]]\nkind = "head"\n[[step]]\nkind = "face"\nfrom = .5\nto = 0\n')
-    declared_alone([whole(turndesk("shapes", path, "--json"))], json_keys.SHAPES.keys)
-    declared_alone([whole(turndesk("shapes", "--list", "--json"))], json_keys.SHAPES_LIST.keys)
-
-
-@pytest.mark.long
-def test_profile(turndesk: Turndesk, tmp_path: Path) -> None:
-    sheet = tmp_path / "tools.toml"
-    sheet.write_text(SHEET)
-
-    def draw(space: Any) -> None:
-        chain((0, 0), (0, 4), (-5, 4), (-5, 3), (-8, 3), (-8, 4), (-10, 4), (-10, 6), (-20, 6), (-20, 0))(
-            space
-        )
-        space.add_text("X")
-
-    path = dxf(tmp_path / "part.dxf", draw)
-    words = ("profile", path, "--tools", sheet, "--json")
-    values = [
-        whole(turndesk(*words)),
-        whole(turndesk(*words, "--groove-tool", 1)),
-        whole(turndesk(*words, "--out", tmp_path / "part.mpf")),
-    ]
-    declared_alone(values, json_keys.PROFILE.keys)
-    declared_alone([whole(turndesk("profile", path, "--list", "--json"))], json_keys.PROFILE_LIST.keys)
+# --- Scope.
 
 
 def test_scope(turndesk: Turndesk, offsets: Path, home: Path, tmp_path: Path) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator
-from importlib import import_module
 from io import BytesIO, TextIOWrapper
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from app.cli.command_parser import BEFORE
 from app.cli.main import build_parser, main
 from core.message import CodedError, Message
 from tests.cli.conftest import Turndesk
+from tests.extras.modules import of_extras
 from tests.texts import text as wording
 
 PART = (
@@ -111,12 +111,6 @@ COVERED = {
     **{(f"serial {way}", option): "tests/drivers/transfer" for way in ("send", "receive")
        for option in ("--machine", "--port", "--baud", "--bits", "--parity", "--stop", "--flow", "--wrap",
                       "--dc-codes")},
-    **{("profile", option): "tests/cli/test_profile.py"
-       for option in ("--list", "--unit", "--layer", "--axis", "--contour", "--front", "--zero", "--shift",
-                      "--side", "--gap", "--metric", "--material", "--bar", "--face", "--hole", "--rough",
-                      "--tool", "--groove-tool", "--comp", "--tools", "--machine", "--out", "--json")},
-    **{("shapes", option): "tests/cli/test_shapes.py"
-       for option in ("--list", "--out", "--tools", "--machine", "--json")},
     ("setup save", "--machine"): "tests/cli/test_setup.py",
     ("setup load", "--check"): "tests/cli/test_setup.py",
     ("setup desktop", "--autostart"): "tests/cli/test_setup.py",
@@ -124,8 +118,7 @@ COVERED = {
     **{(command, "--as"): "tests/cli/test_access.py"
        for command in ("prove", "run", "offsets set", "offsets clear", "offsets undo", "store restore",
                        "store import", "setup load", "machine accept", "jobs add", "jobs move", "jobs remove",
-                       "jobs clear", "access add", "access pin", "access remove", "serial receive",
-                       "profile", "shapes")},
+                       "jobs clear", "access add", "access pin", "access remove", "serial receive")},
     **{("access " + action, "--json"): "tests/cli/test_access.py" for action in ("list", "table")},
     ("access add", "--level"): "tests/cli/test_access.py",
     ("serial receive", "--out"): "tests/drivers/transfer",
@@ -133,8 +126,8 @@ COVERED = {
     ("serial send", "--wait"): "tests/drivers/transfer",
     ("serial send", "--leader"): "tests/drivers/transfer",
 }  # fmt: skip
-for each in sorted((Path(__file__).parents[1] / "extras").glob("*/options.py")):
-    COVERED |= import_module(f"tests.extras.{each.parent.name}.options").COVERED
+for each in of_extras("options"):
+    COVERED |= each.COVERED
 
 
 def test_every_option_of_every_command_is_in_the_table() -> None:

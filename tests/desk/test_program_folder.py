@@ -198,3 +198,18 @@ def test_a_look_that_hangs_is_shown_while_it_hangs(tmp_path: Path, monkeypatch: 
     assert seen[0] == ""
     assert begins(seen[1], "programs.unreadable", name="part.nc")
     assert file.differs == ""
+
+
+@pytest.mark.parametrize(("name", "known"), [("a.DXF", True), ("a.dxf.nc", False), ("dxf", False)])
+def test_a_drawing_is_known_by_the_endings_that_a_feature_names(name: str, known: bool) -> None:
+    folders = ProgramFolders((), (".dxf",))
+    assert folders.is_drawing(name) is known
+    assert not ProgramFolders(()).is_drawing(name)
+
+
+def test_drawings_are_listed_beside_the_programs_only_where_a_feature_reads_them(tmp_path: Path) -> None:
+    for name in ("a.nc", "b.dxf", "c.pdf"):
+        (tmp_path / name).write_text("")
+    assert [each.name for each in ProgramFolders((tmp_path,), (".dxf",)).drawings()] == ["b.dxf"]
+    assert ProgramFolders((tmp_path,)).drawings() == ()
+    assert [each.name for each in ProgramFolders((tmp_path,), (".dxf",)).entries()] == ["a.nc"]

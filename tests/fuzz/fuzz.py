@@ -19,13 +19,14 @@ from pathlib import Path
 from typing import Any
 
 from tests.benchmarks.footprint import RESULTS, keep_result
+from tests.extras.modules import of_extras
 from tests.fuzz.fuzz_target import faults_in
 
 NAMES = (
     "omniturn", "klartext", "sinumerik", "machine file", "offsets file", "tools file", "inputs file",
     "profile of a blank", "record", "ring", "setup archive", "EDS file", "serial transfer",
-    "controller's lines", "SHDR lines", "grblHAL's wire", "CAN frames", "store file", "drawing.dxf",
-    "drawing.svg",
+    "controller's lines", "SHDR lines", "grblHAL's wire", "CAN frames", "store file",
+    *(name for each in of_extras("fuzz_targets") for name in each.NAMES),
 )  # fmt: skip
 _EDGES = re.compile(r"cov: (\d+)")
 _ENDS = 25.0  # times its time, by the clock, after which a target hangs

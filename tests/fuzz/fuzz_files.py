@@ -6,15 +6,11 @@ import io
 import json
 import random
 import struct
-import tempfile
 import zipfile
 from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import redirect_stdout
-from functools import cache
 from hashlib import sha256
-from importlib import import_module
-from itertools import islice
 from pathlib import Path
 
 import canopen
@@ -30,10 +26,6 @@ from app.compose.setup_archive import FORMAT, MANIFEST
 from app.compose.setup_file import check_setup
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_rows, read_tool_shapes
-from core.drawings.drawing import DrawingError
-from core.drawings.drawing_file import read_drawing
-from core.drawings.drawing_view import Side, View, axis_named, contours, profile
-from core.drawings.turning_contour import Reach, turning_contour
 from core.interpreter.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Dialect, SourceError, source_of
 from core.machine.machine_file import text_of
@@ -46,9 +38,10 @@ from core.records.ring_file import RingFile
 from core.table_schema import MachineFileError
 from drivers.canopen.canopen_objects import dictionary, drive_objects
 from drivers.canopen.drive_profiles import PROFILES
+from tests.extras.modules import of_extras
 from tests.fuzz.damage import EDITS, in_archive
 from tests.fuzz.fuzz_stores import STORE, good_store
-from tests.fuzz.fuzz_target import Target
+from tests.fuzz.fuzz_target import Target, scratch
 from tests.interpreter.mutation import mutated
 from tests.records.test_record_file import record
 
@@ -118,115 +111,6 @@ def _other_value(data: bytes, chance: random.Random) -> bytes:
     return b"\n".join(lines)
 
 
-# --- drawings ---------------------------------------------------------------------------------------------
-
-
-@cache
-def _scratch() -> Path:
-    fast = Path("/dev/shm")
-    return Path(tempfile.mkdtemp(prefix="fuzz-", dir=fast if fast.is_dir() else None))
-
-
-def _drawing(ending: str) -> Target:
-    import_module(
-        f"core.drawings.{ending[1:]}_reader"
-    )  # now, while what is loaded is made to tell its branches
-
-    def run(data: bytes) -> Iterable[str]:
-        path = _scratch() / f"fuzz{ending}"
-        path.write_bytes(data)
-        drawing = read_drawing(path)
-        view = View(axis_named(drawing, ""), drawing.unit or 1.0)
-        for net in islice(contours(drawing, view), 4):
-            turning_contour(profile(drawing, view, net, Side.OUTSIDE), Reach())
-        return ()
-
-    def pairs(data: bytes, chance: random.Random) -> bytes:
-        """A pair of lines, a code and its value, twice, gone or with another value."""
-        lines = data.split(b"\n")
-        at = chance.randrange(max(1, len(lines) // 2)) * 2
-        what = chance.randrange(3)
-        if what == 0:
-            del lines[at : at + 2]
-        elif what == 1:
-            lines[at:at] = lines[at : at + 2 * chance.randrange(1, 8)]
-        elif at + 1 < len(lines):
-            lines[at + 1] = chance.choice((b"0", b"-1", b"1e308", b"nan", b"x", b"", b"9" * 30))
-        return b"\n".join(lines)
-
-    return Target(f"drawing{ending}", lambda: _drawings(ending), run, (DrawingError,), pairs)
-
-
-_PLAIN_DXF = b"""0
-SECTION
-2
-ENTITIES
-0
-LINE
-8
-PART
-10
-0
-20
-0
-11
-0
-21
-5
-0
-ARC
-8
-PART
-10
--5
-20
-5
-40
-5
-50
-0
-51
-90
-0
-LINE
-8
-PART
-10
--5
-20
-10
-11
--20
-21
-10
-0
-ENDSEC
-0
-EOF
-"""
-
-
-def _drawings(ending: str) -> Iterator[bytes]:
-    if ending == ".svg":
-        yield (
-            b'<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="20mm" viewBox="0 0 40 20">'
-            b'<path d="M0 0 L0 5 A5 5 0 0 0 5 10 h10 l5 4 v6 H40 V0"/>'
-            b'<rect x="1" y="1" width="4" height="2"/>'
-            b'<g transform="rotate(90) scale(2)"><circle cx="4" cy="4" r="2"/></g></svg>'
-        )
-        return
-    yield _PLAIN_DXF
-    from tests.drawings.hand import chain, dxf  # noqa: PLC0415  it needs the library of drawings
-
-    import_module("ezdxf").options.write_fixed_meta_data_for_testing = True  # the same bytes at every run
-
-    for points in (
-        ((0, 0), (0, 5), (-10, 5, 0.4), (-10, 8), (-30, 8), (-30, 0)),
-        ((0, 0, 0), (0, 5, 0), (-10, 5, 0), (-12, 4, -0.2), (-20, 9, 0)),
-    ):
-        yield dxf(_scratch() / "seed.dxf", chain(*points)).read_bytes()
-
-
 # --- what a person writes as TOML, and the points of a blank -----------------------------------------------
 
 _OFFSETS = b"""[tool.1]
@@ -262,7 +146,7 @@ def _toml(read: Callable[[Path], object]) -> Callable[[bytes], Iterable[str]]:
 
 
 def _file(name: str, data: bytes) -> Path:
-    path = _scratch() / name
+    path = scratch() / name
     path.write_bytes(data)
     return path
 
@@ -294,13 +178,13 @@ def _no_json(word: str) -> object:
 
 
 def _records() -> Iterator[bytes]:
-    path = _scratch() / "good.scope"
+    path = scratch() / "good.scope"
     save_record(record(), path)
     yield path.read_bytes()
 
 
 def _rings() -> Iterator[bytes]:
-    path = _scratch() / "good.ring"
+    path = scratch() / "good.ring"
     recorded = Recorded({"X": False, "C": True}, ("estop",), ("coolant",), 100.0, 1e6, "LATHE", lasts=0.5)
     ring = Ring.of(recorded)
     file = RingFile(path, ring)
@@ -338,7 +222,7 @@ def _setup(data: bytes) -> Iterable[str]:
 
 
 def _setups() -> Iterator[bytes]:
-    path = _scratch() / "good.setup"
+    path = scratch() / "good.setup"
     members = {"store.db": good_store(), "programs/part.nc": b"G90\nM30\n", "machine/mine.toml": _OWN_MACHINE}
     with zipfile.ZipFile(path, "w") as archive:
         for name, content in {**members, MANIFEST: _manifest(members)}.items():
@@ -377,12 +261,12 @@ def _dictionary(data: bytes) -> Iterable[str]:
 
 
 def _dictionaries() -> Iterator[bytes]:
-    path = _scratch() / "good.eds"
+    path = scratch() / "good.eds"
     canopen.export_od(drive_objects(PROFILES["epos2"]), str(path), "eds")
     yield path.read_bytes()[:6000]
 
 
-FILES = (
+FILES: tuple[Target, ...] = (
     *(_language(each) for each in Dialect),
     Target("machine file", _machine_files, _machine, (MachineFileError,), _other_value),
     Target("offsets file", lambda: (_OFFSETS,), _toml(read_rows), (CommandError,), _other_value),
@@ -394,6 +278,5 @@ FILES = (
     Target("setup archive", _setups, _setup, (CommandError,), _sealed),
     Target("EDS file", _dictionaries, _dictionary, (DriverError,)),
     STORE,
-    _drawing(".dxf"),
-    _drawing(".svg"),
+    *(target for each in of_extras("fuzz_targets") for target in each.TARGETS),
 )

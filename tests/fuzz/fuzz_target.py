@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import random
+import tempfile
 import time
 import traceback
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 
 TOO_LONG = 2.0  # s of processor time for one input
@@ -92,3 +94,10 @@ def faults_in(kept: Path) -> list[Fault]:
     if not kept.exists():
         return []
     return [Fault(**json.loads(line)) for line in kept.read_text(encoding="utf-8").splitlines()]
+
+
+@cache
+def scratch() -> Path:
+    """Return a folder for the files of this process, in memory where that is possible."""
+    fast = Path("/dev/shm")
+    return Path(tempfile.mkdtemp(prefix="fuzz-", dir=fast if fast.is_dir() else None))

@@ -16,8 +16,6 @@ from app.compose.setup_file import check_setup
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_rows, read_tool_shapes
 from app.programs.whole_file import FileError, present
-from core.drawings.drawing import DrawingError
-from core.drawings.drawing_file import read_drawing
 from core.input_file import NotAFileError, TooLargeError, failures_as, input_bytes, open_input
 from core.language.source import SourceError, load_source
 from core.machine.machine_file import text_of
@@ -30,6 +28,7 @@ from core.store.store_errors import StoreError
 from core.table_schema import MachineFileError
 from drivers.canopen.canopen_objects import dictionary
 from tests.coded import raises_code
+from tests.extras.modules import of_extras
 
 _HUGE = 3_000_000_000
 
@@ -57,8 +56,6 @@ DOORS = (
     Door("offsets.toml", read_rows, CommandError, "unreadable", "too-large"),
     Door("tools.toml", read_tool_shapes, CommandError, "unreadable", "too-large"),
     Door("inputs.toml", read_inputs, CommandError, "unreadable", "too-large"),
-    Door("part.dxf", read_drawing, DrawingError, "unreadable", "too-large"),
-    Door("part.svg", read_drawing, DrawingError, "unreadable", "too-large"),
     Door("alarm.scope", open_record, RecordError, "unusable", "too-large"),
     Door("now.ring", open_record, RecordError, "unusable", "too-large"),
     Door("lathe.setup", check_setup, CommandError, "unreadable", "too-large"),
@@ -70,6 +67,7 @@ DOORS = (
         "driver",
         "driver",
     ),
+    *(Door(*door) for each in of_extras("doors") for door in each.DOORS),
 )
 each_door = pytest.mark.parametrize("door", DOORS, ids=lambda door: door.name)
 

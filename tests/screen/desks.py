@@ -7,7 +7,7 @@ from pathlib import Path
 
 from app.compose.desk_functions import furnish
 from app.compose.desk_quality import give_quality
-from app.compose.extra import extras
+from app.compose.extra import drawing_endings, extras
 from app.compose.journal import Journal
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
@@ -72,7 +72,7 @@ def desk_on(
         post=machine.post,
         snapshot=machine.snapshot,
         session=ProgramLoader(work, machine.post),
-        program_folders=ProgramFolders(folders or (SAMPLES,)),
+        program_folders=ProgramFolders(folders or (SAMPLES,), drawing_endings()),
         station=machine,
         two_hand=two_hand,
         lathe=lathe,

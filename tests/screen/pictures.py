@@ -12,7 +12,6 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -22,6 +21,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
+from app.compose.extra import insert_after
 from app.compose.journal import Journal
 from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import read_offsets
@@ -43,7 +43,7 @@ from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
 from core.store.store_rows import Kind
 from drivers.waiting import StepClock
-from tests.screen.picture_shop import put_drawing
+from tests.extras.modules import of_extras
 
 SIZES = ((1024, 600), (1920, 1080), (3840, 2160))
 THEMES = ("dark", "light")
@@ -237,10 +237,8 @@ def _pictures(out: Path, looks: Looks) -> Iterator[Path]:
     stage = Stage(journal)
     stage.make_ready()
     with TemporaryDirectory(prefix="shop-") as folder:
-        put_drawing(Path(os.environ["TURNDESK_HOME"]) / "programs")
-        for each in sorted((Path(__file__).parents[1] / "extras").glob("*/pictures.py")):
-            module = import_module(f"tests.extras.{each.parent.name}.pictures")
-            module.prepare(stage.desk, journal, Path(folder))
+        for each in of_extras("pictures"):
+            each.prepare(stage.desk, journal, Path(folder))
         yield from taken(stage.desk, out, False, looks, heard=stage.hears)
     stage.press_start()
     stage.tick(lambda: stage.desk.snapshot().line >= AT_LINE)
@@ -305,15 +303,12 @@ class Scene:
 
 
 # One line for each picture.
-SCENES = (
+_OWN_SCENES = (
     Scene("menu", "F1"),
     Scene("file", "F2"),
     Scene("programs", "F1 F6"),
     Scene("export", "F1 F6 F9"),
     Scene("editor", "F3"),
-    Scene("shapes", 'F3 Shapes R "1/2 Enter Enter Enter ".5'),
-    Scene("calculators", 'F3 Calculators T ".5 Enter "1 Enter "1'),
-    Scene("drawing", "F3 Shapes X"),
     Scene("mdi", 'F1 F4 "G90G94F10X.9Z.1'),
     Scene("jog", "F1 F5"),
     Scene("by-hand", 'F1 F5 T "1 Enter C X B 1 "800 Enter'),
@@ -328,7 +323,6 @@ SCENES = (
     Scene("life", "F1 W 4"),
     Scene("trends", "F1 W 5 Enter Down Down"),
     Scene("jobs", "Jobs Down"),
-    Scene("sharing", "F1 X"),
     Scene("speed", 'F10 1 Enter "1500'),
     Scene("parts", "F10 2 Enter"),
     Scene("outputs", "F10 3 Enter Down"),
@@ -343,6 +337,11 @@ SCENES = (
     Scene("levels", f'F10 {"Down " * 15}Enter Down Enter "12', levels=True),
     Scene("mill-editor", "F3", mill=True, line=18),
     Scene("mill", running=True, mill=True),
+)
+SCENES = insert_after(
+    _OWN_SCENES,
+    lambda scene: scene.name,
+    [(Scene(name, keys), after) for each in of_extras("pictures") for name, keys, after in each.SCENES],
 )
 
 
@@ -400,13 +399,10 @@ def press(window: MainWindow, keys: str) -> None:
 
 
 def _to_line(window: MainWindow, line: int) -> None:
-    """And until a drawing has been read, and what was made of it proved."""
+    """And until the optional features have shown what they work out."""
     page = window.frame.page if window.frame is not None else None
-    if isinstance(page, EditorPage) and page.shapes.model.form is not None:
-        _settle(window, SETTLE)
-        page.shapes.model.planning.settle(LOADING)
-        _settle(window, SETTLE)
-        page.shapes.model.trying.settle(LOADING)
+    for each in of_extras("pictures"):
+        each.settle(page, partial(_settle, window, SETTLE))
     if line and isinstance(page, EditorPage):
         _settle(window, SETTLE)
         page.go_to(line)

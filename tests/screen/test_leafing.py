@@ -32,7 +32,6 @@ from app.screen.panel import Panel
 from app.screen.sheet_panel import SheetPanel
 from app.screen.theme import DARK
 from app.screen.window_layout import FINGER
-from app.shapes.shapes_view import RowsPanel, _Line
 from app.special.special_view import ItemList
 from core.language.diagnostics import Diagnostic, Severity
 from core.store.store_rows import FIELDS
@@ -112,14 +111,6 @@ def test_a_finger_comes_to_every_row_of_a_table(above: QWidget) -> None:
     touched: list[int] = []
     panel = sheet_panel(above, sheet_of(MANY), touched.append)
     assert panel.rows < MANY
-    assert chosen_rows(panel, lambda: touched[-1], leaf_keys(panel)) == set(range(MANY))
-
-
-def test_a_finger_comes_to_every_shape(above: QWidget) -> None:
-    touched: list[int] = []
-    panel = RowsPanel(Look(DARK, SMALL), lambda row, _column: touched.append(row), above)
-    panel.resize(260, 300)
-    panel.shown = tuple(_Line(f"row {n}") for n in range(MANY))
     assert chosen_rows(panel, lambda: touched[-1], leaf_keys(panel)) == set(range(MANY))
 
 

@@ -196,7 +196,6 @@ def test_the_editor_shows_the_plane_of_the_cursors_line(mill: Mill, qtbot: QtBot
     page = mill.window.frame.page
     assert isinstance(page, EditorPage)
     qtbot.waitUntil(lambda: page.field.blockCount() > 40 and page.space.isVisible(), timeout=60_000)
-    assert not page.head.with_shapes  # they are lines of OmniTurn
     plane = line_of("PLANE POINTS")
     for _ in range(plane - page.field.line):
         mill.key(Key.Key_Down)

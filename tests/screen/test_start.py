@@ -27,11 +27,11 @@ OF_LATER = (
         "app.transfer",
         "pyqtgraph",
     ),
-    *("core.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
+    *("core.extras.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
     *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen.canopen_machine", "drivers.feeder"),
     *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.pendant.pendant_station"),
     *("drivers.mtconnect.mtconnect_adapter", "drivers.transfer"),
-    *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.shapes"),
+    *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.extras.shapes"),
     *("ezdxf", "svgelements"),
 )
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from tests.stories.operator import Operator
-from tests.stories.x11 import MODIFIERS
 
 WAYS = ("keys", "mouse", "finger")
 PANEL = (1024, 600)  # the smallest screen, where fingers have least room
@@ -38,15 +37,6 @@ class Hand:
     def _labelled(self, label: str) -> bool:
         texts = self.operator.screen.get("texts", ())
         return any(text == label and kind == "FunctionKeys" for text, _x, _y, kind in texts)
-
-    def shapes(self) -> None:
-        """From the text to the shapes; Shift is held until the key has come."""
-        if not self.by_keys:
-            self.press("SHAPES")
-            return
-        self.operator.down(MODIFIERS["shift"])
-        self.operator.key("F3")
-        self.operator.up(MODIFIERS["shift"])
 
     def types(self, text: str, on: str) -> None:
         """Where the keyboard is, or on drawn keys of this kind."""

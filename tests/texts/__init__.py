@@ -17,6 +17,7 @@ from core.message import Message
 from resources.translations.message_list import read_list
 
 FOLDER = Path(__file__).parent
+OF_EXTRAS = FOLDER.parent / "extras"  # an optional feature has the texts of its tests with them
 SPANISH = FOLDER.parents[1] / "resources" / "translations" / "turndesk_es.ts"
 HOLE = re.compile(r"\{[^{}]*\}")
 
@@ -30,7 +31,7 @@ def all_texts() -> dict[str, str]:
     """Return every template by its id."""
     return {
         f"{path.stem}.{name}": template
-        for path in sorted(FOLDER.glob("*.toml"))
+        for path in (*sorted(FOLDER.glob("*.toml")), *sorted(OF_EXTRAS.glob("*/*.toml")))
         for name, template in tomllib.loads(path.read_text(encoding="utf-8")).items()
     }
 

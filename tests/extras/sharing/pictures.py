@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from app.compose.journal import Journal
@@ -9,9 +10,11 @@ from app.compose.workshop import samples
 from app.desk.desk import Desk
 from app.extras.sharing.sharing import Sharing
 from app.extras.sharing.sharing_model import SharingModel
+from app.screen.page_base import Page
 from core.extras.sharing.shared_folder import SharedFolder
 from core.store.store import Store
 
+SCENES = (("sharing", "F1 X", "jobs"),)
 SHARED = ("bushing.nc", "grooves.nc", "knob.nc")
 
 
@@ -37,3 +40,7 @@ def prepare(desk: Desk, journal: Journal, folder: Path) -> None:
     if before is not None:
         before.close()
     desk.attach(SharingModel(desk, made))
+
+
+def settle(_page: Page | None, _wait: Callable[[], None]) -> None:
+    """Wait for nothing: the page shows at once what it knows."""

@@ -16,13 +16,19 @@ from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import NONE
 from app.desk.formats import local_time
 from app.editor.editor import Editor, Stage, enter
+from app.editor.findings_view import FindingList
 from app.editor.heading_view import editor_places
+from app.editor.live_proof import Findings
 from app.editor.text_view import TextField
 from app.screen.look import Look
 from app.screen.theme import DARK, LIGHT
+from app.screen.window_layout import FINGER
+from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
 from drivers.waiting import StepClock
 from tests.editor.shop import GOOD
+
+KEYS = 2  # places before those of the rows, where not all of them fit: the keys that leaf
 
 
 @pytest.fixture
@@ -152,3 +158,17 @@ def test_another_language_colours_anew(field: TextField) -> None:
     assert inks(field, 1) != before
     field.highlighter.speak(Dialect.OMNITURN)
     assert inks(field, 1) == before
+
+
+def test_findings_fit_a_finger_on_the_smallest_screen(qtbot: QtBot) -> None:
+    above = QWidget()
+    qtbot.addWidget(above)
+    panel = FindingList(Look(DARK, 6.4), lambda _found: None, above)
+    panel.resize(374, 106)  # as at 1024x600
+    found = [Diagnostic(line, 1, Severity.ERROR, "unknown", "not known") for line in range(1, 5)]
+    panel.show_findings(Findings(diagnostics=tuple(found)), 4)
+    panel.grab()
+    assert len(panel._places) == KEYS + 2
+    for box, *_ in panel._places:
+        assert box.height() >= FINGER
+        assert panel.area().contains(box)

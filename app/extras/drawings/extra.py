@@ -1,0 +1,43 @@
+"""Registers the programs that are made from drawings (DXF, SVG)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from app.compose.extra import Extra
+
+if TYPE_CHECKING:
+    from app.desk.desk import Desk
+    from core.json_key import Output
+    from core.machine.machine_model import Machine
+
+
+class Drawings(Extra):
+    """The form DRAWING in the list of shapes, ``turndesk profile``, and drawings in the list of programs."""
+
+    needs = ("shapes",)
+    commands = {"profile": "shapes"}
+    drawings = (".dxf", ".svg")
+
+    def extend(self, part: object, desk: Desk, machine: Machine) -> None:
+        from app.extras.drawings.drawings_desk import add_drawing
+        from app.extras.shapes.shapes_model import Shapes
+
+        if isinstance(part, Shapes):
+            add_drawing(part, desk, machine)
+
+    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+        from app.extras.drawings.profile_json_keys import OUTPUTS
+
+        return {"access table --json": OUTPUTS}
+
+    def words(self) -> Sequence[str]:
+        from app.extras.drawings.drawing_form import PROFILE
+        from app.extras.shapes.shape_words import words_of
+
+        of_drawings = ("DRAWING UNIT: INCH", "DRAWING UNIT: AS DRAWN", "LAYER: ALL")  # not in the table
+        return (*words_of([PROFILE]), *of_drawings)
+
+
+EXTRA = Drawings()

@@ -1,0 +1,400 @@
+"""``turndesk profile PART.dxf``: the contour of a drawing, and the program that turns it."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.program_options import out_file
+from app.cli.who_changes import add_as_option
+from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, as_command_error
+from app.extras.shapes.shapes_command import may_write, write_made
+from core.extras.drawings.unit_check import UNITS
+from core.extras.shapes.cutting_data import MATERIALS
+from core.language.source import Dialect, dialect_of
+from core.message import Message
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from app.cli.figures import Json
+    from app.cli.program_options import SubParsers
+    from app.extras.drawings.profile_trial import Trial
+    from core.extras.drawings.contour_walk import Net
+    from core.extras.drawings.drawing import Drawing
+    from core.extras.drawings.drawing_view import Profile, View
+    from core.extras.drawings.profile_program import ProfileProgram
+    from core.extras.shapes.shape_fields import Value
+    from core.machine.machine_model import Machine
+    from core.part.tool_shape import ToolShape
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser("profile", help="make a turning program from a drawing (DXF, SVG)")
+    parser.add_argument("file", metavar="DRAWING")
+    parser.add_argument(
+        "--list", action="store_true", help="list the layers, axes and contours of the drawing"
+    )
+    _add_drawing_options(parser)
+    _add_part_options(parser)
+    _add_tool_options(parser)
+    parser.add_argument(
+        "--out",
+        type=out_file,
+        metavar="FILE",
+        help="program file to write: .nc is OmniTurn, .mpf is SINUMERIK (default: stdout)",
+    )
+    add_as_option(parser)
+    parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
+
+
+def _add_drawing_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--unit",
+        choices=tuple(map(str.lower, UNITS)),
+        help="unit of the drawing, used instead of the unit in the file",
+    )
+    parser.add_argument(
+        "--layer", default="", metavar="NAME", help="layer of the contour (default: all layers)"
+    )
+    parser.add_argument(
+        "--axis", default="", metavar="NAME", help="name of the axis in the drawing, as shown by --list"
+    )
+    parser.add_argument(
+        "--contour",
+        type=int,
+        default=1,
+        metavar="N",
+        help="number of the contour in the drawing, as shown by --list",
+    )
+    parser.add_argument(
+        "--front",
+        choices=("right", "left"),
+        default="right",
+        help="end of the drawing at which the front face of the part is located",
+    )
+    parser.add_argument(
+        "--zero", choices=("face", "back", "origin"), default="face", help="location of Z0 in the drawing"
+    )
+    parser.add_argument(
+        "--shift",
+        type=float,
+        default=0.0,
+        metavar="Z",
+        help="Z value of the location that --zero selects (default: 0)",
+    )
+    parser.add_argument(
+        "--side", choices=("outside", "bore"), default="outside", help="surface of the part to cut"
+    )
+    parser.add_argument(
+        "--gap",
+        type=float,
+        metavar="MM",
+        help="join contour ends that are closer together than this distance, in mm",
+    )
+
+
+def _add_part_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--metric",
+        action="store_true",
+        help="use mm instead of inches, both in the program and in the length options",
+    )
+    parser.add_argument("--material", choices=tuple(MATERIALS), default="STEEL", help="default: STEEL")
+    parser.add_argument("--bar", type=float, metavar="D", help="bar diameter")
+    parser.add_argument("--face", type=float, metavar="L", help="stock to remove from the face; 0: no facing")
+    parser.add_argument("--hole", type=float, metavar="D", help="diameter of the starting hole before boring")
+    parser.add_argument(
+        "--rough", type=float, metavar="L", help="depth of a roughing pass; 0: finishing only"
+    )
+
+
+def _add_tool_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--tool", type=int, metavar="T", help="number of the turning tool (default: the first tool that fits)"
+    )
+    parser.add_argument(
+        "--groove-tool",
+        type=int,
+        metavar="T",
+        help="number of the grooving tool (default: the first grooving tool)",
+    )
+    parser.add_argument(
+        "--comp",
+        type=int,
+        metavar="D",
+        help="number of the tool offset or cutting edge for nose radius compensation; 0: no G41",
+    )
+    parser.add_argument(
+        "--tools", metavar="FILE", help="file with tool shapes to use instead of the stored shapes"
+    )
+    parser.add_argument("--machine", metavar="FILE", help="machine file (default: the simulated lathe)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the program, and say what stays of the drawing; 1 when the program would have errors."""
+    from core.extras.drawings.drawing import DrawingError
+    from core.extras.drawings.work_limit import limited_work
+
+    with as_command_error(DrawingError), limited_work(lambda _seconds: None):
+        return _run(args)
+
+
+def _run(args: argparse.Namespace) -> int:
+    from app.cli.progress_bar import Progress
+    from app.compose.machine_setup import read_machine
+    from core.extras.drawings.drawing_process import read_in_process
+
+    machine = read_machine(args.machine)
+    if not args.list:
+        args.who = may_write(args)
+    if args.side == "bore" and args.hole is None and not args.list:
+        raise CommandError(
+            "boring requires a starting hole; specify the diameter of the hole with --hole", "no-hole"
+        )
+    args.metric = args.metric or not machine.inch
+    args.dialect = _language(args, machine)
+    with Progress(Message("time to read {file}, in seconds", file=args.file)) as progress:
+        drawing = read_in_process(Path(args.file), progress.reach)
+    if args.layer and args.layer not in drawing.layers:
+        raise CommandError(
+            Message(
+                "{drawing} has no layer {layer}; use one of {layers}",
+                drawing=drawing.name,
+                layer=args.layer,
+                layers=", ".join(drawing.layers),
+            ),
+            "no-layer",
+        )
+    view = _view(drawing, args)
+    found = _contours(drawing, view, args)
+    if args.list:
+        _list(drawing, view, found, as_json=args.json)
+        return EXIT_OK
+    if not 1 <= args.contour <= len(found):
+        raise CommandError(
+            Message(
+                "{drawing} has {found_count} contours; use --contour 1 to {found_count2}",
+                drawing=drawing.name,
+                found_count=len(found),
+                found_count2=len(found),
+            ),
+            "which-contour",
+        )
+    net = found[args.contour - 1]
+    if args.unit is None:
+        _check_unit(drawing, view, net, machine)
+    return _make(drawing, view, net, args, machine)
+
+
+def _check_unit(drawing: Drawing, view: View, net: Net, machine: Machine) -> None:
+    """Refuse a contour that is too large for the machine only because of the unit that its file states."""
+    from app.extras.shapes.shapes_desk import shop_of
+    from core.extras.drawings.unit_check import wrong_unit
+
+    if (wrong := wrong_unit(net, view.unit, shop_of(machine, {}).travel)) is not None:
+        size, name = wrong[0], wrong[1].lower()
+        words = Message(
+            "{drawing} is {size}, which is too large for this machine; with {name} as the "
+            "unit, the drawing would fit, so use --unit {name2}",
+            drawing=drawing.name,
+            size=size,
+            name=name,
+            name2=name,
+        )
+        raise CommandError(words, "wrong-unit")
+
+
+def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
+    """By the name of the program, without one that of the machine."""
+    if args.out is None:
+        return Dialect.SINUMERIK if machine.language == Dialect.SINUMERIK else Dialect.OMNITURN
+    said = dialect_of(Path(args.out).name)
+    if said is Dialect.KLARTEXT:
+        raise CommandError(
+            Message(
+                "{file}: a turning profile can be written only for OmniTurn or SINUMERIK; use a name "
+                "that ends in .nc or .mpf",
+                file=args.out,
+            ),
+            "wrong-language",
+        )
+    return said
+
+
+def _view(drawing: Drawing, args: argparse.Namespace) -> View:
+    from core.extras.drawings.contour_walk import GAP
+    from core.extras.drawings.drawing_view import Front, View, Zero, axis_named
+
+    unit = UNITS[args.unit.upper()] if args.unit else drawing.unit
+    if not unit:
+        raise CommandError(
+            Message(
+                "{drawing} does not specify its unit; use --unit mm or --unit inch", drawing=drawing.name
+            ),
+            "no-unit",
+        )
+    gap = GAP if args.gap is None else args.gap
+    if not 0.0 < gap <= 1.0:
+        raise CommandError(
+            Message(
+                "--gap {gap} is out of range, because only gaps up to 1 mm are closed; use .001 to 1",
+                gap=f"{gap:g}",
+            ),
+            "gap",
+        )
+    shift = args.shift * (1.0 if args.metric else 25.4)
+    front, zero = Front(args.front.upper()), Zero(args.zero.upper())
+    return View(axis_named(drawing, args.axis, args.layer), unit, front, zero, shift, gap)
+
+
+def _contours(drawing: Drawing, view: View, args: argparse.Namespace) -> list[Net]:
+    from core.extras.drawings.drawing_view import contours
+
+    found = contours(drawing, view, args.layer)
+    if not found:
+        where = (
+            Message("on layer {layer}", layer=args.layer)
+            if args.layer
+            else ("on either side of the selected axis")
+        )
+        raise CommandError(
+            Message(
+                "{drawing} has no contour {place}; use a different --layer or --axis",
+                drawing=drawing.name,
+                place=where,
+            ),
+            "no-contour",
+        )
+    return found
+
+
+def _list(drawing: Drawing, view: View, found: list[Net], *, as_json: bool) -> None:
+    from core.extras.drawings.drawing_view import axes
+
+    told: Json = {
+        "file": drawing.name,
+        "unit_mm": drawing.unit or None,
+        "layers": list(drawing.layers),
+        "axes": [axis.name for axis in axes(drawing)],
+        "axis": view.axis.name,
+        "contours": [
+            {"elements": len(net.elements), "length_mm": round(high - low, 4), "diameter_mm": round(2 * r, 4)}
+            for net in found
+            for low, high, r in (net.reach,)
+        ],
+        "left_out": dict(drawing.left_out),
+    }
+    if as_json:
+        sys.stdout.write(json.dumps(told) + "\n")
+        return
+    unit = Message("{unit} mm", unit=f"{drawing.unit:g}") if drawing.unit else "not specified"
+    lines = [
+        Message("{drawing}: unit {unit}", drawing=drawing.name, unit=unit),
+        f"  layers: {', '.join(each or '(none)' for each in drawing.layers)}",
+    ]
+    lines.append(f"  axes: {', '.join(axis.name for axis in axes(drawing))}")
+    for number, net in enumerate(found, 1):
+        low, high, r = net.reach
+        words = Message(
+            "length {high} mm, diameter {radius} mm, made up of {elements_count} lines",
+            elements_count=len(net.elements),
+            high=f"{high - low:.4g}",
+            radius=f"{2 * r:.4g}",
+        )
+        lines.append(
+            Message(
+                "  contour {number}, axis {axis}: {words}", number=number, axis=view.axis.name, words=words
+            )
+        )
+    if drawing.left_out:
+        lines.append(
+            Message(
+                "  ignored: {number}",
+                number=", ".join((f"{n} {kind}" for kind, n in drawing.left_out.items())),
+            )
+        )
+    sys.stdout.write("\n".join(lines) + "\n")
+
+
+def _make(drawing: Drawing, view: View, net: Net, args: argparse.Namespace, machine: Machine) -> int:
+    from app.extras.drawings.profile_trial import TrialStock, tried
+    from core.extras.drawings.drawing_view import Side, profile
+
+    shapes = _shapes(args)
+    chosen = profile(drawing, view, net, Side(args.side.upper()))
+    mm = 1.0 if args.metric else 25.4
+    typed = _typed(chosen, args, shapes)
+    made = _program(chosen, typed, args, machine, shapes)
+    if made.refusals:
+        raise CommandError(f"{drawing.name}: {made.refusals[0].text}", "refused-shape")
+    text = "\n".join([*made.lines, "M30"]) + "\n"
+    bar = float(typed["BAR"]) * mm
+    stock = TrialStock(bar, float(typed.get("STOCK", 0.0)) * mm, (args.hole or 0.0) * mm)
+    trial = tried(text, chosen, stock, made.nose, machine, shapes, dialect=args.dialect)
+    if args.out is not None:
+        write_made(args, text, args.who)
+    elif not args.json:
+        sys.stdout.write(text)
+    _tell(made, trial, chosen, text, args)
+    return EXIT_ERRORS if trial.errors else EXIT_OK
+
+
+def _shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
+    from app.compose.stored_offsets import stored_shapes
+    from app.offsets.offsets_file import read_tool_shapes
+
+    return stored_shapes() if args.tools is None else read_tool_shapes(Path(args.tools))
+
+
+def _typed(chosen: Profile, args: argparse.Namespace, shapes: Mapping[int, ToolShape]) -> dict[str, Value]:
+    """The fields of the shapes, lengths in the unit of the program."""
+    from core.extras.drawings.profile_job import proposed_fields
+
+    said: dict[str, Value | None] = {
+        "BAR": args.bar,
+        "STOCK": args.face,
+        "HOLE": args.hole,
+        "ROUGH": args.rough,
+        "T": args.tool,
+        "BLADE": args.groove_tool,
+        "COMP": args.comp,
+        "MATERIAL": args.material,
+    }
+    given = {word: value for word, value in said.items() if value is not None}
+    return proposed_fields(chosen, given, shapes, metric=args.metric, dialect=args.dialect)
+
+
+def _program(
+    chosen: Profile,
+    typed: dict[str, Value],
+    args: argparse.Namespace,
+    machine: Machine,
+    shapes: Mapping[int, ToolShape],
+) -> ProfileProgram:
+    from app.extras.shapes.shapes_desk import shop_of
+    from core.extras.drawings.profile_program import profile_program
+    from core.extras.shapes.shape_setting import Setting
+
+    setting = Setting(metric=args.metric, shop=shop_of(machine, shapes), dialect=args.dialect)
+    return profile_program(chosen, typed, [], setting)
+
+
+def _tell(made: ProfileProgram, trial: Trial, chosen: Profile, text: str, args: argparse.Namespace) -> None:
+    from core.extras.drawings.profile_words import in_json, in_words
+
+    if args.json:
+        told = {
+            "file": args.file,
+            "out": args.out,
+            "program": text,
+            **in_json(made, trial.comparison, chosen),
+        }
+        sys.stdout.write(json.dumps({**told, "errors": list(trial.errors)}) + "\n")
+        return
+    for line in (*in_words(made, trial.comparison, chosen, metric=args.metric), *trial.errors):
+        sys.stderr.write(f"turndesk: {line}\n")

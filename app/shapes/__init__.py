@@ -1,1 +1,0 @@
-"""The page of shapes in the editor: a form, its drawing, and the lines that it writes."""

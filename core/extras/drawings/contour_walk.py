@@ -1,0 +1,370 @@
+"""A contour picked out of a drawing: ends that nearly meet are joined, and its outer or inner side is walked.
+
+All points are (r, z) from the axis and the zero of Z, mm, as a lathe has them.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+from core.extras.drawings.drawing import DrawingError
+from core.extras.drawings.work_limit import check_work
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, arc_between, intersections
+from core.message import Message
+
+GAP = 0.02
+"""mm: ends nearer than this are joined."""
+_AXIS = 1e-6  # mm
+_CELLS, _IN_A_CELL = 64, 8  # along Z, in which ends and elements are looked for; elements in one
+_SQUARE = 0.02  # cosine
+_NO_BORE = "the contour has no bore at its face. Choose the outside, or another contour."
+_AHEAD = 0.05  # mm along an element, where its direction is taken: of tangent ones the sharper arc is told
+
+
+def above_axis(elements: Iterable[Element], gap: float = GAP) -> Iterator[Element]:
+    """What lies on the side r > 0 of the axis, cut where it crosses; what lies on the axis is left out."""
+    for each in elements:
+        if isinstance(each, Line) and abs(each.start[0]) <= gap and abs(each.end[0]) <= gap:
+            continue
+        for part in _cut_at_axis(each):
+            if part.point(part.length / 2.0)[0] > 0.0 and part.length > _AXIS:
+                yield part
+
+
+def _cut_at_axis(each: Element) -> list[Element]:
+    low, high, z0, z1 = each.box
+    if low >= -_AXIS or high <= _AXIS:
+        return [each]
+    axis = Line((0.0, z0 - 1.0), (0.0, z1 + 1.0))
+    return split(each, [(0.0, p[1]) for p in intersections(axis, each)])
+
+
+def _crossings(elements: Iterable[Element]) -> Iterator[float]:
+    """Where elements go through the axis; a face that is drawn from edge to edge does it square."""
+    for each in elements:
+        for part in _cut_at_axis(each)[:-1]:
+            if abs(part.end_direction[1]) > _SQUARE:
+                yield part.end[1]
+
+
+def split(each: Element, points: Iterable[Point]) -> list[Element]:
+    """The element in parts between these of its points."""
+    within = (p for p in points if _AXIS < each.along(p) < each.length - _AXIS)
+    places = [each.start, *sorted(within, key=each.along), each.end]
+    return [each.part(a, b) for a, b in pairwise(places)]
+
+
+@dataclass(slots=True)
+class _Nodes:
+    """Points where ends meet: the nearest within a gap is the same one."""
+
+    gap: float
+    points: list[Point] = field(default_factory=list)
+    _cells: dict[tuple[int, int], list[int]] = field(default_factory=dict)
+
+    def at(self, point: Point) -> int:
+        """The node of a point, a new one where none is near."""
+        size = self.gap or 1e-6
+        i, k = math.floor(point[0] / size), math.floor(point[1] / size)
+        near = [n for a in (i - 1, i, i + 1) for b in (k - 1, k, k + 1) for n in self._cells.get((a, b), ())]
+        best = min(near, key=lambda n: math.dist(self.points[n], point), default=None)
+        if best is not None and math.dist(self.points[best], point) <= size:
+            return best
+        self.points.append(point)
+        self._cells.setdefault((i, k), []).append(len(self.points) - 1)
+        return len(self.points) - 1
+
+
+@dataclass(frozen=True, slots=True)
+class Net:
+    """Elements that hang together: ``ends`` are the nodes of each element, ``nodes`` their points."""
+
+    elements: tuple[Element, ...]
+    ends: tuple[tuple[int, int], ...]
+    nodes: tuple[Point, ...]
+    closed: float = 0.0  # mm: the widest gap that was closed
+    crossings: tuple[float, ...] = ()  # Z at which something goes through the axis, not square to it
+
+    @property
+    def reach(self) -> tuple[float, float, float]:
+        """Least and greatest Z, and the greatest r."""
+        boxes = [each.box for each in self.elements]
+        return min(b[2] for b in boxes), max(b[3] for b in boxes), max(b[1] for b in boxes)
+
+
+def nets(elements: Iterable[Element], gap: float = GAP) -> list[Net]:
+    """What hangs together, those on the axis with the most elements first; double lines count once."""
+    drawn = tuple(elements)
+    parts = _at_touching_ends(list(above_axis(drawn, gap)), gap)
+    nodes, found, widest = _Nodes(gap), dict[tuple[int, int, int, int], tuple[Element, float]](), 0.0
+    for each in parts:
+        a, b = nodes.at(each.start), nodes.at(each.end)
+        if a == b:
+            continue
+        middle = each.point(each.length / 2.0)
+        key = (min(a, b), max(a, b), round(middle[0] / (2 * gap)), round(middle[1] / (2 * gap)))
+        moved = max(math.dist(each.start, nodes.points[a]), math.dist(each.end, nodes.points[b]))
+        found.setdefault(key, (_moved(each, nodes.points[a], nodes.points[b]), moved))
+        widest = max(widest, moved)
+    owner = _hanging(len(nodes.points), [(a, b) for a, b, _, _ in found])
+    groups: dict[int, list[tuple[Element, float]]] = {}
+    for (a, _b, _, _), part in found.items():
+        groups.setdefault(owner[a], []).append(part)
+    through = tuple(_crossings(drawn))
+    made = [replace(_net(group, nodes), crossings=through) for group in groups.values()]
+    return sorted(made, key=lambda net: (not _on_axis(net, gap), -len(net.elements)))
+
+
+def _net(group: list[tuple[Element, float]], nodes: _Nodes) -> Net:
+    elements = tuple(each for each, _ in group)
+    ends = tuple((nodes.at(each.start), nodes.at(each.end)) for each in elements)
+    return Net(elements, ends, tuple(nodes.points), max(moved for _, moved in group))
+
+
+def _on_axis(net: Net, gap: float) -> bool:
+    return any(net.nodes[n][0] <= gap for pair in net.ends for n in pair)
+
+
+def _moved(each: Element, a: Point, b: Point) -> Element:
+    """With its ends at the nodes."""
+    if isinstance(each, Line):
+        return Line(a, b)
+    return arc_between(a, b, each.centre, clockwise=each.clockwise)
+
+
+def _hanging(count: int, pairs: Sequence[tuple[int, int]]) -> list[int]:
+    """Of each node the first of those that it hangs together with."""
+    owner = list(range(count))
+
+    def root(n: int) -> int:
+        while owner[n] != n:
+            owner[n] = owner[owner[n]]
+            n = owner[n]
+        return n
+
+    for a, b in pairs:
+        owner[root(a)] = root(b)
+    return [root(n) for n in range(count)]
+
+
+def _at_touching_ends(elements: list[Element], gap: float) -> list[Element]:
+    """Cut where the end of another touches them, as the edge of a shoulder touches the contour."""
+    if not elements:
+        return []
+    boxes = [each.box for each in elements]
+    low, high = min(b[2] for b in boxes), max(b[3] for b in boxes)
+    size = max((high - low) / max(_CELLS, len(elements) // _IN_A_CELL), gap)
+    cells: dict[int, list[Point]] = {}
+    for each in elements:
+        for end in (each.start, each.end):
+            cells.setdefault(math.floor((end[1] - low) / size), []).append(end)
+    found: list[Element] = []
+    for each, box in zip(elements, boxes, strict=True):
+        check_work()
+        first = math.floor((box[2] - gap - low) / size)
+        last = math.floor((box[3] + gap - low) / size)
+        near = (p for k in range(first, last + 1) for p in cells.get(k, ()))
+        found += split(each, [q for p in near if (q := _touch(each, p, gap)) is not None])
+    return found
+
+
+def _touch(each: Element, point: Point, gap: float) -> Point | None:
+    """Where a point touches an element between its ends."""
+    along = each.along(point)
+    if not gap < along < each.length - gap:
+        return None
+    at = each.point(along)
+    return at if math.dist(at, point) <= gap else None
+
+
+# --- along one side
+
+
+def outer_side(net: Net, gap: float = GAP) -> list[Element]:
+    """From the foremost point outwards and along the outside to the end at the chuck.
+
+    Raises DrawingError for a contour that crosses itself, or the axis before its end, or has no end in front.
+    """
+    walked = _walk(net, _foremost(net, gap), math.radians(270.0), 1.0, gap)
+    return _checked(net, walked, gap)
+
+
+def inner_side(net: Net, gap: float = GAP) -> list[Element]:
+    """From the mouth of a bore along its wall to its end. Raises DrawingError, also where there is none."""
+    inside = [n for n in _at_front(net, gap) if net.nodes[n][0] > gap and _goes_in(net, n, gap)]
+    if not inside:
+        raise DrawingError(_NO_BORE, "no-bore")
+    start = min(inside, key=lambda n: net.nodes[n][0])
+    front = _at_front(net, gap)  # the edge of the mouth, seen behind a section, is no wall
+    mouth = {number for number, (a, b) in enumerate(net.ends) if a in front and b in front}
+    walked = _walk(net, start, math.radians(90.0), -1.0, gap, mouth)
+    outer = _walk(net, _foremost(net, gap), math.radians(270.0), 1.0, gap)
+    if walked and any(walked[0] == each for each in outer):
+        raise DrawingError(_NO_BORE, "no-bore")
+    return _checked(net, walked, gap)
+
+
+def _foremost(net: Net, gap: float) -> int:
+    """The end of an element that is furthest in front, nearest to the axis. Raises DrawingError."""
+    front = _at_front(net, gap)
+    if not front:
+        raise DrawingError(
+            "the foremost point of the contour is in the middle of an arc. End the arc at this point.",
+            "front-in-arc",
+        )
+    return min(front, key=lambda n: net.nodes[n][0])
+
+
+def _at_front(net: Net, gap: float) -> set[int]:
+    front = net.reach[1] - gap
+    return {n for pair in net.ends for n in pair if net.nodes[n][1] >= front}
+
+
+def _goes_in(net: Net, node: int, gap: float) -> bool:
+    """Whether an element leads from a node towards the chuck."""
+    out = (_from(each, ends, node) for each, ends in zip(net.elements, net.ends, strict=True) if node in ends)
+    return any(each.end[1] < each.start[1] - gap for each in out)
+
+
+def _from(each: Element, ends: tuple[int, int], node: int) -> Element:
+    return each if ends[0] == node else each.reversed()
+
+
+def _angle(each: Element) -> float:
+    """Of the direction in which an element begins: from Z+ towards r+."""
+    ahead = each.point(min(_AHEAD, each.length / 2.0))
+    return math.atan2(ahead[0] - each.start[0], ahead[1] - each.start[1])
+
+
+def _walk(
+    net: Net, start: int, back: float, hand: float, gap: float, without: Iterable[int] = ()
+) -> list[Element]:
+    """With the void always on one side: at a node the first element from there. Blind ends are left again."""
+    at_node: dict[int, list[int]] = {}
+    for number, ends in enumerate(net.ends):
+        for n in ends:
+            at_node.setdefault(n, []).append(number)
+    low = net.reach[0]
+    shut = set(without)
+    way: list[tuple[int, int]] = []  # elements, and the node that each leads to
+    best: list[tuple[int, int]] = []
+    node, seen = start, {start}
+    while True:
+        check_work()
+        step = _next(net, at_node[node], node, shut, way, back, hand)
+        if step is not None:
+            shut.add(step)
+            each = _from(net.elements[step], net.ends[step], node)
+            ends = net.ends[step]
+            node = ends[1] if ends[0] == node else ends[0]
+            way.append((step, node))
+            back = _angle(each.reversed())
+            place = net.nodes[node]
+            if node in seen or place[0] <= gap or place[1] <= low + gap:
+                return _elements(net, start, way)
+            seen.add(node)
+            continue
+        best = max(best, way, key=lambda w: -net.nodes[w[-1][1]][1] if w else -math.inf)
+        if not way:
+            return _elements(net, start, best)
+        way.pop()
+        node = way[-1][1] if way else start
+
+
+def _next(
+    net: Net,
+    there: Sequence[int],
+    node: int,
+    shut: set[int],
+    way: Sequence[tuple[int, int]],
+    back: float,
+    hand: float,
+) -> int | None:
+    """The next element at a node: the first one from the way back, turning to ``hand``."""
+    if way:
+        last = way[-1][0]
+        back = _angle(_from(net.elements[last], net.ends[last], node))
+    free = [n for n in there if n not in shut]
+
+    def turned(n: int) -> float:
+        found = (hand * (_angle(_from(net.elements[n], net.ends[n], node)) - back)) % (2.0 * math.pi)
+        return found if found > 1e-6 else 2.0 * math.pi
+
+    return min(free, key=turned, default=None)
+
+
+def _elements(net: Net, start: int, way: Iterable[tuple[int, int]]) -> list[Element]:
+    found, node = [], start
+    for number, to in way:
+        found.append(_from(net.elements[number], net.ends[number], node))
+        node = to
+    return found
+
+
+def _checked(net: Net, walked: list[Element], gap: float) -> list[Element]:
+    if not walked:
+        raise DrawingError("this side has no contour. Choose another contour.", "no-contour")
+    _no_crossing(walked)
+    for end in (walked[0].start, walked[-1].end):
+        if end[0] <= gap and any(abs(z - end[1]) <= gap for z in net.crossings):
+            behind = net.reach[1] - end[1]
+            raise DrawingError(
+                Message(
+                    "the contour crosses the axis {distance} mm from the face. Choose another axis.",
+                    distance=f"{behind:.3f}",
+                ),
+                "crosses-axis",
+            )
+    return walked
+
+
+def _no_crossing(walked: Sequence[Element]) -> None:
+    found = ((pair, point) for pair in _overlapping(walked) for point in _crossing(walked, *pair))
+    first = min(found, key=lambda crossing: crossing[0], default=None)
+    if first is not None:
+        _, point = first
+        behind = walked[0].start[1] - point[1]
+        raise DrawingError(
+            Message(
+                "the contour crosses itself {distance} mm from the face at a diameter of "
+                "{diameter} mm. Correct the contour at this point.",
+                distance=f"{behind:.3f}",
+                diameter=f"{2 * point[0]:.3f}",
+            ),
+            "crosses-itself",
+        )
+
+
+def _overlapping(walked: Sequence[Element]) -> Iterator[tuple[int, int]]:
+    """Yield the numbers of two elements whose boxes overlap, the lesser first; swept along Z."""
+    boxes = [each.box for each in walked]
+    order = sorted(range(len(walked)), key=lambda n: boxes[n][2])
+    lows = [boxes[n][2] for n in order]
+    for at, i in enumerate(order):
+        check_work()
+        inner, outer, _, high = boxes[i]
+        for k in order[at + 1 : bisect_right(lows, high)]:
+            if inner <= boxes[k][1] and boxes[k][0] <= outer:
+                yield min(i, k), max(i, k)
+
+
+def _crossing(walked: Sequence[Element], i: int, k: int) -> Iterator[Point]:
+    """Yield where two elements cross, but for their ends."""
+    shared = (walked[i].start, walked[i].end, walked[k].start, walked[k].end)
+    for point in intersections(walked[i], walked[k]):
+        if min(math.dist(point, end) for end in shared) > 1e-3:
+            yield point
+
+
+def turned_about(elements: Iterable[Element]) -> Iterator[Element]:
+    """The same on the other side of the axis."""
+    for each in elements:
+        if isinstance(each, Arc):
+            a, b, c = ((-p[0], p[1]) for p in (each.start, each.end, each.centre))
+            yield replace(each, start=a, end=b, centre=c, clockwise=not each.clockwise)
+        else:
+            yield Line((-each.start[0], each.start[1]), (-each.end[0], each.end[1]))

@@ -1,0 +1,59 @@
+"""The process that reads one drawing: ``python -m core.extras.drawings.drawing_child FILE MEMORY SECONDS``.
+
+It writes the drawing to stdout as ``drawing_data`` does, or the error. What the libraries of drawings print,
+log or warn of goes nowhere. ``drawing_process`` starts it.
+"""
+
+from __future__ import annotations
+
+import gc
+import logging
+import os
+import sys
+import warnings
+from pathlib import Path
+
+from core.extras.drawings.drawing import DrawingError
+from core.extras.drawings.drawing_data import drawing_data, error_data
+from core.extras.drawings.drawing_file import read_drawing
+
+
+def limit_process(memory: int, seconds: int) -> None:
+    """Limit this process to ``memory`` bytes of address space and ``seconds`` of processor time, on Linux."""
+    if sys.platform != "linux":
+        return
+    import resource  # noqa: PLC0415  Windows has none
+
+    limits = {resource.RLIMIT_AS: memory, resource.RLIMIT_CPU: seconds, resource.RLIMIT_CORE: 0}
+    for kind, most in limits.items():
+        _, hard = resource.getrlimit(kind)
+        soft = most if hard == resource.RLIM_INFINITY else min(most, hard)
+        resource.setrlimit(kind, (soft, hard))  # behind the hard one there is no signal that tells why
+
+
+def answer(path: Path) -> bytes:
+    """Return the data of the drawing, or of the error that it ends in."""
+    try:
+        return drawing_data(read_drawing(path))
+    except DrawingError as error:
+        return error_data(error)
+
+
+def main() -> None:
+    """Read the drawing that the arguments name."""
+    path, memory, seconds = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
+    out = os.fdopen(os.dup(1), "wb")
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.dup2(nowhere, 2)
+    logging.disable(logging.CRITICAL)
+    warnings.simplefilter("ignore")
+    gc.disable()  # the process ends before there is much to collect
+    limit_process(memory, seconds)
+    out.write(answer(path))
+    out.flush()
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

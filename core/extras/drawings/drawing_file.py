@@ -1,0 +1,65 @@
+"""A drawing file, DXF or SVG by its ending; one that is empty or far too large is not even opened."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+from core.extras.drawings.drawing import MOST_BYTES, Drawing, DrawingError
+from core.input_file import MB, TooLargeError, failures_as, input_bytes
+from core.message import Message
+
+ENDINGS = (".dxf", ".svg")
+
+
+def is_drawing(name: str) -> bool:
+    """Whether a file is one by its ending."""
+    return name.lower().endswith(ENDINGS)
+
+
+def read_drawing(path: Path) -> Drawing:
+    """Return the lines and arcs of a drawing. Raises DrawingError alone, without words of a library."""
+    if not is_drawing(path.name):
+        raise DrawingError(
+            Message("{path} is not a supported drawing: use a DXF or SVG file.", path=path.name),
+            "not-a-drawing",
+        )
+    with failures_as(partial(_unreadable, path)):
+        data = input_bytes(path, MOST_BYTES)
+        if not data:
+            raise DrawingError(Message("{path} is empty: save the drawing again.", path=path.name), "empty")
+        if path.suffix.lower() == ".svg":
+            from core.extras.drawings.svg_reader import read_svg
+
+            return read_svg(path.name, data)
+        from core.extras.drawings.dxf_reader import read_dxf
+
+        return read_dxf(path, data)
+
+
+def _unreadable(path: Path, error: Exception) -> DrawingError:
+    if isinstance(error, TooLargeError):
+        words = Message(
+            "{path} is larger than {most_bytes} MB. Save only the contour of the part.",
+            path=path.name,
+            most_bytes=MOST_BYTES // MB,
+        )
+        return DrawingError(words, "too-large")
+    if isinstance(error, OSError) and error.errno is not None:
+        return DrawingError(
+            Message("{path} cannot be read: {cause}.", path=path.name, cause=error.strerror),
+            "unreadable",
+        )
+    if isinstance(error, MemoryError):
+        words = Message(
+            "{path} needs more memory than is allowed for a drawing. Save only the contour of the part.",
+            path=path.name,
+        )
+        return DrawingError(words, "out-of-memory")
+    kind = path.suffix[1:].upper()
+    return DrawingError(
+        Message(
+            "{path} is damaged or is not a {kind} file: save the drawing again.", path=path.name, kind=kind
+        ),
+        "damaged",
+    )

@@ -1,0 +1,112 @@
+"""A process of its own reads a drawing, with limits of time and memory: a hostile one takes no more."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.extras.drawings.drawing import Drawing, DrawingError
+from core.extras.drawings.drawing_data import drawing_of
+from core.input_file import failures_as
+from core.message import Message
+
+_CHILD = "core.extras.drawings.drawing_child"
+_ROOT = Path(__file__).parents[3]
+_LOOK = 0.1  # s between two looks whether the drawing is still wanted
+
+GoOn = Callable[[float], None]
+"""Called with the seconds that reading has taken; what it raises ends the process."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What reading one drawing may take. The largest, a DXF of 16 MB, takes 4 s and 240 MB.
+
+    ``memory``: bytes of address space; ``processor``, ``clock``: seconds. Only Linux limits memory and
+    processor.
+    """
+
+    memory: int = 1024**3
+    processor: int = 60
+    clock: float = 120.0
+
+
+LIMITS = Limits()
+
+
+def read_in_process(path: Path, go_on: GoOn = lambda _seconds: None, limits: Limits = LIMITS) -> Drawing:
+    """Return the lines and arcs of a drawing. Raises DrawingError, or what ``go_on`` raises."""
+    begun = time.monotonic()
+    words = [str(path.absolute()), str(limits.memory), str(limits.processor)]
+    try:
+        process = subprocess.Popen(
+            [sys.executable, "-P", "-m", _CHILD, *words],
+            env=_environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        )
+    except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
+        raise DrawingError(
+            Message(
+                "{path} cannot be read because the process that reads drawings cannot be started.",
+                path=path.name,
+            ),
+            "unreadable",
+        ) from error
+    with process:
+        try:
+            while (data := _all_of(process)) is None:
+                seconds = time.monotonic() - begun
+                go_on(seconds)
+                if seconds > limits.clock:
+                    raise _too_long(path, limits.clock)
+        finally:
+            process.kill()
+            process.wait()
+    if process.returncode:
+        raise _ended(path, process.returncode, limits)
+    with failures_as(lambda _error: _ended(path, 1, limits)):
+        return drawing_of(data)
+
+
+def _environment() -> dict[str, str]:
+    """Ours, with the folder of this very TurnDesk: the current folder may hold anything (``-P``)."""
+    paths = [str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "OPENBLAS_NUM_THREADS": "1"}
+
+
+def _all_of(process: subprocess.Popen[bytes]) -> bytes | None:
+    """What the process has written, once it has ended; None while it is at work."""
+    try:
+        return process.communicate(timeout=_LOOK)[0]
+    except subprocess.TimeoutExpired:
+        return None
+
+
+def _ended(path: Path, status: int, limits: Limits) -> DrawingError:
+    """Return the error for a process that ended without an answer."""
+    if -status == getattr(signal, "SIGXCPU", 0):
+        return _too_long(path, limits.processor)
+    most = limits.memory // 1024**2
+    words = Message(
+        "{path} cannot be read with {maximum} MB of memory. Save only the contour of the part.",
+        path=path.name,
+        maximum=most,
+    )
+    return DrawingError(words, "out-of-memory")
+
+
+def _too_long(path: Path, seconds: float) -> DrawingError:
+    words = Message(
+        "{path} takes more than {seconds} s to read. Save only the contour of the part.",
+        path=path.name,
+        seconds=f"{seconds:.0f}",
+    )
+    return DrawingError(words, "too-slow")

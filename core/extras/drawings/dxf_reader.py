@@ -1,0 +1,262 @@
+"""DXF drawings: lines, arcs, polylines, splines and ellipses of the model space, blocks taken apart."""
+
+from __future__ import annotations
+
+import itertools
+import logging
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from core.extras.drawings.arc_fitting import Place, arcs_of
+from core.extras.drawings.drawing import (
+    Drawing,
+    DrawingError,
+    Drawn,
+    arc,
+    bulged,
+    line,
+    nearest,
+    within_limits,
+)
+from core.extras.drawings.expansion import Content, check_expansion
+from core.geometry.lines_and_arcs import Element, Point
+from core.message import Message
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing as Document
+
+_UNITS = {1: 25.4, 2: 304.8, 4: 1.0, 5: 10.0, 6: 1000.0, 8: 25.4e-6, 9: 0.0254, 13: 0.001, 14: 100.0}
+"""mm, by $INSUNITS."""
+_CENTRE = ("CENT", "CENTRE", "AXIS", "MITTE", "MITTEL", "ACHS", "EJE", "AXE", "CHAIN", "DASHDOT", "ISO04")
+_SOLID = {"3DFACE", "3DSOLID", "MESH", "BODY", "SURFACE", "REVOLVEDSURFACE", "EXTRUDEDSURFACE", "POLYMESH"}
+_FLAT = 1e-6  # units: what lies off the plane by less lies in it
+_DEEPEST = 16  # blocks within blocks
+
+Reader = Callable[[Any, float], Iterator[Element]]
+"""Of an entity, and how near arcs shall come to a curve."""
+
+
+def read_dxf(path: Path, data: bytes) -> Drawing:
+    """Return the drawing of a DXF file with this ``data``. Raises DrawingError and errors of ezdxf."""
+    document = _document(path, data)
+    unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)), 0.0)
+    left_out: Counter[str] = Counter()
+    check_expansion(path.name, "", partial(_content, document))
+    drawn = tuple(within_limits(_drawn(document, nearest(unit), left_out, path.name), path.name))
+    if not drawn:
+        raise _nothing(path.name, left_out)
+    return Drawing(path.name, drawn, unit, dict(left_out))
+
+
+def _document(path: Path, data: bytes) -> Document:
+    from ezdxf.filemanagement import readfile
+
+    if data.startswith(b"AC10"):
+        raise DrawingError(Message("{path} is a DWG drawing: save it as DXF.", path=path.name), "dwg")
+    logging.getLogger("ezdxf").setLevel(logging.CRITICAL + 1)  # its words mean nothing to an operator
+    return readfile(path)
+
+
+class _NotFlatError(ValueError):
+    """An entity is not in the plane of the drawing."""
+
+
+def _three_dimensional(name: str) -> DrawingError:
+    text = Message(
+        "{name} is three-dimensional: save a section or a view of the part in one plane.", name=name
+    )
+    return DrawingError(text, "three-dimensional")
+
+
+def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
+    if any(kind in _SOLID for kind in left_out):
+        return _three_dimensional(name)
+    what = ", ".join(sorted(left_out)) if left_out else "nothing"
+    text = Message(
+        "{name} does not contain any lines or arcs in model space, only {what}: draw the contour with lines.",
+        name=name,
+        what=what[:80],
+    )
+    return DrawingError(text, "nothing-drawn")
+
+
+def _content(document: Document, block: str) -> Content:
+    """Return what a block inserts, "" for the model space; its own entities count within blocks alone."""
+    entities: list[Any] = list(document.blocks.get(block) or ()) if block else list(document.modelspace())
+    own = 1 + len(entities) if block else 0
+    inserts = [each for each in entities if each.dxftype() == "INSERT"]
+    return Content(own, [(max(1, each.mcount), each.dxf.get("name", "?").lower()) for each in inserts])
+
+
+def _drawn(document: Document, near: float, left_out: Counter[str], name: str) -> Iterator[Drawn]:
+    hidden = {layer.dxf.name for layer in document.layers if layer.is_off() or layer.is_frozen()}
+    centre_layers = {
+        layer.dxf.name for layer in document.layers if _centre(layer.dxf.name, layer.dxf.linetype)
+    }
+    for entity in _taken_apart(document.modelspace(), name, 0):
+        read = _READERS.get(entity.dxftype())
+        if read is None and not entity.dxf.is_supported("layer"):  # a kind that no drawing program knows
+            left_out[entity.dxftype()] += 1
+            continue
+        layer = entity.dxf.get("layer", "0")
+        if layer in hidden or entity.dxf.get("invisible", 0):
+            continue
+        if read is None:
+            left_out[entity.dxftype()] += 1
+            continue
+        kind = entity.dxf.get("linetype", "BYLAYER")
+        centre = _centre("", kind) or (kind.upper() == "BYLAYER" and layer in centre_layers)
+        for element in _read(read, entity, near, name):
+            yield Drawn(element, layer, centre)
+
+
+def _read(read: Reader, entity: Any, near: float, name: str) -> Iterator[Element]:
+    try:
+        yield from read(entity, near)
+    except (ValueError, ArithmeticError, AttributeError, IndexError) as error:
+        if isinstance(error, _NotFlatError):
+            raise _three_dimensional(name) from None
+        what = Message(
+            "the {kind} on layer {layer} of {name} is damaged: draw it again.",
+            kind=entity.dxftype(),
+            layer=entity.dxf.get("layer", "0"),
+            name=name,
+        )
+        raise DrawingError(what, "damaged") from error
+
+
+def _centre(layer: str, linetype: str) -> bool:
+    """Whether the name of a layer or of a line type says: a centre line."""
+    return any(word in linetype.upper() or word in layer.upper() for word in _CENTRE)
+
+
+def _taken_apart(entities: Iterable[Any], name: str, depth: int) -> Iterator[Any]:
+    """Entities, those of blocks where these are inserted; what has dimensions or texts stays whole."""
+    if depth > _DEEPEST:
+        raise DrawingError(
+            Message(
+                "{name} has blocks nested more than {deepest} levels deep: explode the blocks.",
+                name=name,
+                deepest=_DEEPEST,
+            ),
+            "nested-blocks",
+        )
+    for entity in entities:
+        if entity.dxftype() != "INSERT":
+            yield entity
+        elif entity.mcount > 1:
+            yield from _taken_apart(entity.multi_insert(), name, depth + 1)
+        else:
+            yield from _taken_apart(entity.virtual_entities(), name, depth + 1)
+
+
+# --- one kind of entity after the other; points are (x, y)
+
+
+def _facing(entity: Any) -> float:
+    """1: drawn as it is seen, -1: mirrored; else it does not lie in the plane of the drawing."""
+    x, y, z = entity.dxf.get("extrusion", (0.0, 0.0, 1.0))
+    if abs(x) > _FLAT or abs(y) > _FLAT:
+        raise _NotFlatError
+    return 1.0 if z > 0.0 else -1.0
+
+
+def _line(entity: Any, _near: float) -> Iterator[Element]:
+    a, b = entity.dxf.start, entity.dxf.end
+    if abs(a.z - b.z) > _FLAT:
+        raise _NotFlatError
+    yield from line((a.x, a.y), (b.x, b.y))
+
+
+def _arc(entity: Any, _near: float) -> Iterator[Element]:
+    side, at = _facing(entity), entity.dxf.center
+    begin = math.radians(entity.dxf.start_angle)
+    sweep = math.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0) or 2.0 * math.pi
+    start = begin if side > 0 else math.pi - begin
+    yield from arc((side * at.x, at.y), entity.dxf.radius, start, side * sweep)
+
+
+def _circle(entity: Any, _near: float) -> Iterator[Element]:
+    at = entity.dxf.center
+    yield from arc((_facing(entity) * at.x, at.y), entity.dxf.radius, 0.0, 2.0 * math.pi)
+
+
+def _chain(points: list[tuple[float, float, float]], *, closed: bool, side: float) -> Iterator[Element]:
+    pairs = list(zip(points, points[1:] + points[:1], strict=True))
+    for (x, y, bulge), (x1, y1, _) in pairs if closed else pairs[:-1]:
+        yield from bulged((side * x, y), (side * x1, y1), side * bulge)
+
+
+def _lwpolyline(entity: Any, _near: float) -> Iterator[Element]:
+    points = [(float(x), float(y), float(bulge)) for x, y, bulge in entity.get_points("xyb")]
+    yield from _chain(points, closed=entity.closed, side=_facing(entity))
+
+
+def _polyline(entity: Any, _near: float) -> Iterator[Element]:
+    if not entity.is_2d_polyline and not entity.is_3d_polyline:
+        raise _NotFlatError
+    places = [each.dxf.location for each in entity.vertices if not each.dxf.flags & 16]
+    if entity.is_3d_polyline and max(p.z for p in places) - min(p.z for p in places) > _FLAT:
+        raise _NotFlatError
+    bulges = [each.dxf.get("bulge", 0.0) for each in entity.vertices if not each.dxf.flags & 16]
+    points = [(p.x, p.y, bulge) for p, bulge in zip(places, bulges, strict=True)]
+    side = 1.0 if entity.is_3d_polyline else _facing(entity)
+    yield from _chain(points, closed=entity.is_closed, side=side)
+
+
+def _ellipse(entity: Any, near: float) -> Iterator[Element]:
+    side, at, major = _facing(entity), entity.dxf.center, entity.dxf.major_axis
+    ratio, begin = entity.dxf.ratio, entity.dxf.start_param
+    minor = -major.y * ratio * side, major.x * ratio * side
+    sweep = (entity.dxf.end_param - begin) % (2.0 * math.pi) or 2.0 * math.pi
+
+    def place(u: float) -> Place:
+        c, s = math.cos(begin + sweep * u), math.sin(begin + sweep * u)
+        point = at.x + c * major.x + s * minor[0], at.y + c * major.y + s * minor[1]
+        return Place(point, (c * minor[0] - s * major.x, c * minor[1] - s * major.y))
+
+    yield from arcs_of(place, near, max(1, math.ceil(sweep / (math.pi / 2.0) - 1e-9)))
+
+
+def _spline(entity: Any, near: float) -> Iterator[Element]:
+    curve = entity.construction_tool()
+    if max(p.z for p in curve.control_points) - min(p.z for p in curve.control_points) > _FLAT:
+        raise _NotFlatError
+    order = curve.order
+    knots = sorted(set(curve.knots()[order - 1 : len(curve.knots()) - order + 1]))
+    for begin, end in itertools.pairwise(knots):
+        if end - begin > 1e-12:
+            yield from arcs_of(_span(curve, begin, end), near)
+
+
+def _span(curve: Any, begin: float, end: float) -> Callable[[float], Place]:
+    """A spline between two knots; directions are those within, since a knot may be a corner."""
+    inside = 1e-6 * (end - begin)
+
+    def place(u: float) -> Place:
+        t = begin + (end - begin) * u
+        held = min(max(t, begin + inside), end - inside)
+        at = curve.point(t)
+        way = next(iter(curve.derivatives([held], 1)))[1]
+        return Place(_flat(at), _flat(way))
+
+    return place
+
+
+def _flat(v: Any) -> Point:
+    return float(v.x), float(v.y)
+
+
+_READERS: dict[str, Reader] = {
+    "LINE": _line,
+    "ARC": _arc,
+    "CIRCLE": _circle,
+    "LWPOLYLINE": _lwpolyline,
+    "POLYLINE": _polyline,
+    "ELLIPSE": _ellipse,
+    "SPLINE": _spline,
+}

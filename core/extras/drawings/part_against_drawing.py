@@ -1,0 +1,98 @@
+"""The proved part held against its drawing: where metal stays, and where it is cut too deep."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from core.extras.drawings.drawing_view import Profile, Side
+from core.geometry.lines_and_arcs import Arc, Element
+
+TOLERANCE = 0.02
+"""mm of a radius; less is what the steps of the control and of the drawing come to."""
+_STEP = 0.01  # mm along Z
+_WALL = 0.02  # mm by which a shoulder may stand elsewhere
+_CHORD = 0.0005  # mm
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """From Z to Z, mm; ``most``: the greatest difference of the radius, more than 0 where metal stays."""
+
+    back: float
+    front: float
+    most: float
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """``worst``: the greatest difference in mm beside the deviations; ``found`` from the face on."""
+
+    worst: float
+    found: tuple[Deviation, ...]
+
+
+def compared(
+    profile: Profile, part: Sequence[tuple[float, float]], tolerance: float = TOLERANCE
+) -> Comparison:
+    """A side of the part, points (z, r) from the face on, held against the drawing's."""
+    count = max(2, math.ceil((profile.front - profile.back) / _STEP))
+    z = np.linspace(profile.back + _WALL, profile.front - _WALL, count)
+    side = -1.0 if profile.side is Side.INSIDE else 1.0
+    low, high = _drawn(profile.elements, z, side)
+    made = _made(part, z, side)
+    off = np.where(made > high, made - high, np.where(made < low, made - low, 0.0))
+    off[np.isnan(off)] = 0.0
+    found = tuple(_spans(z, off, tolerance))
+    within = np.abs(off[np.abs(off) <= tolerance])
+    return Comparison(float(within.max(initial=0.0)), found)
+
+
+def _drawn(elements: Iterable[Element], z: FloatArray, side: float) -> tuple[FloatArray, FloatArray]:
+    """Least and greatest radius of the outermost line about each Z: a shoulder has both."""
+    fine = np.arange(z[0] - _WALL, z[-1] + _WALL + _STEP / 2.0, _STEP / 2.0)
+    outer = np.full(fine.shape, np.nan)
+    for each in elements:
+        points = np.array(points_of(each))
+        order = np.argsort(points[:, 1])
+        zs, rs = points[order, 1], side * points[order, 0]
+        there = (fine >= zs[0] - 1e-9) & (fine <= zs[-1] + 1e-9)
+        r = np.interp(fine[there], zs, rs)
+        if zs[-1] - zs[0] < 1e-6:
+            r = np.full(r.shape, rs.max())
+        outer[there] = np.fmax(outer[there], r)
+    reach = round(_WALL / (_STEP / 2.0))
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(outer, reach, mode="edge"), 2 * reach + 1)
+    low, high = np.nanmin(windows, axis=1), np.nanmax(windows, axis=1)
+    return np.interp(z, fine, low), np.interp(z, fine, high)
+
+
+def points_of(each: Element) -> list[tuple[float, float]]:
+    """The element as a polyline of (r, z), a chord nowhere further off than half a thousandth."""
+    if not isinstance(each, Arc):
+        return [each.start, each.end]
+    most = 2.0 * math.acos(max(0.0, 1.0 - _CHORD / each.radius)) if each.radius > _CHORD else math.pi / 2.0
+    count = max(2, math.ceil(abs(each.sweep) / most))
+    return [each.start, *(each.point(each.length * k / count) for k in range(1, count)), each.end]
+
+
+def _made(part: Sequence[tuple[float, float]], z: FloatArray, side: float) -> FloatArray:
+    """The outermost radius of the part's polyline at each Z."""
+    points = np.array(part, dtype=np.float64)[::-1]
+    return np.interp(z, points[:, 0], side * points[:, 1], left=np.nan, right=np.nan)
+
+
+def _spans(z: FloatArray, off: FloatArray, tolerance: float) -> Iterable[Deviation]:
+    """Neighbouring places that are off to the same side as one, from the face on."""
+    kind = np.where(off > tolerance, 1, np.where(off < -tolerance, -1, 0))
+    edges = np.flatnonzero(np.diff(kind)) + 1
+    for part in reversed(np.split(np.arange(len(z)), edges)):
+        if kind[part[0]]:
+            worst = off[part][np.abs(off[part]).argmax()]
+            yield Deviation(float(z[part[0]]), float(z[part[-1]]), float(worst))

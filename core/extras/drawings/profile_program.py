@@ -1,0 +1,435 @@
+"""The program of a profile: head, face, turning by G75 and along the contour, grooves; each piece a shape."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from core.extras.drawings.drawing import DrawingError
+from core.extras.drawings.drawing_view import Profile, Side
+from core.extras.drawings.nose_reach import reached_by_nose
+from core.extras.drawings.turning_contour import Groove, TurningContour, joined, reach_of, turning_contour
+from core.extras.shapes.contour import Row
+from core.extras.shapes.pieces import setting_at
+from core.extras.shapes.shape import Filled, Shape, filled
+from core.extras.shapes.shape_fields import Refusal, Value, Values
+from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_table import SHAPES_OF
+from core.geometry.lines_and_arcs import Arc, Element, Line, intersections
+from core.language.source import Dialect
+from core.message import Message
+from core.part.insert_codes import decoded
+from core.part.tool_shape import ToolShape
+from core.tool_edges import TIP_DIRECTIONS
+
+_SAME = 1e-3  # mm
+_ROOM = 0.05  # mm that stays for the finish where a nose cuts deepest in a fall
+
+
+@dataclass(frozen=True, slots=True)
+class Left:
+    """What no tool of the program cuts: from Z to Z, mm, and why."""
+
+    back: float
+    front: float
+    why: str
+
+
+class NoseOffset(NamedTuple):
+    """What G41 and G42 of the program reckon with: mm, X a radius.
+
+    ``number`` is that of a secondary offset, where the tool has a ``quadrant`` that of its cutting edge.
+    """
+
+    number: int
+    x: float
+    z: float
+    r: float
+    quadrant: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class ProfileProgram:
+    """The shapes, each with what is in force before it, their lines, and what they leave."""
+
+    shapes: tuple[tuple[Filled, Setting], ...]
+    lines: tuple[str, ...]
+    left: tuple[Left, ...]
+    contour: TurningContour
+    refusals: tuple[Refusal, ...] = ()
+    nose: NoseOffset | None = None
+    nose_radius: float = 0.0  # mm, of the turning tool
+    tool: float = 0.0
+
+
+def profile_program(
+    profile: Profile, typed: Values, lines: Sequence[str], setting: Setting
+) -> ProfileProgram:
+    """The shapes for a profile behind these ``lines``; without any it begins with a head.
+
+    ``typed`` are fields of HEAD, FACE, TURN and GROOVE by their words: T and BLADE (the tools), STOCK, FROM,
+    HOLE, ROUGH, LEAVE, FEED, RFEED, RPM, SURF, COMP, WIDE, MATERIAL. The language is that of ``setting``.
+    Raises DrawingError.
+    """
+    writer = _Writer(list(lines), setting)
+    if not lines:
+        words = {key: typed[key] for key in ("UNIT", "MATERIAL", "BAR") if key in typed}
+        writer.add("N", words)
+    tool = setting.tool(float(typed.get("T", 0) or 0))
+    _check_tip(tool, _number(typed, "T"), writer.now)
+    outside = profile.side is Side.OUTSIDE
+    mm = writer.now.mm
+    contour = turning_contour(profile, reach_of(tool, profile.side))
+    if not outside:
+        contour = replace(
+            contour, elements=tuple(_down_to(contour.elements, _number(typed, "HOLE") * mm / 2))
+        )
+    if _number(typed, "COMP"):
+        reached = reached_by_nose(contour.elements, nose_of(tool), inside=not outside)
+        contour = replace(contour, elements=reached)
+    past = _number(typed, "PAST") * mm if "PAST" in typed else past_end(tool)
+    beyond = [*_before_fall(contour.elements, outside=outside)]
+    contour = replace(contour, elements=tuple(joined(_past(beyond, past, nose_of(tool)))))
+    if outside and _number(typed, "STOCK"):
+        writer.add("F", _face(profile, typed, writer.now))
+    rows = tuple(rows_of(contour.elements, mm))
+    writer.add("T", _turn(profile, contour, typed, writer.now), rows)
+    left = [Left(*each) for each in contour.left]
+    for groove in contour.grooves:
+        over = _way_in(contour.elements, groove, 1.0 if outside else -1.0)
+        left += writer.groove(_groove(groove, typed, writer.now, over, outside=outside), groove)
+    shapes, made = tuple(writer.shapes), tuple(writer.lines[len(lines) :])
+    nose = nose_offset(tool, int(_number(typed, "COMP")), setting.dialect)
+    return ProfileProgram(
+        shapes, made, tuple(left), contour, tuple(writer.refusals), nose, nose_of(tool), _number(typed, "T")
+    )
+
+
+class _Writer:
+    """Shapes one behind the other, each in what the text before it leaves in force."""
+
+    def __init__(self, lines: list[str], setting: Setting) -> None:
+        self.lines, self.shapes = lines, list[tuple[Filled, Setting]]()
+        self.refusals: list[Refusal] = []
+        self._new = setting
+
+    @property
+    def now(self) -> Setting:
+        """What is in force behind the lines so far."""
+        return setting_at(self.lines, len(self.lines), self._new.shop, self._new)
+
+    def _shape(self, key: str) -> Shape:
+        return SHAPES_OF[self._new.dialect][key]
+
+    def add(self, key: str, typed: Values, rows: tuple[Row, ...] = ()) -> None:
+        """One more shape, by the key of its form; of one that refuses something nothing is written."""
+        now = self.now
+        one = filled(self._shape(key), typed, now, rows)
+        refused = one.refusals(now)
+        self.refusals += refused
+        if not refused:
+            self._take(one, now)
+
+    def _take(self, one: Filled, now: Setting) -> None:
+        self.shapes.append((one, now))
+        self.lines += one.lines(now)
+
+    def groove(self, typed: Values | str, groove: Groove) -> Iterator[Left]:
+        """A groove, or why it stays."""
+        span = groove.back[1], groove.front[1]
+        if isinstance(typed, str):
+            yield Left(*span, typed)
+            return
+        now = self.now
+        one = filled(self._shape("G"), typed, now)
+        refused = one.refusals(now)
+        if refused:
+            yield Left(*span, refused[0].text)
+        else:
+            self._take(one, now)
+
+
+def _number(typed: Values, word: str) -> float:
+    value = typed.get(word, 0.0)
+    return 0.0 if isinstance(value, str) else float(value)
+
+
+def _given(typed: Values, *words: str) -> dict[str, Value]:
+    return {word: typed[word] for word in words if word in typed}
+
+
+def _face(profile: Profile, typed: Values, setting: Setting) -> dict[str, Value]:
+    return {
+        **_given(typed, "T", "FROM", "STOCK", "FEED", "RPM", "SURF"),
+        "AT": round(profile.front / setting.mm, 5),
+    }
+
+
+def _turn(profile: Profile, contour: TurningContour, typed: Values, setting: Setting) -> dict[str, Value]:
+    words = _given(typed, "T", "FROM", "HOLE", "ROUGH", "LEAVE", "FEED", "RFEED", "RPM", "SURF", "COMP")
+    if "LEAVE" not in words:
+        words |= _left_for_finish(contour, typed, setting)
+    return {**words, "SIDE": str(profile.side)}
+
+
+def _left_for_finish(contour: TurningContour, typed: Values, setting: Setting) -> dict[str, Value]:
+    """G75 is not compensated: in a fall of angle a the nose R cuts R (1 + sin a - cos a) too deep."""
+    if setting.dialect is Dialect.SINUMERIK:
+        return {}  # CYCLE95 reckons with the nose
+    tool, a = setting.tool(_number(typed, "T")), contour.steepest
+    deep = nose_of(tool) * (1.0 + math.sin(a) - math.cos(a)) if a > 0.0 else 0.0
+    usual = 0.25 if setting.metric else 0.01
+    need = (deep + _ROOM) / setting.mm
+    if need <= usual:
+        return {}
+    step = 100.0 if setting.metric else 1000.0
+    return {"LEAVE": math.ceil(need * step) / step}
+
+
+def _check_tip(tool: ToolShape | None, number: float, setting: Setting) -> None:
+    """Refuse a nose without a tip quadrant: it would be taken to be centred on the control point.
+
+    The part would come out too small by the nose radius. Raises DrawingError.
+    """
+    if tool is not None and not tool.tip and (nose := nose_of(tool)):
+        raise DrawingError(
+            Message(
+                "T{number} has a nose radius of {nose}, but its tool data has no tip quadrant: "
+                "enter the tip quadrant on the SHAPE page of the tool (F8, F8).",
+                number=f"{number:.0f}",
+                nose=f"{nose / setting.mm:.4g}",
+            ),
+            "no-tip-quadrant",
+        )
+
+
+def nose_of(tool: ToolShape | None) -> float:
+    """The nose radius, mm, that the sheet of a tool states, itself or by the code of its insert."""
+    if tool is None or tool.nose_radius or not tool.insert:
+        return tool.nose_radius if tool is not None else 0.0
+    return decoded(tool.insert).nose_radius
+
+
+def nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOffset | None:
+    """What the secondary offset holds, so that the tip that was touched off cuts on size; None: not asked.
+
+    In SINUMERIK the cutting edge holds R and the tip quadrant beside the tip.
+    """
+    if not number or tool is None:
+        return None
+    if dialect is Dialect.SINUMERIK:
+        return NoseOffset(number, 0.0, 0.0, nose_of(tool), tool.tip)
+    along, across = TIP_DIRECTIONS[tool.tip]
+    r = nose_of(tool)
+    return NoseOffset(number, across * r, along * r, r)
+
+
+def past_end(tool: ToolShape | None) -> float:
+    """How far a contour goes on behind the part, mm: its nose would leave a fillet at the end."""
+    return math.ceil(10.0 * (nose_of(tool) + _ROOM)) / 10.0
+
+
+def _before_fall(elements: Sequence[Element], *, outside: bool) -> Iterator[Element]:
+    """A contour that falls from the face, begun by a way up the face from its lowest point.
+
+    Roughing refuses one that falls at once, as its way back crosses it.
+    """
+    side = 1.0 if outside else -1.0
+    r, z = elements[0].start
+    lowest = side * min(side * p[0] for each in elements for p in (each.start, each.end))
+    if side * (r - elements[0].end[0]) > _SAME and not _upright(elements[0]):
+        yield Line((lowest, z), (r, z))
+    yield from elements
+
+
+def _past(elements: Sequence[Element], far: float, nose: float) -> Iterator[Element]:
+    """With a line along Z behind the end; a wall ends where it stands.
+
+    Behind a fall of angle a the nose R leaves it R tan (a / 2) later, on which compensation needs a way.
+    """
+    yield from elements
+    (r, z), (dr, dz) = elements[-1].end, elements[-1].end_direction
+    fall = abs(math.atan2(dr, -dz))
+    far += math.ceil(10.0 * nose * math.tan(min(fall, 1.5) / 2.0)) / 10.0 if far > _SAME else 0.0
+    if far > _SAME and not _upright(elements[-1]):
+        yield Line((r, z), (r, z - far))
+
+
+def _down_to(elements: Iterable[Element], r: float) -> Iterator[Element]:
+    """The wall of a bore as far as it is wider than the hole that was drilled."""
+    for each in elements:
+        if each.end[0] >= r - _SAME:
+            yield each
+            continue
+        hole = Line((r, each.start[1] + 1e4), (r, each.end[1] - 1e4))
+        meet = intersections(hole, each)
+        if meet:
+            yield each.part(each.start, meet[0])
+        return
+
+
+# --- rows of a contour
+
+
+def rows_of(elements: Iterable[Element], mm: float) -> Iterator[Row]:
+    """The table of points of a contour, in a unit of so many mm."""
+    first = True
+    for each in elements:
+        if first:
+            yield _row(each.start, mm, 0.0)
+            first = False
+        arc = 0.0
+        if isinstance(each, Arc):
+            arc = each.radius / mm if each.clockwise else -each.radius / mm
+        yield _row(each.end, mm, arc)
+
+
+def _row(point: tuple[float, float], mm: float, arc: float) -> Row:
+    return Row(round(2.0 * point[0] / mm, 5) + 0.0, round(point[1] / mm, 5) + 0.0, arc=round(arc, 5))
+
+
+# --- grooves
+
+
+def _way_in(elements: Iterable[Element], groove: Groove, side: float) -> float:
+    """The radius that a blade has to pass on its way from the face, mm; 0 where nothing is in the way."""
+    before = [p[0] for each in elements for p in (each.start, each.end) if p[1] > groove.front[1] - _SAME]
+    widest = side * max((side * r for r in before), default=0.0)
+    return widest if before and side * (widest - groove.front[0]) > _SAME else 0.0
+
+
+def _groove(
+    groove: Groove, typed: Values, setting: Setting, over: float, *, outside: bool
+) -> dict[str, Value] | str:
+    """The fields of a groove shape; of walls that are curved the widest square groove within."""
+    mm, blade = setting.mm, _blade(typed, setting)
+    if blade is None:
+        number = _number(typed, "BLADE")
+        return (
+            Message(
+                "the groove cannot be cut because the width of T{number} is not defined",
+                number=f"{number:.0f}",
+            )
+            if number
+            else ("the groove cannot be cut because no grooving tool is specified")
+        )
+    wide = blade * mm
+    leaning = _leaning(groove, wide)
+    box = leaning[:4] if leaning else _square(groove, wide, 1.0 if outside else -1.0)
+    if box is None:
+        return Message("the groove is narrower than the {wide} mm blade", wide=f"{wide:.3g}")
+    front, back, bottom, edge = box
+    found: dict[str, Value] = {
+        "T": _number(typed, "BLADE"),
+        "SIDE": "FRONT" if outside else "BORE",
+        "TOP": round(2.0 * groove.front[0] / mm, 5),
+        "BOTTOM": round(2.0 * bottom / mm, 5),
+        "AT": round(-front / mm, 5) + 0.0,
+        "WIDE": blade,
+        "LONG": round((front - back) / mm, 5),
+        "EDGE": round(edge / mm, 5),
+        "OVER": round(2.0 * over / mm, 5),
+    }
+    if leaning:
+        found |= {"FANGLE": round(leaning.at_face, 3), "CANGLE": round(leaning.at_chuck, 3)}
+    return found
+
+
+class _Leaning(NamedTuple):
+    """A groove of two straight walls and a bottom: Z of both edges and r of the bottom, mm; degrees."""
+
+    front: float
+    back: float
+    bottom: float
+    edge: float
+    at_face: float
+    at_chuck: float
+
+
+def _leaning(groove: Groove, wide: float) -> _Leaning | None:
+    """None where the walls are square or no lines, or the bottom is narrower than the blade."""
+    if len(groove.elements) != 3 or not all(isinstance(each, Line) for each in groove.elements):
+        return None
+    down, bottom, up = groove.elements
+    if not _flat(bottom) or bottom.length < wide - _SAME or (_upright(down) and _upright(up)):
+        return None
+    angles = (
+        math.degrees(math.atan2(abs(each.end[1] - each.start[1]), abs(each.end[0] - each.start[0])))
+        for each in (down, up)
+    )
+    return _Leaning(groove.front[1], groove.back[1], bottom.start[0], 0.0, *angles)
+
+
+def _blade(typed: Values, setting: Setting) -> float | None:
+    """Its width in the unit of the program."""
+    if not _number(typed, "BLADE"):
+        return None
+    shape = setting.tool(_number(typed, "BLADE"))
+    sheet = round(shape.width / setting.mm, 5) if shape is not None and shape.width else 0.0
+    return _number(typed, "WIDE") or sheet or None
+
+
+def _square(groove: Groove, wide: float, side: float) -> tuple[float, float, float, float] | None:
+    """Z of both walls, r of the bottom and the chamfer at both edges; None where no blade goes in."""
+    inner = list(groove.elements)
+    edge = _chamfer(inner, side)
+    if edge:
+        inner = inner[1:-1]
+    if _upright(inner[0]) and _upright(inner[-1]) and len(inner) == 3 and _flat(inner[1]):
+        front, back = inner[1].start[1], inner[1].end[1]
+        return (front, back, inner[1].start[0], edge) if front - back >= wide - _SAME else None
+    flats = [each for each in inner if _flat(each) and each.length >= wide - _SAME]
+    if flats:
+        deepest = min(flats, key=lambda each: side * each.start[0])
+        return deepest.start[1], deepest.end[1], deepest.start[0], 0.0
+    return _one_plunge(groove, wide, side)
+
+
+def _chamfer(inner: Sequence[Element], side: float) -> float:
+    """The chamfer at 45 degrees that both edges have; 0 where they have none, or different ones."""
+    sizes = []
+    for each in (inner[0], inner[-1]):
+        dr, dz = abs(each.end[0] - each.start[0]), abs(each.end[1] - each.start[1])
+        sizes.append(dz if isinstance(each, Line) and abs(dr - dz) < _SAME else 0.0)
+    falls = side * (inner[0].end[0] - inner[0].start[0]) < 0.0
+    return sizes[0] if len(inner) >= 5 and falls and abs(sizes[0] - sizes[1]) < _SAME else 0.0
+
+
+def _upright(each: Element) -> bool:
+    return isinstance(each, Line) and abs(each.end[1] - each.start[1]) < _SAME
+
+
+def _flat(each: Element) -> bool:
+    return isinstance(each, Line) and abs(each.end[0] - each.start[0]) < _SAME
+
+
+def _one_plunge(groove: Groove, wide: float, side: float) -> tuple[float, float, float, float] | None:
+    """A blade's width about the deepest place, as deep as its corners allow."""
+    front, back = groove.front[1], groove.back[1]
+    if front - back < wide - _SAME:
+        return None
+    ends = [p for each in groove.elements for p in (each.start, each.end)]
+    middle = min(ends, key=lambda p: side * p[0])[1]
+    low = min(max(middle - wide / 2.0, back), front - wide)
+    bottom = side * max(side * r for r in _radii(groove.elements, low, low + wide))
+    if side * (groove.front[0] - bottom) < 0.05:
+        return None
+    return low + wide, low, bottom, 0.0
+
+
+def _radii(elements: Iterable[Element], low: float, high: float) -> Iterator[float]:
+    """Radii of a contour at the ends of a span and at its own points within."""
+    for each in elements:
+        walls = (Line((-1e5, z), (1e5, z)) for z in (low, high))
+        for point in (p for wall in walls for p in intersections(wall, each)):
+            yield point[0]
+        for point in (each.start, each.end):
+            if low - _SAME <= point[1] <= high + _SAME:
+                yield point[0]
+
+
+def greatest_diameter(profile: Profile) -> float:
+    """mm."""
+    return 2.0 * max(each.box[1] for each in profile.elements)

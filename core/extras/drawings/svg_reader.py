@@ -1,0 +1,209 @@
+"""SVG drawings: paths, lines, polylines, rectangles and circles, with their transforms; Y turned upwards."""
+
+from __future__ import annotations
+
+import io
+import itertools
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator
+from typing import Any
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element as Element_
+
+from core.extras.drawings.arc_fitting import Place, arcs_of
+from core.extras.drawings.drawing import Drawing, DrawingError, Drawn, arc, line, nearest, within_limits
+from core.extras.drawings.expansion import Content, check_expansion
+from core.geometry.lines_and_arcs import Element, Point
+from core.message import Message
+
+_PIXELS = 96.0  # an inch, by CSS
+_ROOT = re.compile(rb"<svg\b[^>]*>", re.IGNORECASE | re.DOTALL)
+_SIZE = re.compile(rb"\swidth\s*=\s*[\"']\s*[\d.]+(?:[eE][-+]?\d+)?\s*(mm|cm|in|pt|pc|Q)\s*[\"']")
+_DIMENSIONS = frozenset(
+    {
+        "d",
+        "points",
+        "x",
+        "y",
+        "x1",
+        "y1",
+        "x2",
+        "y2",
+        "cx",
+        "cy",
+        "r",
+        "rx",
+        "ry",
+        "width",
+        "height",
+        "transform",
+    }
+)
+_NO_NUMBER = re.compile(r"(?<![a-z])(nan|inf|infinity)(?![a-z])", re.IGNORECASE)
+_HREF = "{http://www.w3.org/1999/xlink}href"
+_INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}label"
+
+
+def read_svg(name: str, data: bytes) -> Drawing:
+    """Return the drawing of SVG text; its unit is known where its width has one.
+
+    Raises DrawingError, and whatever svgelements raises.
+    """
+    left_out: Counter[str] = Counter()
+    shapes = _shapes(name, data)
+    unit = 25.4 / _PIXELS if _has_unit(data) else 0.0
+    drawn = tuple(within_limits(_drawn(shapes, nearest(unit), left_out, name), name))
+    if not drawn:
+        what = ", ".join(sorted(left_out)) or "nothing"
+        raise DrawingError(
+            Message(
+                "{name} does not contain any paths or lines, only {what}: draw the contour as a path.",
+                name=name,
+                what=what[:80],
+            ),
+            "nothing-drawn",
+        )
+    return Drawing(name, drawn, unit, dict(left_out))
+
+
+def _has_unit(data: bytes) -> bool:
+    root = _ROOT.search(data[:65536])
+    return root is not None and _SIZE.search(root[0]) is not None
+
+
+def _shapes(name: str, data: bytes) -> Any:
+    from svgelements import SVG
+
+    if b"<!ENTITY" in data:
+        raise DrawingError(
+            Message("{name} defines XML entities, which are not supported: save it as plain SVG.", name=name),
+            "own-entities",
+        )
+    _check_elements(name, data)
+    root = SVG.parse(io.BytesIO(data), reify=True, ppi=_PIXELS)
+    if not isinstance(root, SVG):
+        words = Message(
+            "{name} is not an SVG file, because its first element is in another namespace: save "
+            "the drawing again.",
+            name=name,
+        )
+        raise DrawingError(words, "damaged")
+    return root
+
+
+def _check_elements(name: str, text: bytes) -> None:
+    """Refuse dimensions that are not numbers, and reused groups (``<use>``) of too many elements.
+
+    Raises DrawingError, ParseError.
+    """
+    root = ElementTree.fromstring(text)
+    by_id: dict[str, list[Element_]] = {}
+    count = 0
+    for each in root.iter():
+        count += 1
+        _check_numbers(name, each)
+        by_id.setdefault(f"#{each.get('id')}", []).append(each)
+
+    def content(element: Element_) -> Content:
+        used = element.get("href") or element.get(_HREF) or ""
+        targets = by_id.get(used, []) if str(element.tag).endswith("use") else []
+        return Content(1, [(1, each) for each in (*element, *targets)])
+
+    check_expansion(name, root, content, spare=count)
+
+
+def _check_numbers(name: str, element: Element_) -> None:
+    """Refuse a dimension that is not a number: svgelements would leave out the element."""
+    for dimension in _DIMENSIONS.intersection(element.keys()):
+        if _NO_NUMBER.search(element.get(dimension, "")):
+            kind = str(element.tag).rpartition("}")[2]
+            words = Message(
+                "{name}: {dimension} of <{kind}> is not a number. Draw that element again.",
+                name=name,
+                dimension=dimension,
+                kind=kind,
+            )
+            raise DrawingError(words, "no-number")
+
+
+def _drawn(root: Any, near: float, left_out: Counter[str], name: str) -> Iterator[Drawn]:
+    from svgelements import Close, Group, Move, Shape, SVGElement
+    from svgelements import Path as Outline
+
+    for each in root.elements():
+        if not isinstance(each, Shape):
+            if not isinstance(each, Group) and type(each) is not SVGElement:
+                left_out[type(each).__name__.lower()] += 1
+            continue  # a bare element draws nothing: it is what an editor notes of its window
+        values = each.values
+        if values.get("visibility") == "hidden" or values.get("display") == "none":
+            continue
+        layer = str(values.get(_INKSCAPE) or values.get("class") or values.get("id") or "")
+        centre = bool(values.get("stroke-dasharray")) and values.get("stroke-dasharray") != "none"
+        for segment in Outline(each):
+            if not isinstance(segment, Move | Close) and segment.start is None:
+                raise DrawingError(
+                    Message(
+                        "{name} has a path that does not begin with M: save the drawing again.", name=name
+                    ),
+                    "path-without-start",
+                )
+            for element in _segment(segment, near):
+                yield Drawn(element, layer, centre)
+
+
+def _segment(each: Any, near: float) -> Iterator[Element]:
+    from svgelements import Arc, Close, CubicBezier, Line, QuadraticBezier
+
+    if isinstance(each, Line | Close):
+        if each.start is not None and each.end is not None:
+            yield from line(_up(each.start), _up(each.end))
+    elif isinstance(each, Arc) and each.is_circular():
+        centre, a = _up(each.center), _up(each.start)
+        start = math.atan2(a[1] - centre[1], a[0] - centre[0])
+        yield from arc(centre, float(each.rx), start, -float(each.sweep))
+    elif isinstance(each, Arc):
+        yield from arcs_of(_of_ellipse(each), near, max(1, math.ceil(abs(each.sweep) / 1.6)))
+    elif isinstance(each, CubicBezier | QuadraticBezier):
+        yield from arcs_of(_of_bezier(each), near, 2)
+
+
+def _up(point: Any) -> Point:
+    return float(point.x), -float(point.y)
+
+
+def _of_ellipse(each: Any) -> Any:
+    """By the parameter of the ellipse; directions by differences, which are exact enough for a joint."""
+    begin, step = each.get_start_t(), 1e-6
+
+    def at(u: float) -> Point:
+        return _up(each.point_at_t(begin + each.sweep * u))
+
+    def place(u: float) -> Place:
+        a, b = at(u - step), at(u + step)
+        return Place(at(u), (b[0] - a[0], b[1] - a[1]))
+
+    return place
+
+
+def _of_bezier(each: Any) -> Any:
+    points = [_up(p) for p in each]
+
+    def place(u: float) -> Place:
+        held = min(max(u, 1e-6), 1.0 - 1e-6)
+        return Place(_bezier(points, u), _slope(points, held))
+
+    return place
+
+
+def _bezier(points: list[Point], u: float) -> Point:
+    while len(points) > 1:
+        points = [(a[0] + (b[0] - a[0]) * u, a[1] + (b[1] - a[1]) * u) for a, b in itertools.pairwise(points)]
+    return points[0]
+
+
+def _slope(points: list[Point], u: float) -> Point:
+    """The direction of a Bezier curve: the curve of the differences of its points."""
+    return _bezier([(b[0] - a[0], b[1] - a[1]) for a, b in itertools.pairwise(points)], u)

@@ -1,0 +1,138 @@
+"""The lines of a live tool: the spindle held as C, holes from the side, and the planes XC and ZC."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from core.extras.shapes.lines.code_lines import Code
+from core.extras.shapes.number_words import plain
+from core.extras.shapes.shape_setting import Setting
+
+QUICK = 50.0  # in/min: beside the part, in the plane
+
+
+class Holes(NamedTuple):
+    """``many`` holes from radius ``out`` to ``deep`` at Z ``at``, from ``angle`` on by ``step``."""
+
+    out: float
+    deep: float
+    at: float
+    angle: float
+    many: int
+    step: float
+    rate: float
+
+
+class Faces(NamedTuple):
+    """The centre of a mill round the end of a part: ``path`` of (x, y) from the axis, once for each depth.
+
+    ``entry`` is X beside the part at Y 0, to which it goes back behind each round; not where the ``path``
+    leads ``around`` the part: there it goes straight on to the first point, which lies beside it, too.
+    """
+
+    entry: float
+    path: list[tuple[float, float]]
+    levels: list[float]
+    rate: float
+    around: bool
+
+
+class Slots(NamedTuple):
+    """Slots in a cylinder of ``across``, by angle; each ``along`` Z and ``turn`` degrees round it.
+
+    ``depths`` are radii of the mill's end, one for each pass to and fro; ``out`` that beside the part.
+    """
+
+    across: float
+    at: float
+    along: float
+    turn: float
+    angles: list[float]
+    depths: list[float]
+    out: float
+    rate: float
+
+
+class LiveLines:
+    """In OmniTurn: M19 holds the spindle, CA and CI turn it, ~PLXC and ~PLZC are the planes."""
+
+    def __init__(self, code: Code, rpm: float) -> None:
+        self._code, self._rpm = code, rpm
+
+    @property
+    def _setting(self) -> Setting:
+        return self._code.setting
+
+    @property
+    def _quick(self) -> str:
+        return f"F{plain(QUICK * 25.4 / self._setting.mm, 0)}"
+
+    def _held(self, tool: float, x: float, z: float) -> None:
+        """The tool beside the part, the spindle stopped and held, the live tool on."""
+        self._code.begin(tool, 0.0, x, z)
+        self._code.write("M05", f"M{self._setting.shop.live[0]:02d}", "M19")
+
+    def _released(self) -> None:
+        self._code.forget()
+        self._code.away()
+        self._code.write(f"M{self._setting.shop.live[1]:02d}", "M05")
+
+    def _angle(self, word: str, degrees: float) -> None:
+        if word == "CA" or degrees:
+            wait = f"G04F{plain(_wait(degrees, self._setting.shop.c_rpm), 1)}"
+            self._code.write(f"{word}{plain(degrees, 3)}", wait)
+
+    def holes(self, tool: float, holes: Holes) -> None:
+        """Drilled and indexed, as a loop where there are several."""
+        code = self._code
+        self._held(tool, holes.out, holes.at)
+        self._angle("CA", holes.angle)
+        if holes.many > 1:
+            code.write(f"LS{holes.many}")
+        code.write(f"G94F{plain(holes.rate)}{code.x(holes.deep)}", f"G00{code.x(holes.out)}")
+        if holes.many > 1:
+            self._angle("CI", holes.step)
+            code.write("LF")
+        self._released()
+
+    def faces(self, tool: float, faces: Faces) -> None:
+        """In the plane XC, from the side where X is negative."""
+        code, rate = self._code, f"F{plain(faces.rate)}"
+        entry, (first, *rest) = plain(faces.entry, 4), faces.path
+        begin = f"X{plain(first[0], 4)}Y{plain(first[1], 4)}"
+        self._held(tool, -faces.entry, self._setting.near)
+        code.write(f"G94{rate}", "(~PLXC)")  # a shape before may have left feeds by the turn
+        for k, z in enumerate(faces.levels):
+            if k:
+                code.write(f"({begin if faces.around else f'X{entry}Y0'}{self._quick})")
+            code.write(f"({code.z(z)}{rate})", f"({begin}{rate})")
+            code.lines += [f"(X{plain(x, 4)}Y{plain(y, 4)})" for x, y in rest]
+            if not faces.around:
+                code.write(f"(X{entry}Y0)")
+        code.write("(END)", f"G00{code.x(-faces.entry)}")
+        self._released()
+
+    def slots(self, tool: float, slots: Slots) -> None:
+        """In the plane ZC, from where C stands at each angle."""
+        code, rate = self._code, plain(slots.rate)
+        around = slots.turn / 360.0 * math.pi * slots.across
+        self._held(tool, -slots.out, slots.at)
+        for k, angle in enumerate(slots.angles):
+            if k or angle:
+                self._angle("CA", angle)
+            code.write(f"G94F{rate}", "(~PLZC)", f"(D{plain(slots.across, 4)})")
+            for level, radius in enumerate(slots.depths):
+                there, back = f"(X{plain(slots.along, 4)}Y{plain(around, 4)}F{rate})", "(X0Y0)"
+                down = f"(Z{plain(2.0 * radius, 4)}F{plain(slots.rate / 2.0)})"
+                code.write(down, back if level % 2 else there)
+            code.write(f"(Z{plain(2.0 * slots.out, 4)}{self._quick})")
+            if len(slots.depths) % 2:
+                code.write("(X0Y0)")
+            code.write("(END)")
+        self._released()
+
+
+def _wait(degrees: float, c_rpm: float) -> float:
+    """Seconds of dwell in which C has arrived: the drive gives no word of it."""
+    return math.ceil(10.0 * (abs(degrees) / (6.0 * c_rpm) + 0.5)) / 10.0

@@ -1,0 +1,177 @@
+"""A process of its own reads a drawing: as it is, within its limits, until it is canceled, and in silence."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from core.extras.drawings import drawing_child, drawing_process
+from core.extras.drawings.drawing import Drawing, DrawingError, Drawn
+from core.extras.drawings.drawing_data import drawing_data, drawing_of, error_data
+from core.extras.drawings.drawing_file import read_drawing
+from core.extras.drawings.drawing_process import Limits, read_in_process
+from core.geometry.lines_and_arcs import Arc, Line
+from tests.coded import raises_code
+from tests.extras.drawings.hand import chain, dxf
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="the limits of a process are Linux's")
+BULGED = ((0, 0), (0, 4), (-8, 4, 0.3), (-8, 6), (-12, 6), (-12, 0))
+
+
+@pytest.fixture
+def hostile(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(drawing_process, "_CHILD", "tests.extras.drawings.hostile_child")
+
+
+def drawing(folder: Path, what: str) -> Path:
+    path = folder / "part.dxf"
+    path.write_text(what)
+    return path
+
+
+# --- what comes back
+
+
+def test_a_drawing_comes_back_as_it_is(tmp_path: Path) -> None:
+    path = dxf(tmp_path / "part.dxf", chain(*BULGED))
+    here = read_drawing(path)
+    assert any(isinstance(each.element, Arc) for each in here.drawn)
+    assert read_in_process(path) == here
+
+
+def test_every_kind_of_line_is_the_same_on_both_sides() -> None:
+    drawn = (
+        Drawn(Line((0.1, -1e7), (1.0 / 3.0, 2.0)), "PART"),
+        Drawn(Arc((0.0, 1.0), (1.0, 0.0), (0.0, 0.0), clockwise=True), "Ø — \u4e2d", centre=True),
+        Drawn(Arc((0.0, 1.0), (1.0, 0.0), (0.0, 0.0), clockwise=False), ""),
+    )
+    one = Drawing("part.dxf", drawn, 25.4, {"TEXT": 3})
+    assert drawing_of(drawing_data(one)) == one
+
+
+def test_an_error_comes_back_with_its_code(tmp_path: Path) -> None:
+    with raises_code(DrawingError, "damaged", "part.dxf"):
+        read_in_process(drawing(tmp_path, "no drawing"))
+    with raises_code(DrawingError, "unreadable", "none.svg"):
+        read_in_process(tmp_path / "none.svg")
+    with raises_code(DrawingError, "some-code", "why"):
+        drawing_of(error_data(DrawingError("why", "some-code")))
+
+
+def test_the_current_folder_lends_no_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder of drawings may hold a file that is named as a module of Python's."""
+    path = dxf(tmp_path / "part.dxf", chain(*BULGED))
+    (tmp_path / "struct.py").write_text("raise SystemExit(0)\n")
+    monkeypatch.chdir(tmp_path)
+    assert read_in_process(Path(path.name)) == read_drawing(path)
+
+
+# --- its limits
+
+
+@pytest.mark.usefixtures("hostile")
+def test_a_drawing_that_takes_too_long_is_given_up(tmp_path: Path) -> None:
+    with raises_code(DrawingError, "too-slow", "part.dxf"):
+        read_in_process(drawing(tmp_path, "hang"), limits=Limits(clock=0.0))
+
+
+@linux
+@pytest.mark.usefixtures("hostile")
+@pytest.mark.parametrize(
+    ("what", "code"),
+    [("spin", "too-slow"), ("grow", "out-of-memory"), ("die", "out-of-memory"), ("half", "out-of-memory")],
+)
+def test_a_process_that_takes_too_much_is_one_error(what: str, code: str, tmp_path: Path) -> None:
+    with raises_code(DrawingError, code, "part.dxf"):
+        read_in_process(drawing(tmp_path, what), limits=Limits(processor=1))
+
+
+@linux
+def test_memory_is_limited_for_the_libraries_too(tmp_path: Path) -> None:
+    path = dxf(tmp_path / "part.dxf", chain(*BULGED))
+    with raises_code(DrawingError, "out-of-memory", "part.dxf"):
+        read_in_process(path, limits=Limits(memory=24 * 1024**2))
+
+
+def test_a_library_without_memory_is_the_same_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def hungry(*_words: object) -> Drawing:
+        raise MemoryError
+
+    monkeypatch.setattr("core.extras.drawings.dxf_reader.read_dxf", hungry)
+    with raises_code(DrawingError, "out-of-memory", "part.dxf"):
+        drawing_of(drawing_child.answer(drawing(tmp_path, "0\n")))
+
+
+def test_where_no_process_can_be_started_it_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_words: object, **_more: object) -> None:
+        raise OSError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(subprocess, "Popen", refused)
+    with raises_code(DrawingError, "unreadable", "part.dxf"):
+        read_in_process(drawing(tmp_path, "x"))
+
+
+# --- canceled
+
+
+class CanceledError(Exception):
+    """Of whoever waits."""
+
+
+@linux
+@pytest.mark.usefixtures("hostile")
+def test_whoever_waits_may_cancel_and_the_process_ends(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started, asked, real = list[subprocess.Popen[bytes]](), list[float](), subprocess.Popen
+
+    def start(*words: object, **more: object) -> subprocess.Popen[bytes]:
+        started.append(real(*words, **more))  # type: ignore[call-overload]
+        return started[-1]
+
+    def cancel(seconds: float) -> None:
+        asked.append(seconds)
+        if len(asked) == 3:
+            raise CanceledError
+
+    monkeypatch.setattr(subprocess, "Popen", start)
+    with pytest.raises(CanceledError):
+        read_in_process(drawing(tmp_path, "hang"), cancel)
+    assert asked == sorted(asked)
+    assert started[0].returncode == -9
+
+
+# --- in silence
+
+
+@pytest.mark.usefixtures("hostile")
+def test_what_a_library_prints_reaches_nobody(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    with raises_code(DrawingError, "out-of-memory"):
+        read_in_process(drawing(tmp_path, "print"))
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.dxf", "999\nx\n0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC9999\n0\nENDSEC\n0\nEOF\n"),
+        ("b.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\nP\n10\nx\n0\nENDSEC\n0\nEOF\n"),
+        ("c.svg", '<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0 L x 5 Q Q"/></svg>'),
+        ("d.svg", "<svg"),
+    ],
+)
+def test_the_command_has_one_line_without_a_librarys_words(name: str, text: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_text(text)
+    start = "import sys; from app.cli.main import console; sys.exit(console())"
+    told = subprocess.run(
+        [sys.executable, "-c", start, "profile", str(tmp_path / name), "--list"],
+        capture_output=True, check=False, text=True,
+        env={**os.environ, "TURNDESK_HOME": str(tmp_path / "home")},
+    )  # fmt: skip
+    assert told.stderr.count("\n") == 1
+    assert told.stderr.startswith("turndesk: ")
+    assert not {"ezdxf", "svgelements", "Traceback", "xml", "token"} & set(told.stderr.lower().split())

@@ -1,0 +1,124 @@
+"""Drawings as SINUMERIK programs: CYCLE95 between labels, G41 and G42 by the cutting edge, grooves."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.cli.main import main
+from app.extras.drawings.profile_trial import Trial, TrialStock, tried
+from core.extras.drawings.drawing_view import Profile, Side
+from core.extras.drawings.profile_program import ProfileProgram
+from core.extras.drawings.profile_words import in_json, in_words
+from core.extras.shapes.pieces import pieces
+from core.extras.shapes.shape_setting import Setting, Shop
+from core.language.source import Dialect
+from core.tool_edges import TIP_DIRECTIONS
+from tests.coded import recorded_refusals
+from tests.extras.drawings.hand import TOOLS, chain, dxf, profile_of, program, text_of
+from tests.sinumerik.lathe import LINEAR
+from tests.texts import text as wording
+
+OURS = Dialect.SINUMERIK
+SHAFT = (
+    (0, 0),
+    (0, 5),
+    (-1, 6),
+    (-9, 6),
+    (-9, 4),
+    (-11, 4),
+    (-11, 6),
+    (-16, 6),
+    (-18, 10, 0.2),
+    (-26, 10),
+    (-26, 0),
+)
+
+
+def of(chosen: Profile, bar: float, hole: float = 0.0, **typed: Any) -> tuple[ProfileProgram, Trial]:
+    """The program, and its proof on the shipped lathe."""
+    made = program(chosen, dialect=OURS, **typed)
+    stock = TrialStock(bar, typed.get("STOCK", 0.5), hole)
+    return made, tried(text_of(made), chosen, stock, made.nose, LINEAR, TOOLS, dialect=OURS)
+
+
+def test_a_shaft_is_faced_roughed_finished_and_grooved(tmp_path: Path) -> None:
+    """The part is the drawing within .02 mm; each piece opens in its form."""
+    chosen = profile_of(dxf(tmp_path / "shaft.dxf", chain(*SHAFT)))
+    made, trial = of(chosen, 21.0)
+    assert not trial.errors
+    assert trial.comparison is not None
+    assert trial.comparison.worst < 0.02, trial.comparison.found
+    text = text_of(made).splitlines()
+    assert text[0].startswith("G54 G18 G90 G95 G710 DIAMON ; HEAD ")
+    assert {"G42", "CONTOUR_1:", "CONTOUR_1_END:"} <= set(text)
+    found = pieces(text, Shop(tools=TOOLS), Setting(dialect=OURS))
+    assert [(each.filled.shape.name, each.foreign) for each in found] == [
+        ("HEAD", -1), ("FACE", -1), ("TURN", -1), ("GROOVE", -1)
+    ]  # fmt: skip
+
+
+def test_a_bore_is_cut_left_of_its_contour(tmp_path: Path) -> None:
+    ring = [(0, 13), (0, 20), (-40, 20), (-40, 8), (-15, 8), (-15, 12), (-1, 12), (0, 13)]
+    chosen = profile_of(dxf(tmp_path / "ring.dxf", chain(*ring)), side=Side.INSIDE, axis="Y 0")
+    made, trial = of(chosen, 45.0, 14.0, HOLE=14.0, STOCK=0.0)
+    assert "G41" in made.lines
+    assert not trial.errors
+    assert trial.comparison is not None
+    assert trial.comparison.worst < 0.02, trial.comparison.found
+
+
+def test_what_the_cutting_edge_has_to_hold_is_told(tmp_path: Path) -> None:
+    """The nose of DNMG150404 is .4 mm; a tip at the right front is quadrant 3. D is the edge, not T."""
+    chosen = profile_of(dxf(tmp_path / "shaft.dxf", chain(*SHAFT)))
+    made = program(chosen, dialect=OURS)
+    assert TIP_DIRECTIONS[3] == (-1, -1)
+    words = wording("shapes.edge-must-have", edge="T1 D1", radius=".4", unit="mm", quadrant=3)
+    assert words in list(in_words(made, None, chosen, metric=True))
+    told = in_json(made, None, chosen)
+    assert (told["secondary_offset"], told["cutting_edge"]) == (
+        None, {"tool": 1, "edge": 1, "r": 0.4, "quadrant": 3}
+    )  # fmt: skip
+
+
+def test_without_a_nose_of_the_edge_the_proof_says_what_stays(tmp_path: Path) -> None:
+    """A cone of 45 degrees cut by the bare tip stands off it by R (2 - sqrt 2) along the radius: .234."""
+    chosen = profile_of(dxf(tmp_path / "cone.dxf", chain((0, 0), (0, 5), (-8, 13), (-20, 13), (-20, 0))))
+    made, trial = of(chosen, 27.0, COMP=0.0)
+    assert made.nose is None
+    assert trial.comparison is not None
+    (stays,) = [each.most for each in trial.comparison.found if each.front > -8.0]
+    assert stays == pytest.approx(0.4 * (2.0 - math.sqrt(2.0)), abs=0.02)
+
+
+def test_a_fall_leaves_what_is_usual_for_the_finish(tmp_path: Path) -> None:
+    """CYCLE95 reckons with the nose, so no more has to stay than on a cylinder."""
+    drop = 5.0 * math.tan(math.radians(20.0))
+    points = ((0, 0), (0, 10), (-8, 10), (-13, 10 - drop), (-30, 10 - drop), (-30, 0))
+    made, trial = of(profile_of(dxf(tmp_path / "fall.dxf", chain(*points))), 21.0)
+    assert any(", , , 0.25, " in line for line in made.lines if line.startswith("CYCLE95"))
+    assert not trial.errors
+    assert trial.comparison is not None
+    assert trial.comparison.worst < 0.02
+
+
+def test_the_command_writes_the_language_of_the_name(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    drawing, out = dxf(tmp_path / "shaft.dxf", chain(*SHAFT)), tmp_path / "shaft.mpf"
+    machine = Path(__file__).parents[3] / "resources" / "machines" / "sinumerik-linear.toml"
+    assert main(["profile", str(drawing), "--out", str(out), "--machine", str(machine), "--bar", "22"]) == 0
+    assert out.read_text(encoding="ascii").startswith("G54 G18 G90 G95 G710 DIAMON ; HEAD ")
+    assert main(["profile", str(drawing), "--machine", str(machine), "--bar", "22"]) == 0
+    assert capsys.readouterr().out.startswith("G54 G18 G90 G95 G710 DIAMON ; HEAD ")
+
+
+def test_the_command_refuses_klartext(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    refusals = recorded_refusals(monkeypatch)
+    drawing = dxf(tmp_path / "shaft.dxf", chain(*SHAFT))
+    assert main(["profile", str(drawing), "--out", str(tmp_path / "shaft.h")]) != 0
+    assert [each.code for each in refusals] == ["wrong-language"]
+    assert not (tmp_path / "shaft.h").exists()

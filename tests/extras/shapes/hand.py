@@ -1,0 +1,97 @@
+"""A programmer at the forms: every key counts; and the proof of what they write."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from app.compose.machine_files import load_machine
+from app.compose.machine_setup import setup_for
+from app.extras.shapes.shapes_model import Shapes
+from core.extras.shapes.shape_setting import Shop
+from core.interpreter.job_setup import SecondaryOffset, Setup, ToolOffset
+from core.language.diagnostics import Severity
+from core.language.source import Source
+from core.machine.machine_model import Machine
+from core.part.stock_spec import stock_spec
+from core.part.tool_shape import ToolShape
+from core.proving.part_proof import prove_with_part
+from core.proving.program_tools import PartSetting
+from core.proving.proof_report import PartReport, Report
+
+_NAMED = {"⏎": "Enter", "↓": "Down", "↑": "Up", "→": "Right", "←": "Left", "⌫": "Back"}
+
+
+@cache
+def machine() -> Machine:
+    """The machine that is shipped."""
+    return load_machine(None)
+
+
+class Programmer:
+    """At the shapes of an empty program. ``strokes`` counts keys as a person strikes them."""
+
+    def __init__(self, tools: dict[int, ToolShape] | None = None, text: str = "") -> None:
+        self.shop = Shop(slide_accel=3048.0, tools=tools or {})
+        self.shapes = Shapes(shop=self.shop)
+        self.strokes = 0
+        self.open(text)
+
+    def open(self, text: str = "", line: int = 1) -> str:
+        """Shift+F3 in the editor: two keys."""
+        self.strokes += 2
+        self.shapes.fetch = lambda: self.shop
+        said = self.shapes.open("x.nc", text, line)
+        self.shapes.worker.settle(60.0)
+        return said
+
+    def strike(self, keys: str) -> Programmer:
+        """Keys: characters, arrows, ``⏎``; ``§`` is F2."""
+        for key in keys:
+            self.strokes += 1
+            if key == "§":
+                self.shapes.write()
+            else:
+                assert self.shapes.typed(_NAMED.get(key, key)), (key, keys, self.shapes.prompt())
+        return self
+
+    def close(self) -> str:
+        """The text, as it stands in the editor."""
+        assert self.shapes.form is None, self.shapes.prompt()
+        self.shapes.close()
+        return self.shapes.text
+
+    @property
+    def word(self) -> str:
+        """Of the marked field."""
+        assert self.shapes.form is not None
+        return self.shapes.form.word
+
+    @property
+    def troubles(self) -> dict[str, str]:
+        """What the form refuses, by field."""
+        assert self.shapes.form is not None
+        return self.shapes.form.troubles
+
+
+def setup_of(offsets: dict[int, SecondaryOffset] | None = None, *, strict: bool = False) -> Setup:
+    """All tools are touched off at one place."""
+    places = {n: ToolOffset(12.7, -76.2) for n in range(1, 33)}
+    return setup_for(machine(), tools=places, secondary=offsets or {}, strict=strict)
+
+
+def proved(
+    text: str,
+    tools: dict[int, ToolShape] | None = None,
+    offsets: dict[int, SecondaryOffset] | None = None,
+    stock: str = "",
+) -> tuple[Report, PartReport]:
+    """The program and its part on the shipped machine, as the desk proves them, notes as errors too."""
+    setting = PartSetting(stock=stock_spec(stock) if stock else None, shapes=tools or {})
+    report, part = prove_with_part(Source("x.nc", text), setup_of(offsets, strict=True), machine(), setting)
+    assert part is not None
+    return report, part
+
+
+def bad(report: Report) -> list[str]:
+    """Everything that would keep it from running, or that ought to be looked at."""
+    return [d.in_one_line("x.nc") for d in report.diagnostics if d.severity is not Severity.NOTE]

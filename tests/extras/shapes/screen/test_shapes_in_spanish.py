@@ -1,0 +1,28 @@
+"""Refusals of shapes on a Spanish screen."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.desk.translation import tr
+from app.extras.shapes.shape_form import ShapeForm
+from core.extras.shapes.shape_setting import Setting
+from core.extras.shapes.shape_table import SHAPES
+from tests.screen.hands import Hands
+from tests.screen.test_language import spanish
+
+__all__ = ["spanish"]
+
+
+@pytest.mark.parametrize(
+    ("key", "told"),
+    [
+        ("R", "TAMAÑO"),
+        ("G", "DIÁMETRO"),
+        ("F", "DIÁMETRO INICIAL"),
+    ],
+)
+def test_a_refusal_of_a_shape_calls_its_field_as_the_form_does(spanish: Hands, key: str, told: str) -> None:
+    form = ShapeForm(SHAPES[key], Setting())
+    assert tr(form.trouble).startswith(f"{told} falta: ")
+    assert tr(SHAPES[key].name) not in {"", SHAPES[key].name}

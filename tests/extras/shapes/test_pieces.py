@@ -1,0 +1,364 @@
+"""Shapes found again in a text: whole, changed by hand, and what is never written over unasked."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.extras.shapes.contour import Row
+from core.extras.shapes.pieces import Piece, pieces, renewed, setting_at, with_shape
+from core.extras.shapes.shape import Filled, filled
+from core.extras.shapes.shape_fields import Value
+from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_table import SHAPES
+from core.part.tool_shape import ToolKind, ToolShape
+from tests.extras.shapes.hand import Programmer, bad, proved
+from tests.texts import shows
+from tests.texts import text as wording
+
+SHOP = Shop(slide_accel=3048.0)
+PROFILE = (Row(0.0, 0.0), Row(0.5, chamfer=0.05), Row(z=-0.5), Row(0.7, -0.6, arc=0.2), Row(0.7, -0.9))
+BORED = (Row(0.6, 0.0), Row(0.5, -0.05), Row(z=-0.4), Row(0.3), Row(z=-0.6))
+
+Step = tuple[str, dict[str, Value], tuple[Row, ...]]
+STEPS: dict[str, list[Step]] = {
+    "face and profile": [
+        ("F", {"FROM": 0.75, "STOCK": 0.06}, ()),
+        ("T", {"FROM": 0.75, "ROUGH": 0.05, "LEAVE": 0.01}, PROFILE),
+    ],
+    "profile in a bore": [
+        ("D", {"DIA": 0.25, "DEEP": 1.0}, ()),
+        ("T", {"SIDE": "BORE", "HOLE": 0.25, "ROUGH": 0.03}, BORED),
+    ],
+    "taper": [("A", {"FROM": 0.75, "SMALL": 0.4, "LONG": 0.5, "ANGLE": 10.0, "ROUGH": 0.05}, ())],
+    "edge of a bore": [
+        ("D", {"DIA": 0.25, "DEEP": 1.0}, ()),
+        ("K", {"DIAM": 0.25, "EDGE": 0.04, "SIDE": "BORE", "KIND": "RADIUS"}, ()),
+    ],
+    "groove": [("G", {"TOP": 0.75, "BOTTOM": 0.5, "AT": 0.3, "WIDE": 0.062, "LONG": 0.25, "EDGE": 0.01}, ())],
+    "groove with slanted walls behind a flange": [
+        (
+            "G",
+            {
+                "TOP": 0.75,
+                "BOTTOM": 0.5,
+                "AT": 0.3,
+                "WIDE": 0.062,
+                "LONG": 0.25,
+                "FANGLE": 20.0,
+                "CANGLE": 5.0,
+                "OVER": 1.0,
+            },
+            (),
+        )
+    ],
+    "thread": [
+        ("T", {"FROM": 0.5}, (Row(0.0, 0.0), Row(0.49, chamfer=0.05), Row(z=-0.8))),
+        ("R", {"SIZE": "1/2", "LONG": 0.5}, ()),
+    ],
+    "pipe thread": [
+        ("T", {"FROM": 0.6}, (Row(0.0, 0.0), Row(0.52, 0.0), Row(0.56, -0.6))),
+        ("R", {"SERIES": "NPT", "SIZE": "1/4"}, ()),
+    ],
+    "three starts": [
+        ("T", {"FROM": 0.5}, (Row(0.0, 0.0), Row(0.49, chamfer=0.05), Row(z=-0.8))),
+        ("R", {"SIZE": "1/2", "LONG": 0.5, "STARTS": 3.0}, ()),
+    ],
+    "part off": [
+        ("P", {"FROM": 0.75, "LONG": 0.8, "WIDE": 0.08, "BACK": 0.03, "NEXT": 0.03, "SIDE": "REAR"}, ())
+    ],
+    "cross holes": [
+        ("C", {"DIA": 0.125, "FROM": 0.75, "AT": 0.3, "DEEP": 0.3, "COUNT": 4.0, "ANGLE": 27.5}, ()),
+    ],
+    "hexagon": [
+        ("F", {"FROM": 0.75}, ()),
+        ("M", {"DIA": 0.25, "FROM": 0.75, "ACROSS": 0.65, "LONG": 0.2, "DEEP": 0.1}, ()),
+    ],
+    "two flats": [("M", {"DIA": 0.25, "FROM": 0.75, "ACROSS": 0.65, "LONG": 0.2, "FLATS": 2.0}, ())],
+    "slots": [
+        ("F", {"FROM": 0.75}, ()),
+        (
+            "S",
+            {"DIA": 0.125, "FROM": 0.75, "AT": 0.2, "LONG": 0.5, "DEEP": 0.1, "PASS": 0.05, "COUNT": 3.0},
+            (),
+        ),
+    ],
+    "bar loop": [
+        ("L", {"COUNT": 3.0, "LONG": 0.9}, ()),
+        ("F", {"FROM": 0.75}, ()),
+        ("T", {"FROM": 0.75}, (Row(0.0, 0.0), Row(0.5), Row(z=-0.5), Row(0.75))),
+        ("P", {"FROM": 0.75, "LONG": 0.8, "WIDE": 0.1}, ()),
+    ],
+}
+
+
+def written(steps: list[Step], **head: Value) -> list[str]:
+    """The program of these shapes, head first."""
+    text: list[str] = []
+    behind = 0
+    for key, typed, rows in [("N", head, ()), *steps]:
+        setting = setting_at(text, behind, SHOP)
+        one = filled(SHAPES[key], typed, setting, rows)
+        assert not one.refusals(setting), one.refusals(setting)
+        text, behind = with_shape(text, behind, one, setting)
+    return text
+
+
+def only(text: list[str], name: str) -> Piece:
+    (found,) = [each for each in pieces(text, SHOP) if each.filled.shape.name == name]
+    return found
+
+
+@pytest.mark.parametrize("name", STEPS)
+def test_every_shape_is_read_and_found_good_and_found_again(name: str) -> None:
+    """Strict, as the original control takes it: no finding at all."""
+    text = written(STEPS[name])
+    report, _ = proved("\n".join(text) + "\n")
+    assert not bad(report), (bad(report), text)
+    found = pieces(text, SHOP)
+    assert [each.filled.shape.name for each in found] == [
+        "HEAD",
+        *(SHAPES[key].name for key, _, _ in STEPS[name]),
+    ]
+    assert all(each.foreign < 0 and not each.taken for each in found)
+    for piece, (_, typed, rows) in zip(found[1:], STEPS[name], strict=True):
+        assert {word: piece.filled.values[word] for word in typed} == typed
+        assert len(piece.filled.rows) == len(rows)
+
+
+@pytest.mark.parametrize("head", [{"WORDS": "RADIUS"}, {"UNIT": "METRIC"}])
+def test_other_modes_are_found_again(head: dict[str, Value]) -> None:
+    scale = 25.4 if "UNIT" in head else 1.0
+    typed: dict[str, float | str] = {
+        "FROM": 0.75 * scale,
+        "LONG": 0.8 * scale,
+        "WIDE": 0.08 * scale,
+        "BACK": 0.03 * scale,
+    }
+    text = written([("P", typed, ())], **head)
+    report, _ = proved("\n".join(text) + "\n")
+    assert not bad(report)
+    assert only(text, "PART OFF").filled.values["FROM"] == pytest.approx(0.75 * scale)
+
+
+def changed(text: list[str], before: str, after: str) -> list[str]:
+    (at,) = [n for n, line in enumerate(text) if line == before]
+    return [*text[:at], after, *text[at + 1 :]]
+
+
+def test_a_feed_that_was_changed_by_hand_is_taken_over() -> None:
+    text = changed(written(STEPS["thread"][:1]), "G95F.003Z0", "G95F.002Z0")
+    piece = only(text, "TURN")
+    assert (piece.foreign, piece.taken, piece.filled.values["FEED"]) == (-1, ("FEED",), 0.002)
+
+
+def test_a_depth_and_a_speed_that_were_changed_by_hand_are_taken_over() -> None:
+    text = written([("D", {"DIA": 0.25, "DEEP": 0.6}, ())])
+    (speed,) = [line for line in text if line.startswith("M03S")]
+    (hole,) = [line for line in text if line.startswith("G81")]
+    text = changed(changed(text, speed, "M03S900"), hole, hole.replace("Z-.6", "Z-.65"))
+    piece = only(text, "DRILL")
+    assert piece.foreign == -1
+    assert (piece.filled.values["RPM"], piece.filled.values["DEEP"]) == (900.0, 0.65)
+
+
+def test_points_that_were_changed_by_hand_are_those_of_the_form() -> None:
+    text = changed(written([("T", {"FROM": 0.5}, PROFILE[:3])]), "Z-.5", "Z-.55")
+    piece = only(text, "TURN")
+    assert piece.foreign == -1
+    assert piece.filled.rows[2] == Row(z=-0.55)
+
+
+def test_a_line_put_in_by_hand_is_told_and_nothing_is_taken_for_it() -> None:
+    text = written([("D", {"DIA": 0.25, "DEEP": 0.6}, ())])
+    (at,) = [n for n, line in enumerate(text) if line.startswith("G81")]
+    text.insert(at, "G04F1")
+    piece = only(text, "DRILL")
+    assert piece.foreign == at
+    assert piece.behind == text.index("M30")
+
+
+def test_a_figure_that_no_field_explains_is_told() -> None:
+    text = changed(written([("D", {"DIA": 0.25, "DEEP": 0.6}, ())]), "Z.05", "Z.75")
+    assert only(text, "DRILL").foreign >= 0
+
+
+def test_lines_between_shapes_stay() -> None:
+    text = written(STEPS["thread"])
+    second = only(text, "THREAD")
+    text[second.first : second.first] = ["M01(LOOK AT THE DIAMETER)"]
+    found = pieces(text, SHOP)
+    assert [each.foreign for each in found] == [-1, -1, -1]
+    again, _ = with_shape(text, 0, found[1].filled, found[1].setting, found[1])
+    assert again == text
+
+
+def test_comments_of_others_are_no_shapes() -> None:
+    assert not pieces(["G90G94F300(HEAD OF THE LINE)", "T1(DRILL)", "T2(FACE 1 TWO)", "M30"], SHOP)
+
+
+def test_another_unit_converts_what_was_written() -> None:
+    """A drill of .25 in is one of 6.35 mm: no figure keeps its digits under another unit."""
+    text = written([("D", {"DIA": 0.25, "DEEP": 0.6, "FEED": 0.004}, ())])
+    before = pieces(text, SHOP)
+    head = filled(SHAPES["N"], {"UNIT": "METRIC"}, setting_at(text, 0, SHOP))
+    text, _ = with_shape(text, 0, head, before[0].setting, before[0])
+    text, stay = renewed(text, SHOP, before)
+    drill = only(text, "DRILL").filled
+    assert not stay
+    assert (drill.values["DIA"], drill.values["DEEP"], drill.values["FEED"]) == (6.35, 15.24, 0.1016)
+    assert not bad(proved("\n".join(text) + "\n")[0])
+
+
+def test_a_shape_changed_by_hand_stays_under_another_unit_and_is_counted() -> None:
+    text = written([("D", {"DIA": 0.25, "DEEP": 0.6}, ())])
+    text.insert(-2, "G04F1")
+    before = pieces(text, SHOP)
+    again, stay = renewed(text, SHOP, before)
+    assert (again, stay) == (text, 1)
+
+
+def refused(key: str, typed: dict[str, Value], rows: tuple[Row, ...] = ()) -> dict[str, str]:
+    setting = setting_at(written([]), 1, SHOP)
+    one: Filled = filled(SHAPES[key], typed, setting, rows)
+    return {each.word: each.text for each in one.refusals(setting)}
+
+
+@pytest.mark.parametrize(
+    ("key", "typed", "word"),
+    [
+        ("F", {"FROM": 0.5, "TO": 0.6}, "TO"),
+        ("F", {"FROM": 0.5, "RPM": 9000.0}, "RPM"),
+        ("F", {"FROM": 0.5, "FEED": 3.0}, "FEED"),
+        ("F", {"FROM": 0.5, "T": 33.0}, "T"),
+        ("F", {"FROM": 0.5, "T": 1.5}, "T"),
+        ("F", {}, "FROM"),
+        ("A", {"SMALL": 0.5, "LARGE": 0.4, "LONG": 1.0}, "LARGE"),
+        ("K", {"DIAM": 0.5, "EDGE": 0.3}, "EDGE"),
+        ("G", {"TOP": 0.5, "BOTTOM": 0.4, "AT": 0.1, "WIDE": 0.125, "LONG": 0.1}, "LONG"),
+        ("G", {"TOP": 0.5, "BOTTOM": 0.6, "AT": 0.1, "WIDE": 0.06}, "BOTTOM"),
+        ("G", {"TOP": 0.5, "BOTTOM": 0.4, "AT": 0.1, "WIDE": 0.06, "SIDE": "BORE"}, "BOTTOM"),
+        ("G", {"TOP": 0.5, "BOTTOM": 0.4, "AT": 0.1, "WIDE": 0.06, "COUNT": 3.0, "PITCH": 0.05}, "PITCH"),
+        ("G", {"TOP": 0.5, "BOTTOM": 0.4, "AT": 0.1, "WIDE": 0.06, "OVER": 0.45}, "OVER"),
+        ("G", {"TOP": 0.5, "BOTTOM": 0.3, "AT": 0.1, "WIDE": 0.06, "LONG": 0.12, "FANGLE": 45.0}, "LONG"),
+        ("G", {"TOP": 0.5, "BOTTOM": 0.4, "AT": 0.1, "WIDE": 0.06, "LONG": 0.2, "CANGLE": -5.0}, "CANGLE"),
+        (
+            "G",
+            {"TOP": 0.5, "BOTTOM": 0.4, "AT": 0.1, "WIDE": 0.06, "LONG": 0.2, "FANGLE": 20.0, "EDGE": 0.01},
+            "EDGE",
+        ),
+        ("P", {"FROM": 0.5, "LONG": 0.5, "WIDE": 0.06, "TO": 0.5}, "TO"),
+        ("P", {"FROM": 0.5, "LONG": 0.5, "WIDE": 0.06, "BACK": 0.3}, "BACK"),
+        ("D", {"DIA": 0.25, "DEEP": 0.5, "START": 0.6}, "START"),
+        ("D", {"DIA": 0.1, "DEEP": 1.0, "PECK": 0.0}, "PECK"),
+        ("B", {"HOLE": 0.5, "DIAM": 0.4, "DEEP": 0.5}, "HOLE"),
+        ("B", {"HOLE": 0.3, "DIAM": 0.4, "DEEP": 0.1, "EDGE": 0.2}, "EDGE"),
+        ("C", {"DIA": 0.1, "FROM": 0.5, "AT": 0.2, "DEEP": 0.6}, "DEEP"),
+        ("C", {"DIA": 0.1, "FROM": 0.5, "AT": 0.2, "DEEP": 0.1, "COUNT": 5.0, "STEP": 90.0}, "STEP"),
+        ("M", {"DIA": 0.25, "FROM": 0.5, "ACROSS": 0.5, "LONG": 0.2}, "ACROSS"),
+        ("M", {"DIA": 0.25, "FROM": 0.5, "ACROSS": 0.45, "LONG": 0.2, "CORNERS": "SHARP"}, "ACROSS"),
+        ("S", {"DIA": 0.1, "FROM": 0.5, "DEEP": 0.1}, "LONG"),
+        ("S", {"DIA": 0.1, "FROM": 0.5, "LONG": 0.2, "DEEP": 0.3}, "DEEP"),
+    ],
+)
+def test_what_no_part_can_have_is_refused_at_its_field(key: str, typed: dict[str, Value], word: str) -> None:
+    said = refused(key, typed)
+    assert list(said) == [word], said
+    assert said[word][-1] in ".?"
+
+
+@pytest.mark.parametrize(
+    ("rows", "word"),
+    [
+        ((Row(0.0, 0.0),), "#2"),
+        ((Row(0.5), Row(z=-0.5)), "#1"),
+        ((Row(0.5, 0.0), Row(0.5)), "#2"),
+        ((Row(0.4, 0.0), Row(1.0, 0.0, arc=0.1)), "#2"),
+        ((Row(0.4, 0.0), Row(0.5, chamfer=0.2), Row(z=-0.1)), "#2"),
+        ((Row(0.4, 0.0), Row(z=-0.5, radius=0.1)), "#2"),
+        ((Row(0.4, 0.0), Row(-0.2), Row(z=-1.0)), "#2"),
+    ],
+)
+def test_contours_that_cannot_be_are_refused_at_their_point(rows: tuple[Row, ...], word: str) -> None:
+    assert word in refused("T", {}, rows)
+
+
+def test_tools_that_are_others_by_their_sheets_are_refused_and_not_proposed() -> None:
+    sheets = {1: ToolShape(ToolKind.TURNING, insert="CNMG432"), 3: ToolShape(ToolKind.DRILL, diameter=6.35)}
+    setting = Setting(shop=Shop(tools=sheets))
+    thread = filled(SHAPES["R"], {"SIZE": "1/2", "LONG": 0.5}, setting)
+    assert (thread.n("T"), thread.refusals(setting)) == (2.0, [])
+    drill = filled(SHAPES["D"], {"DEEP": 0.5}, setting)
+    assert (drill.n("T"), drill.n("DIA")) == (3.0, 0.25)
+    wrong = filled(SHAPES["R"], {"SIZE": "1/2", "LONG": 0.5, "T": 3.0}, setting)
+    assert "T" in {each.word for each in wrong.refusals(setting)}
+
+
+def test_what_works_in_a_bore_is_proposed_there() -> None:
+    sheets = {1: ToolShape(ToolKind.TURNING), 2: ToolShape(ToolKind.BORING), 3: ToolShape(ToolKind.THREADING)}
+    setting = Setting(shop=Shop(tools=sheets))
+    assert filled(SHAPES["T"], {}, setting).n("T") == 1.0
+    assert filled(SHAPES["T"], {"SIDE": "BORE"}, setting).n("T") == 2.0
+    assert filled(SHAPES["R"], {"SIZE": "1/2"}, setting).n("T") == 3.0
+    assert filled(SHAPES["R"], {"SIZE": "1/2", "SIDE": "BORE"}, setting).n("T") == 4.0
+
+
+@pytest.mark.parametrize(
+    ("key", "typed", "sheet", "word"),
+    [
+        ("D", {"DIA": 0.25, "DEEP": 2.0, "PECK": 0.25}, ToolShape(ToolKind.DRILL, length=38.1), "DEEP"),
+        ("D", {"DIA": 0.3, "DEEP": 0.5}, ToolShape(ToolKind.DRILL, diameter=6.35), "DIA"),
+        ("B", {"HOLE": 0.3, "DIAM": 0.5, "DEEP": 0.5}, ToolShape(ToolKind.BORING, diameter=10.0), "T"),
+        ("B", {"HOLE": 0.5, "DIAM": 0.6, "DEEP": 2.0}, ToolShape(ToolKind.BORING, stick_out=25.4), "DEEP"),
+        (
+            "G",
+            {"TOP": 1.0, "BOTTOM": 0.2, "AT": 0.1},
+            ToolShape(ToolKind.GROOVING, width=3.0, length=6.0),
+            "BOTTOM",
+        ),
+        ("P", {"FROM": 1.0, "LONG": 0.5}, ToolShape(ToolKind.PARTING, width=2.0, length=10.0), "FROM"),
+        ("R", {"SIZE": "1/2", "LONG": 0.5}, ToolShape(ToolKind.THREADING, point=55.0), "T"),
+        ("R", {"SIZE": "1/2", "LONG": 0.5}, ToolShape(ToolKind.THREADING, pitch=1.5), "T"),
+    ],
+)
+def test_what_the_tool_cannot_do_is_refused(
+    key: str, typed: dict[str, Value], sheet: ToolShape, word: str
+) -> None:
+    setting = Setting(shop=Shop(tools={1: sheet}))
+    said = filled(SHAPES[key], typed, setting).refusals(setting)
+    assert [each.word for each in said] == [word], said
+
+
+def test_nose_compensation_in_a_bar_loop_is_refused() -> None:
+    text = written(STEPS["bar loop"][:1])
+    setting = setting_at(text, len(text) - 1, SHOP)
+    assert setting.called
+    one = filled(SHAPES["T"], {"COMP": 1.0}, setting, PROFILE[:3])
+    assert [each.word for each in one.refusals(setting)] == ["COMP"]
+
+
+DRILLED = "T1(DRILL 0P25 DIA 0P5 DEEP 0 PECK 0P004 FEED 1200 RPM)"
+
+
+@pytest.mark.parametrize("line", [3, 6, 9])
+@pytest.mark.parametrize(
+    "spoilt",
+    [DRILLED.replace("DEEP", "DEEPER"), DRILLED.replace(")", " BY JOE)"), DRILLED.removeprefix("T1")],
+)
+def test_a_comment_that_is_spoilt_is_told_with_its_line(spoilt: str, line: int) -> None:
+    text = Programmer().strike("n§d.25⏎.5§").close()
+    assert DRILLED in text
+    hand = Programmer(text=text)
+    hand.open(text.replace(DRILLED, spoilt), line)
+    assert hand.shapes.form is None
+    assert hand.shapes.prompt() == wording("shapes.comment-edited", line=3, shape="DRILL")
+
+
+@pytest.mark.parametrize(
+    ("comment", "line"), [("(DRILL)", 3), ("(DRILL .25 DIA BY HAND)", 5), (DRILLED.removeprefix("T1"), 2)]
+)
+def test_a_comment_of_another_hand_is_none_of_ours(comment: str, line: int) -> None:
+    """Of the last one the cursor stands in the head, which can be read."""
+    text = Programmer().strike("n§d.25⏎.5§").close()
+    hand = Programmer(text=text)
+    hand.open(text.replace(DRILLED, f"T1{comment}" if line > 2 else comment), line)
+    assert not shows(hand.shapes.prompt(), "shapes.comment-edited")

@@ -1,0 +1,320 @@
+"""Shapes in SINUMERIK: good on the shipped lathe, opened again, and of the same metal as in OmniTurn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.compose.machine_setup import setup_for
+from app.extras.shapes.shapes_model import Shapes
+from core.extras.shapes.contour import Row
+from core.extras.shapes.pieces import pieces, renewed, setting_at, with_shape
+from core.extras.shapes.shape import filled
+from core.extras.shapes.shape_fields import Value
+from core.extras.shapes.shape_setting import Setting, Shop
+from core.extras.shapes.shape_table import SHAPES_OF
+from core.interpreter.dialects import ReadProgram
+from core.interpreter.elementary_blocks import Kind
+from core.interpreter.job_setup import Setup, ToolOffset
+from core.language.source import Dialect, Source
+from core.part.stock_spec import stock_spec
+from core.part.tool_shape import ToolKind, ToolShape
+from core.proving.part_proof import prove_with_part
+from core.proving.program_tools import PartSetting
+from core.tool_edges import edge_key
+from tests.extras.shapes.hand import machine, setup_of
+from tests.sinumerik.lathe import LINEAR
+from tests.texts import text
+
+SHOP = Shop(slide_accel=3048.0)
+OURS, THEIRS = Dialect.SINUMERIK, Dialect.OMNITURN
+NEAR = 0.0001 * 25.4  # mm of a radius
+PROFILE = (
+    Row(0.0, 0.0), Row(12.0, chamfer=1.0), Row(z=-12.0, radius=1.0), Row(18.0), Row(z=-15.0),
+    Row(22.0, -17.0, arc=4.0), Row(26.0, -19.0, arc=-3.0),
+)  # fmt: skip
+BORED = (Row(16.0, 0.0), Row(14.0, -1.0), Row(z=-8.0), Row(10.0, -10.0, arc=-2.0), Row(z=-15.0))
+
+Step = tuple[str, dict[str, Value], tuple[Row, ...]]
+DRILLED: Step = ("D", {"DIA": 9.0, "DEEP": 40.0, "PECK": 9.0}, ())
+STEPS: dict[str, list[Step]] = {
+    "face": [("F", {"FROM": 30.0, "AT": -1.5, "STOCK": 1.5}, ())],
+    "face by surface speed": [("F", {"FROM": 30.0, "AT": -0.5, "SURF": 90.0}, ())],
+    "profile": [("T", {"FROM": 30.0, "ROUGH": 1.0, "LEAVE": 0.25}, PROFILE)],
+    "profile at one go": [("T", {"FROM": 30.0}, PROFILE)],
+    "profile in a bore": [DRILLED, ("T", {"SIDE": "BORE", "HOLE": 9.0, "ROUGH": 0.5}, BORED)],
+    "taper": [("A", {"FROM": 30.0, "SMALL": 10.0, "LONG": 12.0, "ANGLE": 10.0, "ROUGH": 1.0}, ())],
+    "two roughed": [
+        ("T", {"FROM": 30.0, "ROUGH": 1.0}, (*PROFILE[:2], Row(z=-12.0))),
+        ("A", {"FROM": 12.0, "SMALL": 6.0, "LONG": 4.0, "LARGE": 10.0, "ROUGH": 0.5}, ()),
+    ],
+    "edge": [("K", {"DIAM": 30.0, "EDGE": 2.0, "KIND": "RADIUS"}, ())],
+    "groove": [
+        ("G", {"TOP": 30.0, "BOTTOM": 20.0, "AT": 10.0, "WIDE": 2.0, "LONG": 5.0, "EDGE": 0.5}, ()),
+        ("G", {"TOP": 30.0, "BOTTOM": 26.0, "AT": 20.0, "WIDE": 2.0, "COUNT": 3.0, "PITCH": 4.0}, ()),
+    ],
+    "groove with leaning walls": [
+        ("G", {"TOP": 30.0, "BOTTOM": 20.0, "AT": 9.0, "WIDE": 2.0, "LONG": 8.0, "FANGLE": 15.0}, ())
+    ],
+    "drill": [("D", {"DIA": 6.0, "DEEP": 15.0, "PECK": 0.0}, ())],
+    "peck behind a hole": [
+        ("D", {"DIA": 6.0, "DEEP": 20.0, "PECK": 4.0}, ()),
+        ("D", {"DIA": 6.0, "DEEP": 35.0, "START": 20.0, "PECK": 4.0}, ()),
+    ],
+    "bore": [DRILLED, ("B", {"HOLE": 9.0, "DIAM": 12.0, "DEEP": 12.0, "EDGE": 1.0, "ROUGH": 0.5}, ())],
+    "part off": [("P", {"FROM": 30.0, "LONG": 20.0, "WIDE": 3.0, "BACK": 1.0, "NEXT": 1.0}, ())],
+}  # fmt: skip
+
+
+def written(steps: list[Step], dialect: Dialect, **head: Value) -> list[str]:
+    """The program of these shapes in a language, head first, in mm."""
+    text, behind, new = list[str](), 0, Setting(dialect=dialect)
+    for key, typed, rows in [("N", {"UNIT": "METRIC", **head}, ()), *steps]:
+        setting = setting_at(text, behind, SHOP, new)
+        one = filled(SHAPES_OF[dialect][key], typed, setting, rows)
+        assert not one.refusals(setting), one.refusals(setting)
+        text, behind = with_shape(text, behind, one, setting)
+    return text
+
+
+def source(text: list[str], dialect: Dialect) -> Source:
+    return Source("x.mpf" if dialect is OURS else "x.nc", "\n".join(text) + "\n", dialect)
+
+
+def setup_in(dialect: Dialect, nose: float = 0.0, *, right: bool = False) -> Setup:
+    """Tools at one place. In SINUMERIK D2 lies 2 mm from D1: to the face, of a ``right`` D1 to the chuck."""
+    tools = {n: ToolOffset(50.0, 100.0, nose, 3) for n in range(1, 10)}
+    edges = {edge_key(n, 2): ToolOffset(50.0, 102.0 if right else 98.0, nose, 4) for n in tools}
+    return setup_for(LINEAR, tools=tools | edges, secondary={}) if dialect is OURS else setup_of()
+
+
+def tools_of(steps: list[Step]) -> dict[int, ToolShape]:
+    """Drills and blades as their fields say; of the others only the tip cuts."""
+    found = dict[int, ToolShape]()
+    for number, (key, typed, _) in enumerate(steps, 1):
+        if key == "D":
+            found[number] = ToolShape(ToolKind.DRILL, diameter=float(typed["DIA"]), point=118.0, length=60.0)
+        elif key in {"G", "P"}:
+            kind = ToolKind.GROOVING if key == "G" else ToolKind.PARTING
+            found[number] = ToolShape(kind, tip=3, width=float(typed["WIDE"]), length=20.0)
+    return found
+
+
+def metal(
+    text: list[str],
+    dialect: Dialect,
+    tools: dict[int, ToolShape] | None = None,
+    nose: float = 0.0,
+    *,
+    right: bool = False,
+) -> tuple[np.ndarray, list[str]]:
+    """Outer and inner radii of the proved part by Z, and what the proof says against the program."""
+    lathe = LINEAR if dialect is OURS else machine()
+    setting = PartSetting(stock=stock_spec("bar:30mm:60mm"), shapes=tools or {})
+    report, part = prove_with_part(
+        source(text, dialect), setup_in(dialect, nose, right=right), lathe, setting
+    )
+    assert part is not None
+    assert part.last is not None
+    at = np.arange(-30.0, -0.05, 0.0625) + 0.01
+    sides = [np.array(side)[::-1] for side in (part.last.outside, part.last.bore) if side]
+    found = [np.interp(at, side[:, 0], side[:, 1]) for side in sides]
+    said = [d.in_one_line("x") for d in report.diagnostics if d.check != "depth-of-cut"]  # one pass, as typed
+    return np.stack(found), said
+
+
+@pytest.mark.parametrize("name", STEPS)
+def test_the_same_metal_as_in_omniturn_and_found_again(name: str) -> None:
+    ours, theirs = written(STEPS[name], OURS), written(STEPS[name], THEIRS)
+    tools = tools_of(STEPS[name])
+    (mine, said), (there, _) = metal(ours, OURS, tools), metal(theirs, THEIRS, tools)
+    assert not said, ours
+    assert mine.shape == there.shape
+    assert np.quantile(np.abs(mine - there), 0.97) <= NEAR  # columns at a wall lie before or behind it
+    found = pieces(ours, SHOP, Setting(dialect=OURS))
+    assert [each.filled.shape.name for each in found][1:] == [
+        SHAPES_OF[OURS][key].name for key, _, _ in STEPS[name]
+    ]
+    for piece, (_, typed, rows) in zip(found[1:], STEPS[name], strict=True):
+        assert (piece.foreign, piece.taken, len(piece.filled.rows)) == (-1, (), len(rows))
+        assert {word: piece.filled.values[word] for word in typed} == typed
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        {"AT": 10.0, "LONG": 5.0, "TOP": 30.0, "BOTTOM": 20.0},
+        {"AT": 10.0, "LONG": 2.0, "TOP": 30.0, "BOTTOM": 24.0, "COUNT": 3.0, "PITCH": 5.0},
+        {"AT": 10.0, "LONG": 5.0, "TOP": 26.0, "BOTTOM": 20.0, "OVER": 30.0, "CORNER": "RIGHT"},
+    ],
+)
+def test_a_groove_by_its_cycle_is_that_of_its_lines(typed: dict[str, Value]) -> None:
+    """The blade of 2 mm has D1 at the corner that was touched off, and D2."""
+    turned: Step = ("T", {"FROM": 30.0}, (Row(30.0, 0.0), Row(z=-9.0), Row(26.0), Row(z=-28.0)))
+    before = [turned] if "OVER" in typed else []
+    steps = [*before, ("G", {"WIDE": 2.0, **typed}, ())]
+    cycle = [*before, ("G", {"WIDE": 2.0, "DN": 2.0, **typed}, ())]
+    text = written(cycle, OURS)
+    assert sum(line.startswith("CYCLE93") for line in text) == typed.get("COUNT", 1.0)
+    tools = tools_of(steps)
+    if typed.get("CORNER") == "RIGHT":
+        tools = {n: replace(each, tip=4) for n, each in tools.items()}
+    mine, said = metal(text, OURS, tools, right="CORNER" in typed)
+    there, _ = metal(written(steps, OURS), OURS, tools)
+    assert not said, text
+    assert np.quantile(np.abs(mine - there), 0.97) <= NEAR
+    piece = pieces(text, SHOP, Setting(dialect=OURS))[-1]
+    assert (piece.foreign, piece.taken, piece.filled.values["DN"]) == (-1, (), 2.0)
+
+
+@pytest.mark.parametrize(
+    ("typed", "word"),
+    [({"DN": 1.0}, "DN"), ({"SIDE": "REAR"}, "SIDE"), ({"EDGE": 0.5}, "EDGE"), ({"CANGLE": 10.0}, "FANGLE")],
+)
+def test_what_the_cycle_of_grooves_does_not_do_is_refused(typed: dict[str, Value], word: str) -> None:
+    setting = setting_at(written([], OURS), 1, SHOP, Setting(dialect=OURS))
+    groove = {"TOP": 30.0, "BOTTOM": 20.0, "AT": 9.0, "WIDE": 2.0, "LONG": 8.0, "DN": 2.0, **typed}
+    one = filled(SHAPES_OF[OURS]["G"], groove, setting)
+    assert [each.word for each in one.refusals(setting)] == [word]
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        {"SERIES": "M", "SIZE": "12", "LONG": 12.0},
+        {"SERIES": "M", "SIZE": "12", "LONG": 12.0, "SIDE": "BORE", "AT": 2.0},
+        {"SERIES": "M", "SIZE": "20", "LONG": 16.0, "STARTS": 2.0},
+        {"SERIES": "NPT", "SIZE": "1/4", "LONG": 12.0},
+    ],
+)
+def test_the_same_thread_as_in_omniturn(typed: dict[str, Value]) -> None:
+    """The last pass is the thread: radius and Z at its end, its lead, its slope."""
+    relief = {"RELIEF": 8.0}
+    ours = written([("R", {**typed, **relief}, ())], OURS)
+    theirs = written([("R", {**typed, **relief, "PULL": "NO"}, ())], THEIRS)
+    last = []
+    for program, dialect in ((ours, OURS), (theirs, THEIRS)):
+        blocks = ReadProgram(source(program, dialect)).begin(setup_in(dialect)).blocks()
+        last.append([b for b in blocks if b.kind is Kind.THREAD][-1])
+    mine, there = last
+    assert (mine.x, mine.z, mine.feed) == pytest.approx((there.x, there.z, there.feed), abs=2 * NEAR)
+    slopes = [(b.x - b.x0) / (b.z - b.z0) for b in last]
+    assert slopes[0] == pytest.approx(slopes[1], abs=1e-3)
+    piece = pieces(ours, SHOP, Setting(dialect=OURS))[-1]
+    assert (piece.foreign, piece.taken) == (-1, ())
+
+
+def test_the_program_is_that_of_a_good_programmer() -> None:
+    """One move a line, words apart, CYCLE95 on the contour that the finish runs along, G42 to the right."""
+    typed: dict[str, float | str] = {
+        "FROM": 30.0,
+        "ROUGH": 2.0,
+        "COMP": 1.0,
+        "FEED": 0.1,
+        "RFEED": 0.2,
+        "RPM": 1200.0,
+    }
+    text = written([("T", typed, PROFILE[:4])], OURS, BAR=30.0)
+    assert text[0].startswith("G54 G18 G90 G95 G710 DIAMON ; HEAD METRIC UNIT ")
+    assert text[2].startswith("T1 D1 ; TURN OUTSIDE SIDE 30 FROM 2 ROUGH ")
+    assert text[3:] == [
+        "G95 S1200 M3", "G0 X31 Z25", "Z2.5",
+        'CYCLE95("CONTOUR_1:CONTOUR_1_END", 2, , , 0.25, 0.2, 0.2, , 1)',
+        "G0 X0 Z2.5", "G42", "CONTOUR_1:", "G1 X0 Z0 F0.1", "X12 CHR=1", "Z-12 RND=1", "X18", "X31",
+        "CONTOUR_1_END:", "G40", "G0 Z25", "M30",
+    ]  # fmt: skip
+    assert not metal(text, OURS, nose=0.4)[1]
+
+
+@pytest.mark.parametrize("head", [{"WORDS": "RADIUS"}, {"UNIT": "INCH"}])
+def test_other_modes_are_found_again(head: dict[str, Value]) -> None:
+    scale = 1.0 if "WORDS" in head else 1.0 / 25.4
+    typed: dict[str, Value] = {"FROM": 30.0 * scale, "ROUGH": 1.0 * scale}
+    rows = tuple(Row(x * scale, z * scale) for x, z in ((0.0, 0.0), (20.0, 0.0), (20.0, -10.0)))
+    text = written([("T", typed, rows)], OURS, **head)
+    assert text[0].startswith("G54 G18 G90 G95 G700 DIAMON" if scale < 1 else "G54 G18 G90 G95 G710 DIAMOF")
+    found, said = metal(text, OURS)
+    assert not said
+    assert found[0].min() == pytest.approx(10.0, abs=NEAR)
+    piece = pieces(text, SHOP, Setting(dialect=OURS))[-1]
+    assert (piece.foreign, len(piece.filled.rows)) == (-1, 3)
+
+
+def test_a_figure_changed_by_hand_is_taken_over_and_a_line_put_in_is_told() -> None:
+    text = written([("D", {"DIA": 6.0, "DEEP": 15.0, "PECK": 0.0}, ())], OURS)
+    (at,) = [n for n, line in enumerate(text) if line.startswith("CYCLE81")]
+    assert text[at] == "CYCLE81(2.5, 0, 1.25, -15)"
+    text[at] = "CYCLE81(2.5, 0, 1.25, -16)"
+    piece = pieces(text, SHOP, Setting(dialect=OURS))[-1]
+    assert (piece.foreign, piece.taken, piece.filled.values["DEEP"]) == (-1, ("DEEP",), 16.0)
+    text.insert(at, "G4 F1")
+    assert pieces(text, SHOP, Setting(dialect=OURS))[-1].foreign == at
+
+
+def test_block_numbers_change_nothing_and_another_unit_converts() -> None:
+    text = written([("D", {"DIA": 6.35, "DEEP": 12.7, "PECK": 0.0, "FEED": 0.1016}, ())], OURS)
+    numbered = [f"N{10 * n} {line}" for n, line in enumerate(text, 1)]
+    before = pieces(numbered, SHOP, Setting(dialect=OURS))
+    assert [each.foreign for each in before] == [-1, -1]
+    new = Setting(dialect=OURS)
+    head = filled(SHAPES_OF[OURS]["N"], {"UNIT": "INCH"}, setting_at(text, 0, SHOP, new))
+    text, _ = with_shape(text, 0, head, before[0].setting, before[0])
+    text, stay = renewed(text, SHOP, before)
+    assert not stay
+    assert "CYCLE81(0.1, 0, 0.05, -0.5)" in text
+
+
+@pytest.mark.parametrize(
+    ("key", "typed", "word"),
+    [
+        ("R", {"SERIES": "M", "SIZE": "12", "LONG": 12.0}, "RELIEF"),
+        ("F", {"FROM": 10.0, "TO": 12.0}, "TO"),
+        ("T", {"ROUGH": 1.0, "LABEL": 1.5}, "LABEL"),
+        ("D", {"DIA": 2.0, "DEEP": 30.0, "PECK": 0.0}, "PECK"),
+    ],
+)
+def test_what_no_part_can_have_is_refused_at_its_field(key: str, typed: dict[str, Value], word: str) -> None:
+    setting = setting_at(written([], OURS), 1, SHOP, Setting(dialect=OURS))
+    one = filled(SHAPES_OF[OURS][key], typed, setting, PROFILE)
+    assert [each.word for each in one.refusals(setting)] == [word]
+
+
+@pytest.fixture
+def desk() -> Iterator[Shapes]:
+    shapes = Shapes(lambda: SHOP, Setting(metric=True), shop=SHOP)
+    yield shapes
+    shapes.close()
+
+
+def strike(shapes: Shapes, keys: str) -> None:
+    for key in keys:
+        if key == "§":
+            shapes.write()
+        else:
+            assert shapes.typed({"⏎": "Enter", "↑": "Up"}.get(key, key)), (key, shapes.prompt())
+
+
+def test_the_forms_write_the_language_of_the_program(desk: Shapes) -> None:
+    """Head and a hole by keys into a program whose name says SINUMERIK; the hole is opened again from it."""
+    assert desk.open("x.mpf", "M30\n", 1) == ""
+    strike(desk, "n§d6⏎15§")
+    lines = desk.text.splitlines()
+    assert lines[0].startswith("G54 G18 G90 G95 G710 DIAMON ; HEAD ")
+    assert lines[-3:] == ["G18", "G0 Z25", "M30"]
+    assert desk.open("x.mpf", desk.text, lines.index("CYCLE81(2.5, 0, 1.25, -15)") + 1) == ""
+    assert desk.form is not None
+    assert desk.form.one.n("DEEP") == 15.0
+
+
+def test_a_program_without_a_head_asks_for_it(desk: Shapes) -> None:
+    assert desk.open("x.mpf", "%_N_X_MPF\nM30\n", 1) == ""
+    strike(desk, "d")
+    assert (desk.form, "PRESS N" in desk.notice) == (None, True)
+
+
+def test_a_language_that_the_forms_do_not_write_is_refused(desk: Shapes) -> None:
+    for helpers in (False, True):
+        assert desk.open("x.h", "", 1, helpers=helpers) == text("shapes.other-language")

@@ -1,0 +1,30 @@
+"""The editor without an optional feature that writes lines: no key opens a panel."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import Qt
+
+from app.editor.editor_view import Mode
+from app.screen import page_table
+from app.screen.editor_panel import EditorPanel
+from tests.screen.editor.writer import Writer
+from tests.screen.hands import Key
+
+SHIFT = Qt.KeyboardModifier.ShiftModifier
+
+
+@pytest.fixture
+def no_panel(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page_table, "_PANELS", ())
+
+
+@pytest.mark.parametrize("key", [Key.Key_F3, Key.Key_F4])
+def test_no_key_opens_a_panel(no_panel: None, writer: Writer, key: Key) -> None:
+    writer.new("plain")
+    assert type(writer.editor.panel) is EditorPanel
+    writer.key(key, SHIFT)
+    writer.editor.head.grab()
+    assert (writer.editor.mode, len(writer.editor.head._places)) == (Mode.TEXT, 1)  # the drawn keyboard
+    writer.type("g04")
+    assert writer.text() == "g04"
