@@ -15,7 +15,6 @@ from core.interpreter.klartext.contour_cycles import floor_finishing, rough_out,
 from core.interpreter.klartext.cycle_moves import CycleTool, Parameters
 from core.interpreter.klartext.hole_cycles import SMALLEST, heights
 from core.language.klartext.q_parameters import MAX_FEED
-from core.message import Message
 
 _MOST_SLOTS = 1_000
 _CENTRE, _LEFT_END, _MIDDLE, _RIGHT_END = range(4)
@@ -29,9 +28,8 @@ def circular_slot(tool: CycleTool) -> Iterator[Block]:
     centre, begin, sweep = _placed(tool)
     count, step = int(tool.plain(377, 1.0)), tool.plain(378, 0.0)
     if not 1 <= count <= _MOST_SLOTS:
-        raise tool.refuse(
-            Message("Q377={count} is not a valid number of slots.", count=count), "Enter a valid number."
-        )
+        text = "Q377={count} is not a valid number of slots."
+        raise tool.refuse(text, "Enter a valid number.", count=count)
     scope = int(tool.plain(215, 0.0))
     side, floor = tool.length(368, 0.0), tool.length(369, 0.0)
     for at in range(count):
@@ -50,13 +48,10 @@ def slot_of(tool: CycleTool, centre: Point, begin: float, sweep: float) -> Loop:
     """The outline of one slot, counter-clockwise. Raises ProgramError for one that is none."""
     radius, half = tool.length(375) / 2.0, tool.length(219) / 2.0
     if not SMALLEST < half < radius or not 0.0 < abs(sweep) <= 360.0:
-        text = Message(
-            "A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible.",
-            half=f"{2 * half:g}",
-            sweep=f"{sweep:g}",
-            radius=f"{2 * radius:g}",
+        text = (
+            "A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible."
         )
-        raise tool.refuse(text, "Correct Q219, Q248 and Q375.")
+        raise tool.refuse(text, "Correct Q219, Q248 and Q375.", half=2 * half, sweep=sweep, radius=2 * radius)
     if radius * math.radians(360.0 - abs(sweep)) < 2.0 * half:
         raise tool.refuse("The ends of the slot overlap.", "Reduce Q248.")
     first, last = sorted((begin, begin + sweep))

@@ -39,10 +39,8 @@ class Clearing:
         self.tool, self.area = tool, area
         depth = tool.length(1)
         if depth > 0.0:
-            raise tool.refuse(
-                Message("Depth Q1={depth} mm is positive (upward).", depth=f"{depth:+.10g}"),
-                "Enter the depth with a minus sign.",
-            )
+            text = "Depth Q1={depth} mm is positive (upward)."
+            raise tool.refuse(text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
         self.surface = tool.length(5, 0.0)
         self.bottom = self.surface + depth
         self.clear = self.surface + (tool.length(6) if above is None else above)
@@ -61,12 +59,9 @@ class Clearing:
         """From ring to ring: Q2 tool radii, and no more than one, which leaves nothing standing."""
         overlap = self.tool.plain(2, 1.0)
         if not 0.0 < overlap < _MOST_OVERLAP:
-            text = Message(
-                "With path overlap {named}={overlap}, the cycle cannot clear the area.",
-                named=self.tool.named(2),
-                overlap=f"{overlap:g}",
-            )
-            raise self.tool.refuse(text, "Enter a value between 0.0001 and 1.9999.")
+            text = "With path overlap {named}={overlap}, the cycle cannot clear the area."
+            hint = "Enter a value between 0.0001 and 1.9999."
+            raise self.tool.refuse(text, hint, named=self.tool.named(2), overlap=overlap)
         return min(overlap, 1.0) * self.tool.radius
 
     def levels(self, bottom: float) -> list[float]:
@@ -113,10 +108,8 @@ def contour_data(tool: CycleTool) -> None:
     if tool.length(1) > 0.0:
         raise tool.refuse("Depth Q1 is positive (upward).", "Enter the depth with a minus sign.")
     if not 0.0 < tool.plain(2, 1.0) < _MOST_OVERLAP:
-        raise tool.refuse(
-            "With the programmed path overlap Q2, the cycle cannot clear the area.",
-            "Set Q2 to a value between 0.0001 and 1.9999.",
-        )
+        text = "With the programmed path overlap Q2, the cycle cannot clear the area."
+        raise tool.refuse(text, "Set Q2 to a value between 0.0001 and 1.9999.")
 
 
 # --- clearing -------------------------------------------------------------------------------------------
@@ -127,10 +120,8 @@ def pilot_drilling(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
     told = Clearing(tool, area)
     radius = tool.radius_of(int(tool.plain(13)))
     if radius is None or radius <= SMALLEST:
-        text = Message(
-            "Rough-out tool {plain} (Q13) has no radius in the tool table.", plain=f"{tool.plain(13):g}"
-        )
-        raise tool.refuse(text, "Set Q13 to the number of a measured tool.")
+        text = "Rough-out tool {plain} (Q13) has no radius in the tool table."
+        raise tool.refuse(text, "Set Q13 to the number of a measured tool.", plain=tool.plain(13))
     feed, bottom = told.tool.cut(11), told.bottom + told.floor
     yield from told.above()
     for cut in told.plan(radius):
@@ -313,10 +304,8 @@ def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
     """The way of the tool's centre, its radius and Q3 off the contour; on it without RL or RR."""
     elements = list(figure.elements)
     if not elements:
-        raise told.tool.refuse(
-            Message("Contour {figure} does not contain any elements.", figure=figure.label),
-            "Add path functions to the contour.",
-        )
+        text = "Contour {figure} does not contain any elements."
+        raise told.tool.refuse(text, "Add path functions to the contour.", figure=figure.label)
     if not figure.side:
         return elements
     apart = told.tool.radius + told.side

@@ -110,12 +110,9 @@ def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool
     try:
         found = boundary(loops, inside)
     except AreaError as problem:
-        raise state.refuse(
-            column,
-            INPUT_VALUE,
-            Message("The contours cannot be combined: {problem}.", problem=problem),
-            "Correct the entries named in the message.",
-        ) from None
+        text = "The contours cannot be combined: {problem}."
+        hint = "Correct the entries named in the message."
+        raise state.refuse(column, INPUT_VALUE, text, hint, problem=problem) from None
     if not found:
         text = "The contours do not enclose an area because the islands cover the pockets."
         raise state.refuse(column, INPUT_VALUE, text, "Correct the contours.")
@@ -125,14 +122,14 @@ def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool
 def _closed(state: State, figure: ContourFigure, column: int) -> Loop:
     """The contour as a loop. Raises ProgramError for an open one."""
     if not figure.elements:
-        text = Message("Contour {figure} does not contain any elements.", figure=figure.label)
-        raise state.refuse(column, CYCLE_MISSING, text, "Add path functions to the contour.")
+        text = "Contour {figure} does not contain any elements."
+        hint = "Add path functions to the contour."
+        raise state.refuse(column, CYCLE_MISSING, text, hint, figure=figure.label)
     gap = math.dist(figure.elements[-1].end, figure.elements[0].start)
     if gap > OPEN:
-        text = Message(
-            "Contour {figure} ends {gap} mm from its start.", figure=figure.label, gap=f"{gap:.10g}"
-        )
-        raise state.refuse(column, INPUT_VALUE, text, "End the contour at its start point.")
+        text = "Contour {figure} ends {gap} mm from its start."
+        hint = "End the contour at its start point."
+        raise state.refuse(column, INPUT_VALUE, text, hint, figure=figure.label, gap=f"{gap:.10g}")
     return follows(figure.elements)
 
 
@@ -140,8 +137,9 @@ def _is_pocket(state: State, figure: ContourFigure, loop: Loop, column: int) -> 
     if figure.pocket is not None:
         return figure.pocket
     if not figure.side:
-        text = Message("No machining side is programmed for contour {figure}.", figure=figure.label)
-        raise state.refuse(column, CYCLE_MISSING, text, "Write RL or RR in the first block of the contour.")
+        text = "No machining side is programmed for contour {figure}."
+        hint = "Write RL or RR in the first block of the contour."
+        raise state.refuse(column, CYCLE_MISSING, text, hint, figure=figure.label)
     return goes_round(loop) == (figure.side == "L")
 
 

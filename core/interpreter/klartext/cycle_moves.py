@@ -79,8 +79,11 @@ class CycleTool:
         if found is None:
             found = default
         if found is None:
-            text = Message("Cycle {number} needs {parameter}.", number=self._number, parameter=self.named(q))
-            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Add the parameter to CYCL DEF.")
+            text = "Cycle {number} needs {parameter}."
+            hint = "Add the parameter to CYCL DEF."
+            raise self._state.refuse(
+                self._column, CYCLE_MISSING, text, hint, number=self._number, parameter=self.named(q)
+            )
         return found
 
     def length(self, q: int, default: float | None = None) -> float:
@@ -93,27 +96,24 @@ class CycleTool:
         if found == TOOL_FEED and self._state.tool_feed is not None:
             return per_minute(self._state, self._state.tool_feed, self._state.tool_feed_per, self._column)
         if found <= 0.0:
-            text = Message(
-                "{parameter} of cycle {number} is not a valid feed rate.",
-                parameter=self.named(q),
-                number=self._number,
+            text = "{parameter} of cycle {number} is not a valid feed rate."
+            hint = "Enter a feed rate above 0."
+            raise self._state.refuse(
+                self._column, INPUT_VALUE, text, hint, parameter=self.named(q), number=self._number
             )
-            raise self._state.refuse(self._column, INPUT_VALUE, text, "Enter a feed rate above 0.")
         return None if found >= MAX_FEED else found
 
     def cut(self, q: int) -> float:
         """A feed that cuts, as programmed. Raises ProgramError for a rapid."""
         found = self.feed(q)
         if found is None:
-            raise self.refuse(
-                Message("{parameter} is set to rapid, but this is a cutting move.", parameter=self.named(q)),
-                "Enter a feed rate.",
-            )
+            text = "{parameter} is set to rapid, but this is a cutting move."
+            raise self.refuse(text, "Enter a feed rate.", parameter=self.named(q))
         return found
 
-    def refuse(self, text: str, hint: str) -> ProgramError:
-        """An error of this cycle, to be raised."""
-        return self._state.refuse(self._column, INPUT_VALUE, text, hint)
+    def refuse(self, text: str, hint: str, code: str = INPUT_VALUE, /, **values: object) -> ProgramError:
+        """An error of this cycle, to be raised; the number of the cycle fills the hole ``number``."""
+        return self._state.refuse(self._column, code, text, hint, **{"number": self._number, **values})
 
     @property
     def radius(self) -> float:
@@ -135,11 +135,9 @@ class CycleTool:
         """Of the tool's point, degrees. Raises ProgramError where the tool table does not tell it."""
         row = self._state.setup.mill_tools.get(self._state.modal.tool)
         if row is None or not 0.0 < row.point < 180.0:
-            text = Message(
-                "Cycle {number} needs the point angle of the tool for a programmed diameter.",
-                number=self._number,
-            )
-            raise self.refuse(text, "Enter the point angle in the tool table, or program Q343=+0 and Q201.")
+            text = "Cycle {number} needs the point angle of the tool for a programmed diameter."
+            hint = "Enter the point angle in the tool table, or program Q343=+0 and Q201."
+            raise self.refuse(text, hint, number=self._number)
         return row.point
 
     @property
@@ -163,10 +161,9 @@ class CycleTool:
         """Speed of the spindle, signed. Raises ProgramError where it stands."""
         found = self.turns
         if not found:
-            text = Message("Cycle {number} needs a running spindle.", number=self._number)
-            raise self._state.refuse(
-                self._column, WRONG_RPM, text, "Start the spindle with M3 before the cycle."
-            )
+            text = "Cycle {number} needs a running spindle."
+            hint = "Start the spindle with M3 before the cycle."
+            raise self._state.refuse(self._column, WRONG_RPM, text, hint, number=self._number)
         return found
 
     @property
@@ -177,8 +174,9 @@ class CycleTool:
     def thread_speed(self, pitch: float) -> float:
         """S in the direction of a thread, signed: a pitch under 0 is a left-hand one. Raises ProgramError."""
         if not self.speed:
-            text = Message("Cycle {number} needs a spindle speed.", number=self._number)
-            raise self._state.refuse(self._column, WRONG_RPM, text, "Program S in TOOL CALL.")
+            text = "Cycle {number} needs a spindle speed."
+            hint = "Program S in TOOL CALL."
+            raise self._state.refuse(self._column, WRONG_RPM, text, hint, number=self._number)
         return math.copysign(self.speed, pitch)
 
     def warn_uncoupled(self) -> None:
@@ -215,13 +213,11 @@ class CycleTool:
         state, rpm = self._state, self._state.modal.rpm
         fastest = state.kinematics.slides[2].vmax
         if (rate := lead * rpm / 60.0) > fastest:
-            text = Message(
-                "A lead of {lead} mm at S{rpm} requires a Z feed rate above the maximum of {fastest} mm/min.",
-                lead=f"{lead:.10g}",
-                rpm=f"{rpm:g}",
-                fastest=f"{fastest * 60.0:.10g}",
+            text = (
+                "A lead of {lead} mm at S{rpm} requires a Z feed rate above the maximum of {fastest} mm/min."
             )
-            raise self.refuse(text, "Lower S.")
+            hint = "Lower S."
+            raise self.refuse(text, hint, lead=f"{lead:.10g}", rpm=rpm, fastest=f"{fastest * 60.0:.10g}")
         goal = state.machine((*self.here, z))
         made = state.move(Kind.FEED, dict(zip(SLIDES, goal, strict=True)), rate)
         return replace(made, feed=lead, per_rev=True, coupled=True, in_hole=in_hole)
@@ -271,12 +267,9 @@ class CycleTool:
         if number == 0:
             return []
         if number not in {8, 9}:
-            text = Message(
-                "Q{parameter} selects M{number}, which is not a coolant function of this machine.",
-                parameter=q,
-                number=number,
-            )
-            raise self.refuse(text, "Enter 8 for coolant on or 9 for coolant off.")
+            text = "Q{parameter} selects M{number}, which is not a coolant function of this machine."
+            hint = "Enter 8 for coolant on or 9 for coolant off."
+            raise self.refuse(text, hint, parameter=q, number=number)
         state.modal = state.modal._replace(coolant=number == 8)
         return [state.action(Coolant(number == 8))]
 
@@ -295,10 +288,8 @@ class CycleTool:
         """The spindle held at the angle of a parameter. Raises ProgramError."""
         angle = self.plain(q, 0.0)
         if not -_TURN <= angle <= _TURN:
-            raise self.refuse(
-                Message("{parameter} is not a valid spindle angle.", parameter=self.named(q)),
-                "Enter an angle from -360 to 360 degrees.",
-            )
+            text = "{parameter} is not a valid spindle angle."
+            raise self.refuse(text, "Enter an angle from -360 to 360 degrees.", parameter=self.named(q))
         return oriented(self._state, angle)
 
     def halt(self, message: str) -> Block:

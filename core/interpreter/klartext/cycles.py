@@ -103,12 +103,12 @@ class Cycles:
         state = self._state
         known = node.number in _MACHINING.keys() | CONTOURS | _AT_ONCE
         if 300 <= node.number <= 399:
-            text = Message(
-                "Cycle {number} is a machine-builder cycle, and this machine does not have "
-                "machine-builder cycles.",
-                number=node.number,
+            text = (
+                "Cycle {number} is a machine-builder cycle, and this machine does not have machine-builder "
+                "cycles."
             )
-            raise state.refuse(node.column, CYCLE_UNKNOWN, text, "Remove this text from the program.")
+            hint = "Remove this text from the program."
+            raise state.refuse(node.column, CYCLE_UNKNOWN, text, hint, number=node.number)
         if not known:
             raise self._not_supported(node)
         for each in node.values:
@@ -144,21 +144,20 @@ class Cycles:
         state, number = self._state, self._state.q.get(_PRESET_NUMBER, 0.0)
         found = state.setup.presets.get(int(number)) if number == int(number) else None
         if found is None and set(state.setup.presets) - {0}:
-            text = Message("Preset {number} is not in the preset table.", number=f"{number:g}")
-            raise state.refuse(
-                column, INPUT_VALUE, text, "Set the preset on the PRESETS page, or correct Q339."
-            )
+            text = "Preset {number} is not in the preset table."
+            hint = "Set the preset on the PRESETS page, or correct Q339."
+            raise state.refuse(column, INPUT_VALUE, text, hint, number=number)
         if (
             found is not None
             and state.plane is not None
             and state.kinematics.with_preset(found).basic != state.kinematics.basic
         ):
-            text = Message(
-                "Preset {number} rotates the workpiece and cannot be activated while a tilted "
-                "plane is active.",
-                number=f"{number:g}",
+            text = (
+                "Preset {number} rotates the workpiece and cannot be activated while a tilted plane is "
+                "active."
             )
-            raise state.refuse(column, CONTRADICTION, text, "Write PLANE RESET STAY before this block.")
+            hint = "Write PLANE RESET STAY before this block."
+            raise state.refuse(column, CONTRADICTION, text, hint, number=number)
         if found is not None:
             state.kinematics = state.kinematics.with_preset(found)
         elif number:
@@ -215,18 +214,18 @@ class Cycles:
     def _demand_figures(self, figures: Figures, column: int) -> None:
         """Raises ProgramError where no contour has been named."""
         if not figures:
-            text = Message("No contour is defined for cycle {number}.", number=self._number)
-            raise self._state.refuse(
-                column, CYCLE_MISSING, text, "List the contour labels in cycle 14 before this block."
-            )
+            text = "No contour is defined for cycle {number}."
+            hint = "List the contour labels in cycle 14 before this block."
+            raise self._state.refuse(column, CYCLE_MISSING, text, hint, number=self._number)
 
     def _demand_lines(self, column: int) -> None:
         """Raises ProgramError where a line of an older cycle has not been told."""
         number = self._number
         missing = next((part for part in range(1, LAST_LINE[number] + 1) if part not in self._lines), None)
         if missing is not None:
-            text = Message("Line {number}.{missing} of the cycle is missing.", number=number, missing=missing)
-            raise self._state.refuse(column, CYCLE_MISSING, text, "Complete the CYCL DEF.")
+            text = "Line {number}.{missing} of the cycle is missing."
+            hint = "Complete the CYCL DEF."
+            raise self._state.refuse(column, CYCLE_MISSING, text, hint, number=number, missing=missing)
 
     def _tool(self, number: int, column: int) -> CycleTool:
         return CycleTool(self._state, number, self._state.q.get, column)
@@ -259,10 +258,9 @@ class Cycles:
             raise self._state.refuse(node.column, CYCLE_MISSING, text, "Write ANGLE with a value in degrees.")
         angle = value(self._state, node.words[-1].value.formula)
         if not -360.0 <= angle <= 360.0:
-            text = Message("{parameter} is not a valid spindle angle.", parameter=f"{angle:g}")
-            raise self._state.refuse(
-                node.words[-1].column, INPUT_VALUE, text, "Enter an angle from -360 to 360 degrees."
-            )
+            text = "{parameter} is not a valid spindle angle."
+            hint = "Enter an angle from -360 to 360 degrees."
+            raise self._state.refuse(node.words[-1].column, INPUT_VALUE, text, hint, parameter=angle)
         return angle
 
     def _name_contours(self, node: CycleLine) -> None:
@@ -272,25 +270,25 @@ class Cycles:
             return
         labels = contour_labels(node.text)
         if not labels:
-            text = "Cycle 14 does not list any label."
-            raise self._state.refuse(
-                node.column, CYCLE_MISSING, text, "Write the labels, for example CONTOUR LABEL1 /2."
-            )
+            hint = "Write the labels, for example CONTOUR LABEL1 /2."
+            raise self._state.refuse(node.column, CYCLE_MISSING, "Cycle 14 does not list any label.", hint)
         self._contours += tuple(ContourPart(label, None) for label in labels)
         if len(self._contours) > _MOST_CONTOURS:
-            text = Message(
+            raise self._state.refuse(
+                node.column,
+                INPUT_VALUE,
                 "Cycle 14 lists {contours_count} contours; the maximum is {most_contours}.",
+                "Combine some of the contours.",
                 contours_count=len(self._contours),
                 most_contours=_MOST_CONTOURS,
             )
-            raise self._state.refuse(node.column, INPUT_VALUE, text, "Combine some of the contours.")
 
     def _seconds(self, word: AxisWord) -> float:
         """The time of cycle 9. Raises ProgramError for one under 0."""
         seconds = value(self._state, word.value.formula)
         if seconds < 0.0:
-            text = Message("The dwell time of {seconds} s is negative.", seconds=f"{seconds:g}")
-            raise self._state.refuse(word.column, INPUT_VALUE, text, "Enter a time above 0.")
+            text = "The dwell time of {seconds} s is negative."
+            raise self._state.refuse(word.column, INPUT_VALUE, text, "Enter a time above 0.", seconds=seconds)
         return seconds
 
     def _tilted(self, node: CycleLine) -> Plane:
@@ -330,12 +328,8 @@ class Cycles:
             raise state.refuse(node.column, CYCLE_MISSING, text, "Write PATTERN DEF before this block.")
         if self._number not in _MACHINING:
             text = "CYCL CALL PAT needs a preceding cycle with a number of 200 or higher."
-            raise state.refuse(
-                node.column,
-                CYCLE_MISSING,
-                text,
-                "Write the CYCL DEF of a machining cycle before this block.",
-            )
+            hint = "Write the CYCL DEF of a machining cycle before this block."
+            raise state.refuse(node.column, CYCLE_MISSING, text, hint)
         speed = None if node.feed is None else word_values.feed_word(state, node.feed, node.column)
         surface = state.q.get(_SURFACE, 0.0)
         for x, y, above in self._points:
@@ -381,13 +375,9 @@ class Cycles:
         """The cycle told before at every place of a circle (220) or of rows (221)."""
         tool = self._tool(node.number, node.column)
         if self._number not in _MACHINING:
-            text = Message("Cycle {number} needs a preceding machining cycle.", number=node.number)
-            raise self._state.refuse(
-                node.column,
-                CYCLE_MISSING,
-                text,
-                "Write the CYCL DEF of a machining cycle before this block.",
-            )
+            text = "Cycle {number} needs a preceding machining cycle."
+            hint = "Write the CYCL DEF of a machining cycle before this block."
+            raise self._state.refuse(node.column, CYCLE_MISSING, text, hint, number=node.number)
         surface = tool.length(203, 0.0)
         above = surface + tool.length(204, 0.0) if tool.plain(301, 1.0) else surface + tool.length(200)
         places = _on_circle(tool) if node.number == _CIRCLE else _in_rows(tool)
@@ -431,8 +421,6 @@ def _in_rows(tool: CycleTool) -> list[Point]:
 def _count(tool: CycleTool, q: int) -> int:
     count = int(tool.plain(q))
     if not 1 <= count <= _MOST_PLACES:
-        raise tool.refuse(
-            Message("Q{parameter}={count} is not a valid number of positions.", parameter=q, count=count),
-            "Enter a valid number.",
-        )
+        text = "Q{parameter}={count} is not a valid number of positions."
+        raise tool.refuse(text, "Enter a valid number.", parameter=q, count=count)
     return count

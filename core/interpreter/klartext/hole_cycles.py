@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from core.geometry.lines_and_arcs import Arc
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext.cycle_moves import HOW_ORIENTED, UNORIENTED, CycleTool
-from core.message import Message
 
 SMALLEST = 1e-6  # mm; less is no depth
 _ASIDE = 0.2  # mm that a boring bar goes aside before it is drawn out
@@ -83,12 +82,8 @@ def aside(tool: CycleTool, directions: tuple[int, ...]) -> tuple[float, float]:
     """Q214: which way the tool leaves the wall, along X or Y. Raises ProgramError for another number."""
     number = tool.plain(214, 0.0)
     if number not in directions:
-        text = Message(
-            "Q214 must be a whole number from {directions} to {directions2}.",
-            directions=directions[0],
-            directions2=directions[-1],
-        )
-        raise tool.refuse(text, "Correct Q214.")
+        text = "Q214 must be a whole number from {directions} to {directions2}."
+        raise tool.refuse(text, "Correct Q214.", directions=directions[0], directions2=directions[-1])
     return {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}[int(number)]
 
 
@@ -100,24 +95,14 @@ def back_boring(tool: CycleTool) -> Iterator[Block]:
     beside the centre.
     """
     if not tool.orients:
-        text = Message(
-            "Cycle 204 moves through the hole with the spindle oriented, but {unoriented}.",
-            unoriented=UNORIENTED,
-        )
-        raise tool.refuse(
-            text,
-            Message("Bore from the other side of the part, or {how_oriented}.", how_oriented=HOW_ORIENTED),
-        )
+        text = "Cycle 204 moves through the hole with the spindle oriented, but {unoriented}."
+        hint = "Bore from the other side of the part, or {how_oriented}."
+        raise tool.refuse(text, hint, unoriented=UNORIENTED, how_oriented=HOW_ORIENTED)
     rpm, (along_x, along_y) = tool.rpm, aside(tool, (1, 2, 3, 4))
     surface, depth = tool.length(203, 0.0), tool.length(249)
     if depth < 0.0:
-        raise tool.refuse(
-            Message(
-                "Q249 = {depth} mm is negative, so the tool would move away from the part.",
-                depth=f"{depth:+.10g}",
-            ),
-            "Enter the depth without a minus sign.",
-        )
+        text = "Q249 = {depth} mm is negative, so the tool would move away from the part."
+        raise tool.refuse(text, "Enter the depth without a minus sign.", depth=f"{depth:+.10g}")
     clear, through, slow = surface + tool.length(200), tool.length(250) + tool.length(252), tool.feed(253)
     lowest, end = surface - through - tool.length(200), surface - through + depth
     (x, y), off = tool.here, tool.length(251)
@@ -255,10 +240,8 @@ def bore_milling(tool: CycleTool) -> Iterator[Block]:
     x, y = tool.here
     pitch = tool.length(334)
     if way < 0.0 or pitch <= 0.0 or feed <= 0.0:
-        raise tool.refuse(
-            "The tool, infeed or feed rate of cycle 208 is not valid for the hole.",
-            "Correct the entries named in the message.",
-        )
+        text = "The tool, infeed or feed rate of cycle 208 is not valid for the hole."
+        raise tool.refuse(text, "Correct the entries named in the message.")
     yield tool.to(clear)
     if way < SMALLEST:
         yield tool.to(bottom, feed)
@@ -321,10 +304,8 @@ def heights(tool: CycleTool) -> tuple[float, float, float]:
     """Surface, set-up clearance above it, and bottom. Raises ProgramError for a depth that leads upwards."""
     surface, depth = tool.length(203, 0.0), tool.length(201)
     if depth > 0.0:
-        raise tool.refuse(
-            Message("Depth Q201={depth} mm is positive (upward).", depth=f"{depth:+.10g}"),
-            "Enter the depth with a minus sign.",
-        )
+        text = "Depth Q201={depth} mm is positive (upward)."
+        raise tool.refuse(text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
     return surface, surface + tool.length(200), surface + depth
 
 
@@ -336,9 +317,7 @@ def infeeds(
         yield whole
         return
     if whole / max(step if not smaller else least or step, SMALLEST) > _MOST_PECKS:
-        raise tool.refuse(
-            Message("An infeed of {step} mm would need too many pecks.", step=f"{step:g}"), "Increase Q202."
-        )
+        raise tool.refuse("An infeed of {step} mm would need too many pecks.", "Increase Q202.", step=step)
     done = 0.0
     while whole - done > SMALLEST:
         done = min(done + step, whole)

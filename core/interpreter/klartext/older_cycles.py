@@ -16,7 +16,6 @@ from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.q_functions import value
 from core.language.klartext.klartext_faults import CYCLE_MISSING
 from core.language.klartext.klartext_nodes import CycleLine
-from core.message import Message
 
 Lines = Mapping[int, CycleLine]
 _SMALLEST = 1e-6  # mm
@@ -41,13 +40,11 @@ class Told:
         word = next((each for each in words if each.axis == axis), None)
         if word is None:
             number = next(iter(self._lines.values())).number if self._lines else 0
-            text = Message(
-                "Line {number}.{part} of the cycle has no {axis}.",
-                number=number,
-                part=part,
-                axis=axis or "number",
+            text = "Line {number}.{part} of the cycle has no {axis}."
+            hint = "Complete the CYCL DEF."
+            raise self._state.refuse(
+                self._column, CYCLE_MISSING, text, hint, number=number, part=part, axis=axis or "number"
             )
-            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Complete the CYCL DEF.")
         return value(self._state, word.value.formula)
 
     def length(self, part: int, axis: str = "") -> float:
@@ -200,9 +197,8 @@ def _thread_cutting(state: State, tool: CycleTool, lines: Lines, column: int) ->
     tool.warn_uncoupled()
     rpm, pitch, depth = tool.speed, told.length(2), told.length(1)
     if not rpm or not pitch:
-        raise tool.refuse(
-            "Cycle 18 needs a spindle speed and a pitch.", "Program S in TOOL CALL and PITCH in cycle 18."
-        )
+        text = "Cycle 18 needs a spindle speed and a pitch."
+        raise tool.refuse(text, "Program S in TOOL CALL and PITCH in cycle 18.")
     yield tool.turn(rpm if pitch > 0.0 else -rpm)
     yield tool.tap(tool.height + depth, abs(pitch), in_hole=True)
     yield tool.stop()
@@ -222,14 +218,8 @@ def _levels(tool: CycleTool, depth: float, step: float) -> Iterator[float]:
         return
     count = math.ceil(depth / step - 1e-9)
     if count > _MOST_LEVELS:
-        raise tool.refuse(
-            Message(
-                "An infeed of {step} mm would need {count} passes, which is too many.",
-                step=f"{step:g}",
-                count=count,
-            ),
-            "Increase the infeed.",
-        )
+        text = "An infeed of {step} mm would need {count} passes, which is too many."
+        raise tool.refuse(text, "Increase the infeed.", step=step, count=count)
     yield from (min(step * at, depth) for at in range(1, count + 1))
 
 

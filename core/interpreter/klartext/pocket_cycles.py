@@ -14,7 +14,6 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext.cycle_moves import CycleTool
 from core.interpreter.klartext.hole_cycles import SMALLEST, heights, infeeds, out
 from core.interpreter.klartext.milled_rings import Ring, Seat
-from core.message import Message
 
 _RAMP = math.tan(math.radians(3.0))
 _MOST_OVERLAP = 1.9999
@@ -33,13 +32,12 @@ class _Milling:
         self.scope = int(tool.plain(215, float(_ROUGH)))
         overlap = tool.plain(370, 1.0)
         if not 0.0 < overlap <= _MOST_OVERLAP or tool.radius <= SMALLEST:
-            text = Message(
-                "With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot "
-                "clear the area.",
-                overlap=f"{overlap:g}",
-                radius=f"{tool.radius:g}",
+            text = (
+                "With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot clear the "
+                "area."
             )
-            raise tool.refuse(text, "Set Q370 between 0.1 and 1.9999, and enter the tool radius.")
+            hint = "Set Q370 between 0.1 and 1.9999, and enter the tool radius."
+            raise tool.refuse(text, hint, overlap=overlap, radius=tool.radius)
         self.step = overlap * tool.radius
         self.against = (tool.plain(351, 1.0) < 0.0) != (tool.rpm < 0.0)
 

@@ -10,7 +10,6 @@ from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import State
 from core.language.klartext.klartext_faults import INPUT_VALUE
 from core.language.klartext.klartext_nodes import PatternDef, PatternPart
-from core.message import Message
 
 MOST_POINTS = 10_000
 _LENGTHS = frozenset({"X", "Y", "Z", "D", "DX", "DY"})
@@ -23,12 +22,10 @@ def points(state: State, node: PatternDef) -> list[Vector]:
         told = _numbers(state, part)
         found += [(*at, told.get("Z", 0.0)) for at in _of_a_part(state, part, told)]
     if len(found) > MOST_POINTS:
-        text = Message("The pattern has too many points: {found_count}.", found_count=len(found))
+        text = "The pattern has too many points: {found_count}."
+        hint = "The maximum is {most_points} points."
         raise state.refuse(
-            node.column,
-            INPUT_VALUE,
-            text,
-            Message("The maximum is {most_points} points.", most_points=MOST_POINTS),
+            node.column, INPUT_VALUE, text, hint, found_count=len(found), most_points=MOST_POINTS
         )
     return found
 
@@ -79,8 +76,7 @@ def _grid(state: State, part: PatternPart, told: dict[str, float]) -> Iterator[t
 
 def _count(state: State, part: PatternPart, number: float) -> int:
     if number != int(number) or not 1 <= number <= MOST_POINTS:
-        text = Message(
-            "{form}: {number} is not a valid number of points.", form=part.form, number=f"{number:g}"
-        )
-        raise state.refuse(part.column, INPUT_VALUE, text, "Enter a whole number of 1 or more.")
+        text = "{form}: {number} is not a valid number of points."
+        hint = "Enter a whole number of 1 or more."
+        raise state.refuse(part.column, INPUT_VALUE, text, hint, form=part.form, number=number)
     return int(number)

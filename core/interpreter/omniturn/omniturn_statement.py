@@ -9,7 +9,7 @@ from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES, M_CODES, P
 from core.language.diagnostics import ProgramError, program_error
 from core.language.omniturn import Line, Word, other_controls
 from core.language.omniturn.plane_switching_lines import PlaneLine
-from core.message import Message
+from core.message import Message, worded
 
 PlainMove = tuple[float | None, float | None, float | None, int, bool]
 """A line of G00 or G01, X, Z and F and no more: X, Z, F as written, 0 or 1 for the code (-1: none), and
@@ -75,14 +75,18 @@ class Statement:
         word = self.words.get(letter)
         return 0 if word is None else word.column
 
-    def refuse(self, at: Word | str | int, code: str, message: str, hint: str = "") -> ProgramError:
+    def refuse(
+        self, at: Word | str | int, code: str, text: str, hint: str = "", /, **values: object
+    ) -> ProgramError:
         """An error of this line, to be raised: at a word, at the word of a letter, or at a column.
 
         M stands for the M code; where the line has no such word the error is at its one-shot code.
+        ``values`` fill the holes of ``text`` and ``hint``.
         """
         if isinstance(at, str):
             at = (self.m_word if at == "M" else self.words.get(at)) or self.code or 0
-        return program_error(self.line, at if isinstance(at, int) else at.column, code, message, hint)
+        column = at if isinstance(at, int) else at.column
+        return program_error(self.line, column, code, worded(text, values), worded(hint, values))
 
     @property
     def code_column(self) -> int:

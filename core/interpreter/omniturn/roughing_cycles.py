@@ -14,7 +14,6 @@ from core.interpreter.omniturn.code_rules import number
 from core.interpreter.omniturn.cycle_contour import read_contour
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.message import Message
 
 _WHOLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
 _SAME = 1e-6  # mm
@@ -32,25 +31,21 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
     left = length(state, statement, "U")
     contour = read_contour(state, statement, lines)
     if len(contour) > _MOST_ELEMENTS:
-        text: str = Message(
+        raise statement.refuse(
+            "G",
+            "cycle-contour-long",
             "The contour has {contour_count} lines and arcs; the maximum is {most_elements}.",
+            "Program the contour with fewer, longer moves.",
             contour_count=f"{len(contour):,}",
             most_elements=f"{_MOST_ELEMENTS:,}",
-        )
-        raise statement.refuse(
-            "G", "cycle-contour-long", text, "Program the contour with fewer, longer moves."
         )
     view = _view(state, statement, contour)
     try:
         area = Area(view.from_start(contour), left)
     except TrimError:
-        text = Message(
-            "{text} cannot find a continuous path along the contour at distance U.",
-            text=name(statement),
-        )
-        raise statement.refuse(
-            "U", "cycle-no-way", text, "Reduce U, or widen the narrow part of the contour."
-        ) from None
+        text = "{text} cannot find a continuous path along the contour at distance U."
+        hint = "Reduce U, or widen the narrow part of the contour."
+        raise statement.refuse("U", "cycle-no-way", text, hint, text=name(statement)) from None
     rougher = Rougher(area, state.modal.rapid_rate, LIFT)
     if cut is not None:
         _passes(state, statement, rougher, area, cut, len(contour))
@@ -70,16 +65,11 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
         raise statement.refuse("G", "cycle-start-near", text, hint) from None
     if area.turns_back:
         text = (
-            "The contour reverses along Z. The roughing passes do not reach this undercut, "
-            "so the pass along the contour cuts all of its material."
+            "The contour reverses along Z. The roughing passes do not reach this undercut, so the pass along "
+            "the contour cuts all of its material."
         )
-        state.log.warn(
-            statement.line,
-            statement.code_column,
-            "cycle-undercut",
-            text,
-            "Check whether the tool fits into the undercut.",
-        )
+        hint = "Check whether the tool fits into the undercut."
+        state.log.warn(statement.line, statement.code_column, "cycle-undercut", text, hint)
     return [view.placed(move) for move in rougher.moves]
 
 
@@ -98,25 +88,15 @@ def _passes(
     count = ceil(area.deepest / cut - _WHOLE)
     check_count(statement, "I", count, "passes")
     if count * elements > _MOST_LOOKS:
-        text = Message(
-            "{count} passes along a contour of {elements} lines and arcs are too many to calculate.",
-            count=f"{count:,}",
-            elements=f"{elements:,}",
-        )
-        raise statement.refuse(
-            "I", "cycle-passes", text, "Increase I, or program the contour with fewer moves."
-        )
+        text = "{count} passes along a contour of {elements} lines and arcs are too many to calculate."
+        hint = "Increase I, or program the contour with fewer moves."
+        raise statement.refuse("I", "cycle-passes", text, hint, count=f"{count:,}", elements=f"{elements:,}")
     for k in range(1, count + 1):
         rougher.cut(area.deepest * k / count)
     if rougher.plunged:
         text = "The contour rises and falls again, so the tool plunges into the material after the rise."
-        state.log.warn(
-            statement.line,
-            statement.code_column,
-            "cycle-plunge",
-            text,
-            "Check whether the tool can plunge into the material.",
-        )
+        hint = "Check whether the tool can plunge into the material."
+        state.log.warn(statement.line, statement.code_column, "cycle-plunge", text, hint)
 
 
 def _view(state: State, statement: Statement, contour: list[Element]) -> ContourView:
@@ -125,25 +105,22 @@ def _view(state: State, statement: Statement, contour: list[Element]) -> Contour
     for axis, letter in ((0, "X"), (1, "Z")):
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
         if to_first * to_last < 0:
-            text = Message(
-                "In {letter}, the start point is between the two ends of the contour, but it must be "
-                "outside them.",
-                letter=letter,
-            )
             raise statement.refuse(
                 "G",
                 "cycle-quadrant",
-                text,
-                "Move the start point so that both ends of the contour are on the same side of it, "
-                "in X and in Z.",
-            )
-        if to_first == to_last == 0:
-            text = Message(
-                "Both ends of the contour have the same {letter} as the start point, so the contour "
-                "does not enclose an area to cut.",
+                "In {letter}, the start point is between the two ends of the contour, but it must be "
+                "outside them.",
+                "Move the start point so that both ends of the contour are on the same side of it, in X and "
+                "in Z.",
                 letter=letter,
             )
-            raise statement.refuse("G", "cycle-nothing", text, "Move the start point away from the contour.")
+        if to_first == to_last == 0:
+            text = (
+                "Both ends of the contour have the same {letter} as the start point, so the contour does not "
+                "enclose an area to cut."
+            )
+            hint = "Move the start point away from the contour."
+            raise statement.refuse("G", "cycle-nothing", text, hint, letter=letter)
     return view_from(start, first, last)
 
 
@@ -158,16 +135,9 @@ def box_moves(state: State, statement: Statement) -> list[Move]:
     towards = 1.0 if x > state.x else -1.0
     depth = abs(x - state.x) - left
     if depth <= 0:
-        text = Message(
-            "The allowance {text} leaves no material for the box cycle to cut.",
-            text=statement.words["U"].text,
-        )
-        raise statement.refuse(
-            "U",
-            "cycle-nothing",
-            text,
-            "U must be less than the distance in X from the start point to the programmed X.",
-        )
+        text = "The allowance {text} leaves no material for the box cycle to cut."
+        hint = "U must be less than the distance in X from the start point to the programmed X."
+        raise statement.refuse("U", "cycle-nothing", text, hint, text=statement.words["U"].text)
     count = ceil(depth / cut - _WHOLE)
     check_count(statement, "I", count, "passes")
     rapid = state.modal.rapid_rate
@@ -183,10 +153,7 @@ def _corner(state: State, statement: Statement, letter: str, start: float, offse
     """X or Z of the corner opposite to the start."""
     end = length(state, statement, letter) + (offset if state.absolute else start)
     if end == start:
-        text = Message(
-            "The box has zero size along {letter} because its corner is at the start point.", letter=letter
-        )
-        raise statement.refuse(
-            letter, "cycle-nothing", text, Message("Correct {letter} or the start point.", letter=letter)
-        )
+        text = "The box has zero size along {letter} because its corner is at the start point."
+        hint = "Correct {letter} or the start point."
+        raise statement.refuse(letter, "cycle-nothing", text, hint, letter=letter)
     return end

@@ -9,7 +9,6 @@ from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import Cycle, Step, dwell
 from core.interpreter.sinumerik.drilling_cycles import Hole, approach, hole_of, needed_feed, seconds
 from core.interpreter.sinumerik.spindle_and_dwell import demand_position, oriented_by_drive, shortest_turn
-from core.message import Message
 
 NO_DIRECTION = 61102
 
@@ -21,11 +20,8 @@ def _turning(cycle: Cycle) -> list[Step]:
         raise cycle.wrong("SDIR", "{name} must be 3 or 4", "Enter the spindle direction.", NO_DIRECTION)
     modal, sign = cycle.state.modal, 1 if direction == 3.0 else -1
     if not modal.rpm or modal.css:
-        raise cycle.refused(
-            "speed-missing",
-            Message("{call} needs S in rpm.", call=cycle.line.call),
-            "Write G97 with S before this block.",
-        )
+        hint = "Write G97 with S before this block."
+        raise cycle.refused("speed-missing", "{call} needs S in rpm.", hint, call=cycle.line.call)
     if modal.spindle == sign:
         return []
     return [Step(0.0, 0.0, action=SpindleRun(sign * modal.rpm), spindle=sign)]
@@ -38,14 +34,12 @@ def lift_off(cycle: Cycle) -> Iterator[Block]:
     cycle.zero_only("RPO", "this lathe has no Y axis")
     angle = cycle.number("POSS")
     if not 0.0 <= angle < 360.0:
-        raise cycle.wrong(
-            "POSS", "{name} must be an angle from 0 to less than 360 degrees", "Correct the value."
-        )
+        text = "{name} must be an angle from 0 to less than 360 degrees"
+        raise cycle.wrong("POSS", text, "Correct the value.")
     aside, up = cycle.length("RPA"), cycle.length("RPAP")
     if up * hole.down > 0.0:
-        raise cycle.wrong(
-            "RPAP", "{name} would move the tool deeper into the hole", "Correct the sign of RPAP."
-        )
+        text = "{name} would move the tool deeper into the hole"
+        raise cycle.wrong("RPAP", text, "Correct the sign of RPAP.")
     x = cycle.x
     steps = [
         *approach(cycle, hole), *_turning(cycle), Step(x, hole.bottom, needed_feed(cycle)),

@@ -63,24 +63,14 @@ def _contour(cycle: Cycle, flow: Flow) -> list[Element]:
     lines = contour_lines(named, flow.running, known)
     if lines is None:
         if ":" in named:
-            raise cycle.wrong(
-                "NPP",
-                Message("{name} refers to labels that do not exist: {named}", named=named, name="NPP"),
-                "Correct the entries named in the message.",
-                14080,
-            )
-        hint = Message(
-            "Put {named}.spf in the main program's folder, or add %_N_{named2}_SPF to the main "
-            "program's file.",
-            named=named,
-            named2=named,
+            text = "{name} refers to labels that do not exist: {named}"
+            raise cycle.wrong("NPP", text, "Correct the entries named in the message.", 14080, named=named)
+        text = "{name} refers to subprogram {named}, which does not exist"
+        hint = (
+            "Put {named}.spf in the main program's folder, or add %_N_{named2}_SPF to the main program's "
+            "file."
         )
-        raise cycle.wrong(
-            "NPP",
-            Message("{name} refers to subprogram {named}, which does not exist", named=named, name="NPP"),
-            hint,
-            "subprogram-missing",
-        )
+        raise cycle.wrong("NPP", text, hint, "subprogram-missing", named=named, named2=named)
     try:
         return read_contour(cycle.state, lines)
     except ProgramError as problem:

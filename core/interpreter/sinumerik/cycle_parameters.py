@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import hypot
 from typing import NamedTuple
 
@@ -13,12 +14,12 @@ from core.interpreter.sinumerik.linear_moves import AxisTravel, block_of
 from core.interpreter.sinumerik.sinumerik_feeds import check_feed
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import ProgramError, Severity
 from core.language.sinumerik.call_arguments import Argument
 from core.language.sinumerik.cycle_names import CYCLES
 from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_words import Line
-from core.message import Message
+from core.message import Message, worded
 
 TOO_MANY = 12330
 NO_FEED = 61003
@@ -85,10 +86,9 @@ class Cycle:
     def _check(self) -> None:
         """Raises ProgramError where no cycle can run: the frame is turned, or compensation is on."""
         if not self.state.programmed.plain:
-            text = Message(
-                "{call} cannot run in a frame that is rotated, scaled or mirrored.", call=self.line.call
-            )
-            raise self.refused("cycle-frame", text, "Write TRANS without axes before this block.")
+            text = "{call} cannot run in a frame that is rotated, scaled or mirrored."
+            hint = "Write TRANS without axes before this block."
+            raise self.refused("cycle-frame", text, hint, call=self.line.call)
         plane = self.state.transformation
         if plane is not None and (self.line.call not in _LIVE or not plane.along_z):
             template = (
@@ -96,15 +96,12 @@ class Cycle:
                 if plane.along_z
                 else "{call} moves along Z, but {plane} is active."
             )
-            text = Message(template, call=self.line.call, plane=plane.name)
-            raise self.refused("transformation", text, "Write TRAFOOF before this block.")
+            hint = "Write TRAFOOF before this block."
+            raise self.refused("transformation", template, hint, call=self.line.call, plane=plane.name)
         if self.state.modal.nose_comp != 40:
-            text = Message(
-                "{what} is not allowed while G{state} is active.",
-                what=self.line.call,
-                state=self.state.modal.nose_comp,
-            )
-            raise self.refused("comp-with", text, "Write G40 and a move before this block.")
+            text = "{what} is not allowed while G{state} is active."
+            hint = "Write G40 and a move before this block."
+            raise self.refused("comp-with", text, hint, what=self.line.call, state=self.state.modal.nose_comp)
 
     def given(self, name: str) -> bool:
         """Whether the call hands this parameter over."""
@@ -143,9 +140,7 @@ class Cycle:
     def needed(self, name: str) -> float:
         """A length that must be there. Raises ProgramError."""
         if not self.given(name):
-            raise self.wrong(
-                name, "{name} is missing", Message("Add this parameter to {call}.", call=self.line.call)
-            )
+            raise self.wrong(name, "{name} is missing", "Add this parameter to {call}.", call=self.line.call)
         return self.length(name)
 
     def over_zero(self, name: str, alarm: int | str = "cycle-parameter") -> float:
@@ -160,36 +155,19 @@ class Cycle:
         value = self.number(name, float(default))
         self._demand_whole(name, value)
         if not low <= value <= high:
-            raise self.wrong(
-                name,
-                Message(
-                    "{name} is {value} but must be between {low} and {high}",
-                    value=f"{value:g}",
-                    low=low,
-                    high=high,
-                    name=name,
-                ),
-                "Correct the value.",
-            )
+            text = "{name} is {value} but must be between {low} and {high}"
+            raise self.wrong(name, text, "Correct the value.", value=value, low=low, high=high)
         return round(value)
 
     def _demand_whole(self, name: str, value: float) -> None:
         if value != round(value):
-            raise self.wrong(
-                name,
-                Message("{name} is {value} but must be a whole number", value=f"{value:g}", name=name),
-                "Enter a whole number.",
-            )
+            text = "{name} is {value} but must be a whole number"
+            raise self.wrong(name, text, "Enter a whole number.", value=value)
 
     def zero_only(self, name: str, why: str) -> None:
         """Raises ProgramError where a parameter asks for what is not built."""
         if self.number(name):
-            raise self.wrong(
-                name,
-                Message("{name} is not supported; {why}", why=why, name=name),
-                Message("Omit {name}.", name=name),
-                "not-in-subset",
-            )
+            raise self.wrong(name, "{name} is not supported; {why}", "Omit {name}.", "not-in-subset", why=why)
 
     def feed(self, name: str) -> float | None:
         """A feed as modal.feed has it; that in force without the parameter."""
@@ -207,40 +185,33 @@ class Cycle:
         self._demand_whole(name, value)
         if round(value) not in known:
             low, high = known[0], known[-1]
-            raise self.wrong(
-                name,
-                Message(
-                    "{name} is {value}; valid types are {low} to {high}",
-                    value=f"{value:g}",
-                    low=low,
-                    high=high,
-                    name=name,
-                ),
-                "Correct the value.",
-                MACHINING_TYPE,
-            )
+            text = "{name} is {value}; valid types are {low} to {high}"
+            hint = "Correct the value."
+            raise self.wrong(name, text, hint, MACHINING_TYPE, value=value, low=low, high=high)
         return round(value)
 
-    def wrong(self, name: str, what: str, hint: str, code: int | str = "cycle-parameter") -> ProgramError:
-        """Return an error about one parameter; ``what`` has the hole ``{name}``."""
+    def wrong(
+        self, name: str, what: str, hint: str, code: int | str = "cycle-parameter", /, **values: object
+    ) -> ProgramError:
+        """Return an error about one parameter; ``what`` and ``hint`` have holes for values."""
         argument = self._arguments.get(name)
         column = self.line.call_column if argument is None else argument.column
-        text = what if isinstance(what, Message) else Message(what, name=name)
-        return self._fault(column, code, Message("{call}: {what}.", call=self.line.call, what=text), hint)
+        values = {"name": name, "call": self.line.call, **values}
+        text = Message("{call}: {what}.", call=self.line.call, what=worded(what, values))
+        return self._fault(column, code, text, worded(hint, values))
 
-    def refused(self, code: int | str, text: str, hint: str) -> ProgramError:
-        """An error about the whole call."""
-        return self._fault(self.line.call_column, code, text, hint)
+    def refused(self, code: int | str, text: str, hint: str, /, **values: object) -> ProgramError:
+        """Return an error about the whole call; ``text`` and ``hint`` have holes for values."""
+        values = {"call": self.line.call, **values}
+        return self._fault(self.line.call_column, code, worded(text, values), worded(hint, values))
 
     def _fault(self, column: int, code: int | str, text: str, hint: str) -> ProgramError:
         return ProgramError(fault(self.line.number, column, code, self.line.block, text, hint))
 
-    def warn(self, code: str, text: str, hint: str) -> None:
-        """A warning about the call."""
-        found = fault(self.line.number, self.line.call_column, code, self.line.block, text, hint)
-        self.state.log.add(
-            Diagnostic(found.line, found.column, Severity.WARNING, found.code, found.message, found.hint)
-        )
+    def warn(self, code: str, text: str, hint: str, /, **values: object) -> None:
+        """Warn about the call."""
+        found = self.refused(code, text, hint, **values).diagnostic
+        self.state.log.add(replace(found, severity=Severity.WARNING))
 
     def blocks(self, steps: Sequence[Step]) -> Iterator[Block]:
         """The motions as blocks. All feeds are checked before the first comes. Raises ProgramError."""

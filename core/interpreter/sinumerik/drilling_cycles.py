@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, Cycle, Step, dwell
-from core.message import Message
 
 REFERENCE_PLANE = 61101
 FIRST_DEPTH = 61107
@@ -27,25 +26,17 @@ class Hole(NamedTuple):
 def hole_of(cycle: Cycle) -> Hole:
     """The hole that a call asks for. Raises ProgramError by the parameter's name."""
     if cycle.state.plane != 17:
-        text = Message(
-            "{call} drills perpendicular to plane G{plane}; drilling along Z needs G17.",
-            call=cycle.line.call,
-            plane=cycle.state.plane,
-        )
-        raise cycle.refused("cycle-plane", text, "Write G17 before this block and G18 after it.")
+        text = "{call} drills perpendicular to plane G{plane}; drilling along Z needs G17."
+        hint = "Write G17 before this block and G18 after it."
+        raise cycle.refused("cycle-plane", text, hint, call=cycle.line.call, plane=cycle.state.plane)
     if cycle.number("_AXN", 3.0) not in {0.0, 3.0}:
-        raise cycle.wrong(
-            "_AXN",
-            "{name} selects an axis other than Z, which is not supported",
-            "Omit _AXN.",
-            "not-in-subset",
-        )
+        text = "{name} selects an axis other than Z, which is not supported"
+        raise cycle.wrong("_AXN", text, "Omit _AXN.", "not-in-subset")
     retract, reference = cycle.needed("RTP"), cycle.needed("RFP")
     if cycle.given("DP") == cycle.given("DPR"):
         if not cycle.given("DP"):
-            raise cycle.wrong(
-                "DP", "{name} is missing", "Enter DP, or DPR measured from the reference plane."
-            )
+            text = "{name} is missing"
+            raise cycle.wrong("DP", text, "Enter DP, or DPR measured from the reference plane.")
         bottom = cycle.length("DP")
         if cycle.length("DPR") and abs(abs(bottom - reference) - cycle.length("DPR")) > _SAME:
             cycle.warn("cycle-depth-both", "DP and DPR differ, so DP is used.", "Omit DP or DPR.")
@@ -56,18 +47,12 @@ def hole_of(cycle: Cycle) -> Hole:
     down = 1.0 if bottom > reference else -1.0
     if abs(bottom - reference) < _SAME or (retract - reference) * down > _SAME:
         name = "DP" if cycle.given("DP") else "DPR"
-        text = Message(
-            "{name} is not beyond RFP as seen from RTP (RTP {retract}, RFP {reference}, depth {bottom})",
-            retract=f"{retract:g}",
-            reference=f"{reference:g}",
-            bottom=f"{bottom:g}",
-            name=name,
+        text = "{name} is not beyond RFP as seen from RTP (RTP {retract}, RFP {reference}, depth {bottom})"
+        hint = (
+            "Correct RTP, RFP and the depth so that they follow in this order along the drilling direction."
         )
         raise cycle.wrong(
-            name,
-            text,
-            "Correct RTP, RFP and the depth so that they follow in this order along the drilling direction.",
-            REFERENCE_PLANE,
+            name, text, hint, REFERENCE_PLANE, retract=retract, reference=reference, bottom=bottom
         )
     return Hole(retract, reference, reference - down * cycle.size("SDIS"), bottom, down)
 
@@ -79,9 +64,8 @@ def seconds(cycle: Cycle, name: str) -> float:
         return value
     rpm = abs(cycle.state.rpm)
     if not rpm:
-        raise cycle.wrong(
-            name, "{name} is in revolutions, but the spindle is stopped", "Enter the dwell in seconds."
-        )
+        text = "{name} is in revolutions, but the spindle is stopped"
+        raise cycle.wrong(name, text, "Enter the dwell in seconds.")
     return -value / rpm * 60.0
 
 
@@ -146,19 +130,15 @@ def depths(cycle: Cycle, hole: Hole) -> list[float]:
     whole = abs(hole.bottom - hole.reference)
     first = abs(cycle.length("FDEP") - hole.reference) if cycle.given("FDEP") else cycle.size("FDPR")
     if cycle.given("FDEP") and (cycle.length("FDEP") - hole.reference) * hole.down < -_SAME:
-        raise cycle.wrong(
-            "FDEP", "{name} is before RFP in the drilling direction", "Correct the value.", FIRST_DEPTH
-        )
+        text = "{name} is before RFP in the drilling direction"
+        raise cycle.wrong("FDEP", text, "Correct the value.", FIRST_DEPTH)
     if first > whole + _SAME:
         name = "FDEP" if cycle.given("FDEP") else "FDPR"
         raise cycle.wrong(name, "{name} is deeper than the hole", "Correct the value.", FIRST_DEPTH)
     step, less, least = first or whole, cycle.number("DAM"), cycle.size("_MDEP")
     if less <= -1.0:
-        raise cycle.wrong(
-            "DAM",
-            "{name} must be an amount, or a factor greater than -1 and not greater than 0",
-            "Correct the value.",
-        )
+        text = "{name} must be an amount, or a factor greater than -1 and not greater than 0"
+        raise cycle.wrong("DAM", text, "Correct the value.")
     smallest = max(least, 0.0)
     found, reached, halved = [step], step, False
     while reached < whole - _SAME:

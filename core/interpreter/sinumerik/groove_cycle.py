@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, RETRACT, Cycle, Step, dwell
-from core.message import Message
 from core.tool_edges import edge_key, edge_name, edge_of, tool_of
 
 WRONG_WIDTH = 61602
@@ -49,17 +48,9 @@ def groove_of(cycle: Cycle) -> Groove:
     for name in ("RCO1", "RCO2", "RCI1", "RCI2"):
         cycle.zero_only(name, "program the corners as a CYCLE95 contour, or chamfer them with G1")
     if kind % 2 == 0:
+        text = "{name} is {kind}, which specifies a face groove and is not supported"
         hint = "Program a face groove as a CYCLE95 contour or in G1 blocks."
-        raise cycle.wrong(
-            "VARI",
-            Message(
-                "{name} is {kind}, which specifies a face groove and is not supported",
-                kind=kind,
-                name="VARI",
-            ),
-            hint,
-            "not-in-subset",
-        )
+        raise cycle.wrong("VARI", text, hint, "not-in-subset", kind=kind)
     inside, right = kind in {3, 7}, kind > 4
     x, z = cycle.over_zero("SPD") / 2.0, cycle.needed("SPL")
     width, depth = cycle.over_zero("WIDG"), cycle.over_zero("DIAG", WRONG_FORM)
@@ -68,12 +59,8 @@ def groove_of(cycle: Cycle) -> Groove:
     low, high = (z - here - width, z - here) if right else (z + here, z + here + width)
     runs = (there, here) if right else (here, there)
     if x - out * depth < 0.0:
-        raise cycle.wrong(
-            "DIAG",
-            "{name} makes the groove reach past the spindle centerline",
-            "Correct SPD or DIAG.",
-            WRONG_FORM,
-        )
+        text = "{name} makes the groove reach past the spindle centerline"
+        raise cycle.wrong("DIAG", text, "Correct SPD or DIAG.", WRONG_FORM)
     return Groove(out, x, x - out * depth, low, high, *runs)
 
 
@@ -81,9 +68,8 @@ def _run(cycle: Cycle, name: str, depth: float) -> float:
     """How far a flank goes along Z from the bottom to the surface, mm. Raises ProgramError."""
     angle = cycle.number(name)
     if not 0.0 <= angle <= _STEEPEST:
-        raise cycle.wrong(
-            name, "{name} must be a flank angle from 0 to less than 90 degrees", "Correct the value."
-        )
+        text = "{name} must be a flank angle from 0 to less than 90 degrees"
+        raise cycle.wrong(name, text, "Correct the value.")
     return depth * tan(radians(angle))
 
 
@@ -96,40 +82,28 @@ def tool_width(cycle: Cycle, widest: float) -> tuple[float, bool]:
     state = cycle.state
     key, tools = state.modal.tool, state.setup.tools
     if not key or state.modal.edge == 0:
-        text = Message("{call} needs an active tool with an offset.", call=cycle.line.call)
-        raise cycle.refused(NO_TOOL, text, "Write T and D before this block.")
+        text = "{call} needs an active tool with an offset."
+        raise cycle.refused(NO_TOOL, text, "Write T and D before this block.", call=cycle.line.call)
     number = cycle.whole("_DN", 0, 0, 9) or edge_of(key) + 1
     other = edge_key(tool_of(key), number)
     if key not in tools and other not in tools:
         width = min(_USUAL_WIDTH, widest)
-        text = Message(
-            "{call} assumes a tool {width} mm wide because {key} is not set.",
-            call=cycle.line.call,
-            width=f"{width:g}",
-            key=edge_name(key),
-        )
-        cycle.warn("tool-width", text, "Set both tool corners on the TOOL OFFSETS page (F8).")
+        text = "{call} assumes a tool {width} mm wide because {key} is not set."
+        hint = "Set both tool corners on the TOOL OFFSETS page (F8)."
+        cycle.warn("tool-width", text, hint, call=cycle.line.call, width=width, key=edge_name(key))
         return width, False
     if key not in tools or other not in tools:
         name = edge_name(other)
-        text = Message(
-            "{call} needs the tool width, but the other tool corner ({name}) is not set.",
-            call=cycle.line.call,
-            name=name,
-        )
-        raise cycle.refused(
-            WRONG_WIDTH, text, Message("Set {other} on the TOOL OFFSETS page (F8).", other=edge_name(other))
-        )
+        text = "{call} needs the tool width, but the other tool corner ({name}) is not set."
+        hint = "Set {other} on the TOOL OFFSETS page (F8)."
+        raise cycle.refused(WRONG_WIDTH, text, hint, call=cycle.line.call, name=name, other=edge_name(other))
     here, there = tools[key], tools[other]
     # A corner further to plus has the smaller machine position at part zero.
     way = here.z - there.z
     if abs(way) < _SAME:
-        text = Message(
-            "{key} and {other} are at the same position, so the tool has no width.",
-            key=edge_name(key),
-            other=edge_name(other),
-        )
-        raise cycle.refused(WRONG_WIDTH, text, "Correct the offsets of the two tool corners.")
+        text = "{key} and {other} are at the same position, so the tool has no width."
+        hint = "Correct the offsets of the two tool corners."
+        raise cycle.refused(WRONG_WIDTH, text, hint, key=edge_name(key), other=edge_name(other))
     return abs(way), way > 0.0
 
 
@@ -140,13 +114,9 @@ def groove(cycle: Cycle) -> Iterator[Block]:
     width, at_low = tool_width(cycle, shape.high - shape.low - 2.0 * flank_left)
     room = shape.high - shape.low - 2.0 * flank_left - width
     if room < -_SAME:
-        text = Message(
-            "{name} is {high} including FAL2 on both flanks, but the tool is {width} wide",
-            high=f"{shape.high - shape.low:g}",
-            width=f"{width:g}",
-            name="WIDG",
-        )
-        raise cycle.wrong("WIDG", text, "Use a narrower tool.", WRONG_WIDTH)
+        text = "{name} is {high} including FAL2 on both flanks, but the tool is {width} wide"
+        hint = "Use a narrower tool."
+        raise cycle.wrong("WIDG", text, hint, WRONG_WIDTH, high=shape.high - shape.low, width=width)
     feed = cycle.state.modal.feed
     if feed is None:
         raise cycle.refused(10860, "no feedrate is programmed.", "Program F before this block.")
@@ -156,11 +126,8 @@ def groove(cycle: Cycle) -> Iterator[Block]:
     bottom = shape.bottom + shape.out * bottom_left
     count = ceil(max(room, 0.0) / (width * _OVERLAP) - _WHOLE)
     if count > MOST_PASSES:
-        raise cycle.wrong(
-            "WIDG",
-            Message("{name} would need {count} cuts, which is too many", count=f"{count:,}", name="WIDG"),
-            "Look for a missing decimal point.",
-        )
+        text = "{name} would need {count} cuts, which is too many"
+        raise cycle.wrong("WIDG", text, "Look for a missing decimal point.", count=f"{count:,}")
     for k in range(count + 1):
         place = shape.high - flank_left - width - (room * k / count if count else 0.0)
         steps += plan.plunge(place, bottom)
@@ -192,13 +159,8 @@ class _Plan:
         whole = abs(bottom - shape.top)
         count = max(ceil(whole / self._infeed - _WHOLE), 1) if self._infeed else 1
         if count > MOST_PASSES:
-            raise self._cycle.wrong(
-                "IDEP",
-                Message(
-                    "{name} would need {count} steps, which is too many", count=f"{count:,}", name="IDEP"
-                ),
-                "Look for a missing decimal point.",
-            )
+            text = "{name} would need {count} steps, which is too many"
+            raise self._cycle.wrong("IDEP", text, "Look for a missing decimal point.", count=f"{count:,}")
         steps = [self._to(self._clear, place)]
         for k in range(1, count + 1):
             depth = shape.top - shape.out * whole * k / count
@@ -211,11 +173,8 @@ class _Plan:
         """Plunges outwards from ``place`` under a flank that rises by ``run``, each less deep."""
         count = ceil(abs(run) / (width * _OVERLAP) - _WHOLE)
         if count > MOST_PASSES:
-            raise self._cycle.wrong(
-                "ANG1",
-                Message("{name} would need {count} cuts, which is too many", count=f"{count:,}", name="ANG1"),
-                "Check the angles.",
-            )
+            text = "{name} would need {count} cuts, which is too many"
+            raise self._cycle.wrong("ANG1", text, "Check the angles.", count=f"{count:,}")
         steps: list[Step] = []
         for share in (k / (count + 1) for k in range(1, count + 1)):
             depth = bottom + (self._shape.top - bottom) * share

@@ -22,11 +22,8 @@ def thread_chain(cycle: Cycle) -> Iterator[Block]:
     along = 1.0 if places[1][1] > places[0][1] else -1.0
     for k, (a, b) in enumerate(pairwise(places), 2):
         if along * (b[1] - a[1]) < _SAME:
-            raise cycle.wrong(
-                f"PO{k}",
-                "{name} does not continue the thread in the same Z direction",
-                "PO1 to PO4 must follow each other in the same Z direction.",
-            )
+            text = "{name} does not continue the thread in the same Z direction"
+            raise cycle.wrong(f"PO{k}", text, "PO1 to PO4 must follow each other in the same Z direction.")
     depths = depths_of(cycle, equal_chip=kind in {3, 4})
     shifts, (first, starts) = shifts_of(cycle, depths), starts_of(cycle)
     for lead in leads:

@@ -12,7 +12,6 @@ from math import radians, sqrt, tan
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import MACHINING_TYPE, MOST_PASSES, RETRACT, Cycle, Step
 from core.interpreter.sinumerik.thread_moves import check_spindle
-from core.message import Message
 
 WRONG_LEAD = 61001
 
@@ -52,26 +51,17 @@ def lead_of(cycle: Cycle) -> float:
     pit, size = cycle.length("PIT"), cycle.number("MPIT")
     if cycle.given("PIT") and pit:
         if pit < 0.0:
-            raise cycle.wrong(
-                "PIT", "{name} is a lead and must be greater than 0", "Correct the value.", WRONG_LEAD
-            )
+            text = "{name} is a lead and must be greater than 0"
+            raise cycle.wrong("PIT", text, "Correct the value.", WRONG_LEAD)
         if size and abs(COARSE_LEADS.get(round(size), 0.0) - pit) > 1e-6:
-            raise cycle.wrong(
-                "MPIT",
-                Message("{name} does not match a thread with lead {pit}", pit=f"{pit:g}", name="MPIT"),
-                "Omit MPIT.",
-                WRONG_LEAD,
-            )
+            text = "{name} does not match a thread with lead {pit}"
+            raise cycle.wrong("MPIT", text, "Omit MPIT.", WRONG_LEAD, pit=pit)
         return pit
     lead = COARSE_LEADS.get(round(size), 0.0) if size == round(size) else 0.0
     if not lead:
         name = "MPIT" if cycle.given("MPIT") else "PIT"
-        raise cycle.wrong(
-            name,
-            "{name} does not define a lead",
-            "Enter PIT, or MPIT from 3 to 68 for M3 to M68.",
-            WRONG_LEAD,
-        )
+        text = "{name} does not define a lead"
+        raise cycle.wrong(name, text, "Enter PIT, or MPIT from 3 to 68 for M3 to M68.", WRONG_LEAD)
     return lead
 
 
@@ -82,9 +72,8 @@ def read_thread(cycle: Cycle) -> Thread:
     out = -1.0 if kind in {2, 4} else 1.0
     z0, z1 = cycle.needed("SPL"), cycle.needed("FPL")
     if abs(z1 - z0) < 1e-6:
-        raise cycle.wrong(
-            "FPL", "{name} is the same position as the start of the thread", "Correct SPL or FPL."
-        )
+        text = "{name} is the same position as the start of the thread"
+        raise cycle.wrong("FPL", text, "Correct SPL or FPL.")
     along = 1.0 if z1 > z0 else -1.0
     x0 = cycle.over_zero("DM1") / 2.0
     x1 = cycle.over_zero("DM2") / 2.0
@@ -104,9 +93,8 @@ def depths_of(cycle: Cycle, *, equal_chip: bool) -> tuple[float, ...]:
     depth, left = cycle.over_zero("TDEP"), cycle.size("FAL")
     count, idle = cycle.whole("NRC", 1, 0, MOST_PASSES), cycle.whole("NID", 0, 0, MOST_PASSES)
     if left >= depth:
-        raise cycle.wrong(
-            "FAL", "{name} is not less than TDEP, so no depth remains for roughing", "Reduce FAL."
-        )
+        text = "{name} is not less than TDEP, so no depth remains for roughing"
+        raise cycle.wrong("FAL", text, "Reduce FAL.")
     if not count and not left:
         raise cycle.wrong("NRC", "{name} is 0, so nothing would be cut", "Enter the number of passes.")
     rough = [(depth - left) * (sqrt(i / count) if equal_chip else i / count) for i in range(1, count + 1)]
@@ -119,9 +107,8 @@ def shifts_of(cycle: Cycle, depths: tuple[float, ...]) -> tuple[float, ...]:
     if cycle.line.call == "CYCLE99" and cycle.number("VARI") // 100 % 10 == 2:
         angle = -abs(angle)
     if not -60.0 < angle < 60.0:
-        raise cycle.wrong(
-            "IANG", "{name} must be a flank angle of less than 60 degrees", "Enter half the thread angle."
-        )
+        text = "{name} must be a flank angle of less than 60 degrees"
+        raise cycle.wrong("IANG", text, "Enter half the thread angle.")
     slope = tan(radians(abs(angle)))
     turn = -1.0 if angle < 0.0 else 1.0
     return tuple(depth * slope * (turn if i % 2 else 1.0) for i, depth in enumerate(depths))
@@ -136,13 +123,11 @@ def kind_of(cycle: Cycle) -> int:
         return cycle.machining("VARI", range(1, 5))
     value = cycle.whole("VARI", 0, 0, 9_999_999)
     if value % 10 not in {1, 2, 3, 4} or value // 100_000 % 10 not in {0, 3}:
-        text = Message(
-            "{name} is {value}: the last digit must be 1 to 4, and the sixth digit must be "
-            "3 (roughing and finishing together)",
-            value=value,
-            name="VARI",
+        text = (
+            "{name} is {value}: the last digit must be 1 to 4, and the sixth digit must be 3 (roughing and "
+            "finishing together)"
         )
-        raise cycle.wrong("VARI", text, "Enter a value from 300101 to 300104.", MACHINING_TYPE)
+        raise cycle.wrong("VARI", text, "Enter a value from 300101 to 300104.", MACHINING_TYPE, value=value)
     return value % 10
 
 
@@ -151,9 +136,8 @@ def starts_of(cycle: Cycle) -> tuple[float, int]:
     starts = cycle.whole("NUMTH" if cycle.line.call == "CYCLE99" else "NUMT", 0, 0, 100) or 1
     first = cycle.number("NSP")
     if not 0.0 <= first < 360.0:
-        raise cycle.wrong(
-            "NSP", "{name} must be a start angle from 0 to less than 360 degrees", "Correct the value."
-        )
+        text = "{name} must be a start angle from 0 to less than 360 degrees"
+        raise cycle.wrong("NSP", text, "Correct the value.")
     return first, starts
 
 
