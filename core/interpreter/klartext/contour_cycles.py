@@ -17,11 +17,10 @@ from core.geometry.pocket_area import AreaError, Loop, Within, follows, inset
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext.contour_figures import OPEN, ContourFigure, area_of
 from core.interpreter.klartext.cycle_moves import CycleTool
-from core.interpreter.klartext.hole_cycles import SMALLEST, infeeds
+from core.interpreter.klartext.hole_cycles import SMALLEST, levels
 from core.interpreter.klartext.klartext_state import State
 from core.language.diagnostics import ProgramError
 from core.language.klartext.q_parameters import MAX_FEED
-from core.message import Message
 
 _RAMP = math.tan(math.radians(3.0))
 _MOST_OVERLAP = 2.0
@@ -66,10 +65,7 @@ class Clearing:
 
     def levels(self, bottom: float) -> list[float]:
         """Heights of the infeeds, the bottom last."""
-        whole = self.surface - bottom
-        if whole < SMALLEST:
-            return []
-        return [self.surface - done for done in infeeds(self.tool, whole, abs(self.tool.length(10)))]
+        return levels(self.tool, self.surface, bottom, lambda: abs(self.tool.length(10)))
 
     def plan(self, radius: float) -> list[Cut]:
         """The rings that clear one level with a tool of this radius, mm."""
@@ -82,12 +78,9 @@ class Clearing:
 
     def unfit(self, problem: AreaError | GougeError) -> ProgramError:
         """What is told where a contour cannot be followed at the tool's radius."""
-        text = Message(
-            "The contour cannot be milled with tool radius {radius} mm plus the allowance: {problem}.",
-            radius=f"{self.tool.radius:.10g}",
-            problem=problem,
-        )
-        return self.tool.refuse(text, "Use a smaller tool, or correct the contour.")
+        text = "The contour cannot be milled with tool radius {radius} mm plus the allowance: {problem}."
+        hint, radius = "Use a smaller tool, or correct the contour.", f"{self.tool.radius:.10g}"
+        return self.tool.refuse(text, hint, radius=radius, problem=problem)
 
     def above(self) -> Iterator[Block]:
         """To the clearance height."""
@@ -160,9 +153,7 @@ def _down_to(told: Clearing, cut: Cut, top: float, z: float, slow: float) -> Ite
     """To the start of a ring at its depth, or where a ramp along it has ended."""
     tool = told.tool
     if not cut.straight:
-        yield tool.to(max(told.clear, tool.height))
-        yield tool.across(cut.ramp[0].start)
-        yield tool.to(told.clear)
+        yield from tool.over(cut.ramp[0].start, told.clear)
         yield from _ramp(told, cut, top, z, slow)
     elif math.dist(tool.here, cut.loop[0].start) > SAME_POINT:
         yield tool.across(cut.loop[0].start, None, slow)
@@ -209,9 +200,7 @@ def floor_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
     for cut in plan if told.surface - told.bottom > SMALLEST else ():
         start = cut.loop[0].start
         if not cut.straight:
-            yield tool.to(max(told.clear, tool.height))
-            yield tool.across(start)
-            yield tool.to(told.clear)
+            yield from tool.over(start, told.clear)
             yield tool.to(told.bottom, plunge)
         elif math.dist(tool.here, start) > SAME_POINT:
             yield tool.across(start, None, feed)
@@ -239,9 +228,7 @@ def side_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
         ring = [element.reversed() for element in reversed(loop)] if told.against else loop
         ring, to_it, off_it = _led(ring, room, apart, tool.radius, against=told.against)
         for z in told.levels(told.bottom):
-            yield tool.to(max(told.clear, tool.height))
-            yield tool.across(to_it.start if to_it else ring[0].start)
-            yield tool.to(told.clear)
+            yield from tool.over(to_it.start if to_it else ring[0].start, told.clear)
             yield tool.to(z, plunge)
             yield from _along(tool, [each for each in (to_it, *ring, off_it) if each is not None], feed)
         yield tool.to(told.clear)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 from core.geometry.lines_and_arcs import Arc, Point
@@ -79,11 +79,8 @@ class CycleTool:
         if found is None:
             found = default
         if found is None:
-            text = "Cycle {number} needs {parameter}."
-            hint = "Add the parameter to CYCL DEF."
-            raise self._state.refuse(
-                self._column, CYCLE_MISSING, text, hint, number=self._number, parameter=self.named(q)
-            )
+            text, hint = "Cycle {number} needs {parameter}.", "Add the parameter to CYCL DEF."
+            raise self.refuse(text, hint, CYCLE_MISSING, parameter=self.named(q))
         return found
 
     def length(self, q: int, default: float | None = None) -> float:
@@ -97,10 +94,7 @@ class CycleTool:
             return per_minute(self._state, self._state.tool_feed, self._state.tool_feed_per, self._column)
         if found <= 0.0:
             text = "{parameter} of cycle {number} is not a valid feed rate."
-            hint = "Enter a feed rate above 0."
-            raise self._state.refuse(
-                self._column, INPUT_VALUE, text, hint, parameter=self.named(q), number=self._number
-            )
+            raise self.refuse(text, "Enter a feed rate above 0.", parameter=self.named(q))
         return None if found >= MAX_FEED else found
 
     def cut(self, q: int) -> float:
@@ -127,8 +121,11 @@ class CycleTool:
 
     def tell(self, text: str) -> None:
         """Something about this cycle that is done otherwise, once."""
-        said = Message("Cycle {number}: {what}", number=self._number, what=text)
-        self._state.tell_once(self._column, Severity.NOTE, "cycle-otherwise", said)
+        self._tell(Severity.NOTE, "cycle-otherwise", "Cycle {number}: {what}", what=text)
+
+    def _tell(self, severity: Severity, code: str, text: str, hint: str = "", /, **values: object) -> None:
+        said = Message(text, number=self._number, **values)
+        self._state.tell_once(self._column, severity, code, said, hint)
 
     @property
     def point_angle(self) -> float:
@@ -137,7 +134,7 @@ class CycleTool:
         if row is None or not 0.0 < row.point < 180.0:
             text = "Cycle {number} needs the point angle of the tool for a programmed diameter."
             hint = "Enter the point angle in the tool table, or program Q343=+0 and Q201."
-            raise self.refuse(text, hint, number=self._number)
+            raise self.refuse(text, hint)
         return row.point
 
     @property
@@ -161,9 +158,8 @@ class CycleTool:
         """Speed of the spindle, signed. Raises ProgramError where it stands."""
         found = self.turns
         if not found:
-            text = "Cycle {number} needs a running spindle."
             hint = "Start the spindle with M3 before the cycle."
-            raise self._state.refuse(self._column, WRONG_RPM, text, hint, number=self._number)
+            raise self.refuse("Cycle {number} needs a running spindle.", hint, WRONG_RPM)
         return found
 
     @property
@@ -175,35 +171,34 @@ class CycleTool:
         """S in the direction of a thread, signed: a pitch under 0 is a left-hand one. Raises ProgramError."""
         if not self.speed:
             text = "Cycle {number} needs a spindle speed."
-            hint = "Program S in TOOL CALL."
-            raise self._state.refuse(self._column, WRONG_RPM, text, hint, number=self._number)
+            raise self.refuse(text, "Program S in TOOL CALL.", WRONG_RPM)
         return math.copysign(self.speed, pitch)
 
     def warn_uncoupled(self) -> None:
         """Z follows the spindle by its speed, not by its angle: it stands while the spindle turns round."""
-        text = Message(
+        text = (
             "Cycle {number}: Z is not synchronized with the spindle angle, so Z stops "
-            "while the spindle reverses.",
-            number=self._number,
+            "while the spindle reverses."
         )
-        hint = "Use a floating tap holder."
-        self._state.tell_once(self._column, Severity.WARNING, "tapping-uncoupled", text, hint)
+        self._tell(Severity.WARNING, "tapping-uncoupled", text, "Use a floating tap holder.")
 
     def warn_unoriented(self) -> None:
         """Nothing stops the spindle of this mill at an angle: the edge may point anywhere."""
-        text = Message(
-            "Cycle {number} moves the cutting edge away from the wall, but {unoriented}.",
-            number=self._number,
-            unoriented=UNORIENTED,
-        )
+        text = "Cycle {number} moves the cutting edge away from the wall, but {unoriented}."
         hint = "Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment."
-        self._state.tell_once(self._column, Severity.WARNING, "spindle-not-oriented", text, hint)
+        self._tell(Severity.WARNING, "spindle-not-oriented", text, hint, unoriented=UNORIENTED)
 
     # --- what it does -------------------------------------------------------------------------------------
 
     def to(self, z: float, feed: float | None = None) -> Block:
         """Up or down to ``z``; without a feed in rapid."""
         return self.across(self.here, z, feed)
+
+    def over(self, at: Point, clear: float) -> Iterator[Block]:
+        """At the height ``clear`` or above it to a place, and down to that height, in rapid."""
+        yield self.to(max(clear, self.height))
+        yield self.across(at)
+        yield self.to(clear)
 
     def tap(self, z: float, lead: float, *, in_hole: bool = False) -> Block:
         """Into a thread or out of it: ``lead`` mm a revolution, whatever the feed override says.

@@ -20,26 +20,6 @@ _EDGE = {
 _MOST_PECKS = 10_000
 
 
-def drilling(tool: CycleTool) -> Iterator[Block]:
-    """200: in infeeds, out of the hole after each."""
-    surface, clear, bottom = heights(tool)
-    feed = tool.feed(206)
-    yield tool.to(clear)
-    if abs(bottom - surface) < SMALLEST:
-        return
-    before = 0.0
-    for depth in infeeds(tool, surface - bottom, tool.length(202)):
-        if before:
-            yield from tool.dwell(tool.plain(210, 0.0))
-            yield tool.to(min(clear, surface - before + tool.length(200)))
-        yield tool.to(surface - depth, feed)
-        if depth < surface - bottom:
-            yield tool.to(clear)
-        before = depth
-    yield from tool.dwell(tool.plain(211, 0.0))
-    yield from out(tool, surface, clear, None)
-
-
 def reaming(tool: CycleTool) -> Iterator[Block]:
     """201: down and out at a feed."""
     surface, clear, bottom = heights(tool)
@@ -123,6 +103,11 @@ def back_boring(tool: CycleTool) -> Iterator[Block]:
     yield from out(tool, surface, clear, slow)
     yield tool.across((x, y))
     yield tool.turn(rpm)
+
+
+def drilling(tool: CycleTool) -> Iterator[Block]:
+    """200: as 203 in equal infeeds, out of the hole after each."""
+    return universal_drilling(tool.seen({q: q for q in (200, 201, 202, 203, 204, 206, 210, 211)}))
 
 
 def universal_drilling(tool: CycleTool) -> Iterator[Block]:
@@ -323,6 +308,12 @@ def infeeds(
         done = min(done + step, whole)
         yield done if whole - done > SMALLEST else whole
         step = max(step - smaller, least, SMALLEST) if smaller else step
+
+
+def levels(tool: CycleTool, surface: float, bottom: float, step: Callable[[], float]) -> list[float]:
+    """Heights of the infeeds from the surface down, the bottom last; none where there is no depth."""
+    whole = surface - bottom
+    return [] if whole < SMALLEST else [surface - done for done in infeeds(tool, whole, step())]
 
 
 def out(tool: CycleTool, surface: float, clear: float, feed: float | None) -> Iterator[Block]:

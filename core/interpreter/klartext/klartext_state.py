@@ -193,7 +193,7 @@ class State:
         return word / 60.0 if self.scale == 1.0 else word * 0.1 * MM_PER_INCH / 60.0
 
     def refuse(
-        self, column: int, code: str, text: str, hint: str, /, line: int = 0, **values: object
+        self, column: int, code: str, text: str, hint: str, line: int = 0, /, **values: object
     ) -> ProgramError:
         """An error to be raised, at this column of the line that is being executed, or of ``line``.
 

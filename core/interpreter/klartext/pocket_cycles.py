@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from core.geometry.lines_and_arcs import Arc
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext.cycle_moves import CycleTool
-from core.interpreter.klartext.hole_cycles import SMALLEST, heights, infeeds, out
+from core.interpreter.klartext.hole_cycles import SMALLEST, heights, infeeds, levels, out
 from core.interpreter.klartext.milled_rings import Ring, Seat
 
 _RAMP = math.tan(math.radians(3.0))
@@ -41,17 +41,10 @@ class _Milling:
         self.step = overlap * tool.radius
         self.against = (tool.plain(351, 1.0) < 0.0) != (tool.rpm < 0.0)
 
-    @property
-    def rough_floor(self) -> float:
-        """The height that clearing goes down to."""
-        return self.bottom + (self.floor if self.scope != _FINISH else 0.0)
-
     def levels(self) -> list[float]:
         """Heights of clearing, the last one last."""
-        depth = self.surface - self.rough_floor
-        if depth < SMALLEST:
-            return []
-        return [self.surface - done for done in infeeds(self.tool, depth, self.tool.length(202))]
+        floor = self.bottom + (self.floor if self.scope != _FINISH else 0.0)
+        return levels(self.tool, self.surface, floor, lambda: self.tool.length(202))
 
     @property
     def finishes(self) -> bool:
@@ -65,10 +58,8 @@ class _Milling:
 
     def wall_levels(self) -> list[float]:
         """Heights of finishing: by Q338, where that is 0 at once."""
-        return [
-            self.surface - done
-            for done in infeeds(self.tool, self.surface - self.bottom, self.tool.length(338, 0.0))
-        ]
+        step = self.tool.length(338, 0.0)
+        return [self.surface - done for done in infeeds(self.tool, self.surface - self.bottom, step)]
 
 
 # --- pockets and slots: from the inside out
@@ -261,9 +252,7 @@ def _approached(told: _Milling, seat: Seat, outside: float, z: float, down: bool
     tool = told.tool
     if not down:
         return
-    yield tool.to(max(told.clear, tool.height))
-    yield tool.across(seat.at(outside, 0.0))
-    yield tool.to(told.clear)
+    yield from tool.over(seat.at(outside, 0.0), told.clear)
     yield tool.to(z, told.plunge)
 
 
