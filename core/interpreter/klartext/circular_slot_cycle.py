@@ -27,9 +27,8 @@ def circular_slot(tool: CycleTool) -> Iterator[Block]:
     safe = max(surface + tool.length(204, 0.0), clear) / tool.scale
     centre, begin, sweep = _placed(tool)
     count, step = int(tool.plain(377, 1.0)), tool.plain(378, 0.0)
-    if not 1 <= count <= _MOST_SLOTS:
-        text = "Q377={count} is not a valid number of slots."
-        raise tool.refuse(text, "Enter a valid number.", count=count)
+    text = "Q377={count} is not a valid number of slots."
+    tool.check(1 <= count <= _MOST_SLOTS, text, "Enter a valid number.", count=count)
     scope = int(tool.plain(215, 0.0))
     side, floor = tool.length(368, 0.0), tool.length(369, 0.0)
     for at in range(count):
@@ -75,8 +74,7 @@ def _placed(tool: CycleTool) -> tuple[Point, float, float]:
     place = int(tool.plain(367, 0.0))
     share = {_LEFT_END: 0.0, _MIDDLE: 0.5, _RIGHT_END: 1.0}.get(place)
     if share is None:
-        if place != _CENTRE:
-            raise tool.refuse("Q367 must be 0, 1, 2 or 3.", "Correct Q367.")
+        tool.check(place == _CENTRE, "Q367 must be 0, 1, 2 or 3.", "Correct Q367.")
         return (tool.length(216), tool.length(217)), begin, sweep
     turned = math.radians(begin)  # Q376 is the angle of the place where the tool stands
     x, y = tool.here

@@ -37,9 +37,8 @@ class Clearing:
     def __init__(self, tool: CycleTool, area: Sequence[Loop] = (), above: float | None = None) -> None:
         self.tool, self.area = tool, area
         depth = tool.length(1)
-        if depth > 0.0:
-            text = "Depth Q1={depth} mm is positive (upward)."
-            raise tool.refuse(text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
+        text = "Depth Q1={depth} mm is positive (upward)."
+        tool.check(depth <= 0.0, text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
         self.surface = tool.length(5, 0.0)
         self.bottom = self.surface + depth
         self.clear = self.surface + (tool.length(6) if above is None else above)
@@ -57,10 +56,9 @@ class Clearing:
     def step(self) -> float:
         """From ring to ring: Q2 tool radii, and no more than one, which leaves nothing standing."""
         overlap = self.tool.plain(2, 1.0)
-        if not 0.0 < overlap < _MOST_OVERLAP:
-            text = "With path overlap {named}={overlap}, the cycle cannot clear the area."
-            hint = "Enter a value between 0.0001 and 1.9999."
-            raise self.tool.refuse(text, hint, named=self.tool.named(2), overlap=overlap)
+        text = "With path overlap {named}={overlap}, the cycle cannot clear the area."
+        hint = "Enter a value between 0.0001 and 1.9999."
+        self.tool.check(0.0 < overlap < _MOST_OVERLAP, text, hint, named=self.tool.named(2), overlap=overlap)
         return min(overlap, 1.0) * self.tool.radius
 
     def levels(self, bottom: float) -> list[float]:
@@ -98,11 +96,9 @@ class Clearing:
 
 def contour_data(tool: CycleTool) -> None:
     """20: the data are kept in Q1 to Q9; looked at where they are told. Raises ProgramError."""
-    if tool.length(1) > 0.0:
-        raise tool.refuse("Depth Q1 is positive (upward).", "Enter the depth with a minus sign.")
-    if not 0.0 < tool.plain(2, 1.0) < _MOST_OVERLAP:
-        text = "With the programmed path overlap Q2, the cycle cannot clear the area."
-        raise tool.refuse(text, "Set Q2 to a value between 0.0001 and 1.9999.")
+    tool.check(tool.length(1) <= 0.0, "Depth Q1 is positive (upward).", "Enter the depth with a minus sign.")
+    text = "With the programmed path overlap Q2, the cycle cannot clear the area."
+    tool.check(0.0 < tool.plain(2, 1.0) < _MOST_OVERLAP, text, "Set Q2 to a value between 0.0001 and 1.9999.")
 
 
 # --- clearing -------------------------------------------------------------------------------------------
@@ -167,9 +163,8 @@ def _ramp(told: Clearing, cut: Cut, top: float, z: float, slow: float) -> Iterat
         yield tool.to(z, told.tool.cut(11))
     else:
         feed, length, ring = told.tool.cut(19), (top - z) / _RAMP, sum(element.length for element in cut.ramp)
-        if length > _MOST_RAMP * ring:
-            text = "There is not enough room to plunge along a ramp."
-            raise tool.refuse(text, "Use a center-cutting tool and plunge vertically.")
+        text = "There is not enough room to plunge along a ramp."
+        tool.check(length <= _MOST_RAMP * ring, text, "Use a center-cutting tool and plunge vertically.")
         way, rest = walked(cut.ramp, length)
         done = 0.0
         for element in way:
@@ -290,9 +285,8 @@ def contour_train(tool: CycleTool, figures: Figures) -> Iterator[Block]:
 def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
     """The way of the tool's centre, its radius and Q3 off the contour; on it without RL or RR."""
     elements = list(figure.elements)
-    if not elements:
-        text = "Contour {figure} does not contain any elements."
-        raise told.tool.refuse(text, "Add path functions to the contour.", figure=figure.label)
+    text = "Contour {figure} does not contain any elements."
+    told.tool.check(elements, text, "Add path functions to the contour.", figure=figure.label)
     if not figure.side:
         return elements
     apart = told.tool.radius + told.side

@@ -92,9 +92,8 @@ class CycleTool:
         found = self.plain(q)
         if found == TOOL_FEED and self._state.tool_feed is not None:
             return per_minute(self._state, self._state.tool_feed, self._state.tool_feed_per, self._column)
-        if found <= 0.0:
-            text = "{parameter} of cycle {number} is not a valid feed rate."
-            raise self.refuse(text, "Enter a feed rate above 0.", parameter=self.named(q))
+        text = "{parameter} of cycle {number} is not a valid feed rate."
+        self.check(found > 0.0, text, "Enter a feed rate above 0.", parameter=self.named(q))
         return None if found >= MAX_FEED else found
 
     def cut(self, q: int) -> float:
@@ -108,6 +107,11 @@ class CycleTool:
     def refuse(self, text: str, hint: str, code: str = INPUT_VALUE, /, **values: object) -> ProgramError:
         """An error of this cycle, to be raised; the number of the cycle fills the hole ``number``."""
         return self._state.refuse(self._column, code, text, hint, **{"number": self._number, **values})
+
+    def check(self, fine: object, text: str, hint: str, code: str = INPUT_VALUE, /, **values: object) -> None:
+        """Raise the error of ``refuse`` unless a condition holds."""
+        if not fine:
+            raise self.refuse(text, hint, code, **values)
 
     @property
     def radius(self) -> float:
@@ -157,9 +161,8 @@ class CycleTool:
     def rpm(self) -> float:
         """Speed of the spindle, signed. Raises ProgramError where it stands."""
         found = self.turns
-        if not found:
-            hint = "Start the spindle with M3 before the cycle."
-            raise self.refuse("Cycle {number} needs a running spindle.", hint, WRONG_RPM)
+        text = "Cycle {number} needs a running spindle."
+        self.check(found, text, "Start the spindle with M3 before the cycle.", WRONG_RPM)
         return found
 
     @property
@@ -169,9 +172,7 @@ class CycleTool:
 
     def thread_speed(self, pitch: float) -> float:
         """S in the direction of a thread, signed: a pitch under 0 is a left-hand one. Raises ProgramError."""
-        if not self.speed:
-            text = "Cycle {number} needs a spindle speed."
-            raise self.refuse(text, "Program S in TOOL CALL.", WRONG_RPM)
+        self.check(self.speed, "Cycle {number} needs a spindle speed.", "Program S in TOOL CALL.", WRONG_RPM)
         return math.copysign(self.speed, pitch)
 
     def warn_uncoupled(self) -> None:
@@ -261,10 +262,9 @@ class CycleTool:
         number, state = int(self.plain(q, 0.0)), self._state
         if number == 0:
             return []
-        if number not in {8, 9}:
-            text = "Q{parameter} selects M{number}, which is not a coolant function of this machine."
-            hint = "Enter 8 for coolant on or 9 for coolant off."
-            raise self.refuse(text, hint, parameter=q, number=number)
+        text = "Q{parameter} selects M{number}, which is not a coolant function of this machine."
+        hint = "Enter 8 for coolant on or 9 for coolant off."
+        self.check(number in {8, 9}, text, hint, parameter=q, number=number)
         state.modal = state.modal._replace(coolant=number == 8)
         return [state.action(Coolant(number == 8))]
 

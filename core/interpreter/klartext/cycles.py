@@ -102,13 +102,12 @@ class Cycles:
         """CYCL DEF of a cycle from 200 on. Patterns are run at once. Raises ProgramError."""
         state = self._state
         known = node.number in _MACHINING.keys() | CONTOURS | _AT_ONCE
-        if 300 <= node.number <= 399:
-            text = (
-                "Cycle {number} is a machine-builder cycle, and this machine does not have machine-builder "
-                "cycles."
-            )
-            hint = "Remove this text from the program."
-            raise state.refuse(node.column, CYCLE_UNKNOWN, text, hint, number=node.number)
+        text = (
+            "Cycle {number} is a machine-builder cycle, and this machine does not have machine-builder "
+            "cycles."
+        )
+        hint = "Remove this text from the program."
+        state.check(not 300 <= node.number <= 399, node.column, CYCLE_UNKNOWN, text, hint, number=node.number)
         if not known:
             raise self._not_supported(node)
         for each in node.values:
@@ -195,9 +194,8 @@ class Cycles:
 
         ``figures`` are the contours of ``contours``, as their subprograms say them.
         """
-        if not self._number:
-            text = "No machining cycle is defined."
-            raise self._state.refuse(column, CYCLE_MISSING, text, "Write CYCL DEF before this block.")
+        text = "No machining cycle is defined."
+        self._state.check(self._number, column, CYCLE_MISSING, text, "Write CYCL DEF before this block.")
         self._demand_plain_feeds(column)
         if self._number in OLDER:
             self._demand_lines(column)
@@ -213,10 +211,9 @@ class Cycles:
 
     def _demand_figures(self, figures: Figures, column: int) -> None:
         """Raises ProgramError where no contour has been named."""
-        if not figures:
-            text = "No contour is defined for cycle {number}."
-            hint = "List the contour labels in cycle 14 before this block."
-            raise self._state.refuse(column, CYCLE_MISSING, text, hint, number=self._number)
+        text = "No contour is defined for cycle {number}."
+        hint = "List the contour labels in cycle 14 before this block."
+        self._state.check(figures, column, CYCLE_MISSING, text, hint, number=self._number)
 
     def _demand_lines(self, column: int) -> None:
         """Raises ProgramError where a line of an older cycle has not been told."""
@@ -253,9 +250,8 @@ class Cycles:
 
     def _angle(self, node: CycleLine) -> float:
         """The angle of cycle 13, to which M19 brings the spindle. Raises ProgramError."""
-        if not node.words:
-            text = "No angle is programmed in cycle 13."
-            raise self._state.refuse(node.column, CYCLE_MISSING, text, "Write ANGLE with a value in degrees.")
+        hint = "Write ANGLE with a value in degrees."
+        self._state.check(node.words, node.column, CYCLE_MISSING, "No angle is programmed in cycle 13.", hint)
         angle = value(self._state, node.words[-1].value.formula)
         if not -360.0 <= angle <= 360.0:
             text = "{parameter} is not a valid spindle angle."
@@ -269,9 +265,8 @@ class Cycles:
             self._contours = ()
             return
         labels = contour_labels(node.text)
-        if not labels:
-            hint = "Write the labels, for example CONTOUR LABEL1 /2."
-            raise self._state.refuse(node.column, CYCLE_MISSING, "Cycle 14 does not list any label.", hint)
+        hint = "Write the labels, for example CONTOUR LABEL1 /2."
+        self._state.check(labels, node.column, CYCLE_MISSING, "Cycle 14 does not list any label.", hint)
         self._contours += tuple(ContourPart(label, None) for label in labels)
         if len(self._contours) > _MOST_CONTOURS:
             raise self._state.refuse(
@@ -323,13 +318,11 @@ class Cycles:
     def call_pattern(self, node: CycleCall) -> Iterator[Block]:
         """CYCL CALL PAT: the cycle at every point, between them at the safe height. Raises ProgramError."""
         state = self._state
-        if not self._points:
-            text = "Neither PATTERN DEF nor SEL PATTERN has defined any points."
-            raise state.refuse(node.column, CYCLE_MISSING, text, "Write PATTERN DEF before this block.")
-        if self._number not in _MACHINING:
-            text = "CYCL CALL PAT needs a preceding cycle with a number of 200 or higher."
-            hint = "Write the CYCL DEF of a machining cycle before this block."
-            raise state.refuse(node.column, CYCLE_MISSING, text, hint)
+        text = "Neither PATTERN DEF nor SEL PATTERN has defined any points."
+        state.check(self._points, node.column, CYCLE_MISSING, text, "Write PATTERN DEF before this block.")
+        text = "CYCL CALL PAT needs a preceding cycle with a number of 200 or higher."
+        hint = "Write the CYCL DEF of a machining cycle before this block."
+        state.check(self._number in _MACHINING, node.column, CYCLE_MISSING, text, hint)
         speed = None if node.feed is None else word_values.feed_word(state, node.feed, node.column)
         surface = state.q.get(_SURFACE, 0.0)
         for x, y, above in self._points:
@@ -420,7 +413,6 @@ def _in_rows(tool: CycleTool) -> list[Point]:
 
 def _count(tool: CycleTool, q: int) -> int:
     count = int(tool.plain(q))
-    if not 1 <= count <= _MOST_PLACES:
-        text = "Q{parameter}={count} is not a valid number of positions."
-        raise tool.refuse(text, "Enter a valid number.", parameter=q, count=count)
+    text = "Q{parameter}={count} is not a valid number of positions."
+    tool.check(1 <= count <= _MOST_PLACES, text, "Enter a valid number.", parameter=q, count=count)
     return count

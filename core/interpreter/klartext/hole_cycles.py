@@ -74,15 +74,13 @@ def back_boring(tool: CycleTool) -> Iterator[Block]:
     Q252 is how far the edge stands over the tip, Q250 how thick the part is, Q251 how far the tool goes
     beside the centre.
     """
-    if not tool.orients:
-        text = "Cycle 204 moves through the hole with the spindle oriented, but {unoriented}."
-        hint = "Bore from the other side of the part, or {how_oriented}."
-        raise tool.refuse(text, hint, unoriented=UNORIENTED, how_oriented=HOW_ORIENTED)
+    text = "Cycle 204 moves through the hole with the spindle oriented, but {unoriented}."
+    hint = "Bore from the other side of the part, or {how_oriented}."
+    tool.check(tool.orients, text, hint, unoriented=UNORIENTED, how_oriented=HOW_ORIENTED)
     rpm, (along_x, along_y) = tool.rpm, aside(tool, (1, 2, 3, 4))
     surface, depth = tool.length(203, 0.0), tool.length(249)
-    if depth < 0.0:
-        text = "Q249 = {depth} mm is negative, so the tool would move away from the part."
-        raise tool.refuse(text, "Enter the depth without a minus sign.", depth=f"{depth:+.10g}")
+    text = "Q249 = {depth} mm is negative, so the tool would move away from the part."
+    tool.check(depth >= 0.0, text, "Enter the depth without a minus sign.", depth=f"{depth:+.10g}")
     clear, through, slow = surface + tool.length(200), tool.length(250) + tool.length(252), tool.feed(253)
     lowest, end = surface - through - tool.length(200), surface - through + depth
     (x, y), off = tool.here, tool.length(251)
@@ -196,8 +194,7 @@ def _thread(tool: CycleTool) -> tuple[float, float]:
     """Millimetres a revolution, and the signed speed into the thread. Raises ProgramError for no pitch."""
     tool.warn_uncoupled()
     pitch = tool.length(239)
-    if pitch == 0.0:
-        raise tool.refuse("Pitch Q239 must not be 0.", "Enter the thread pitch.")
+    tool.check(pitch != 0.0, "Pitch Q239 must not be 0.", "Enter the thread pitch.")
     return abs(pitch), tool.thread_speed(pitch)
 
 
@@ -224,9 +221,8 @@ def bore_milling(tool: CycleTool) -> Iterator[Block]:
     way = tool.length(335) / 2.0 - tool.radius
     x, y = tool.here
     pitch = tool.length(334)
-    if way < 0.0 or pitch <= 0.0 or feed <= 0.0:
-        text = "The tool, infeed or feed rate of cycle 208 is not valid for the hole."
-        raise tool.refuse(text, "Correct the entries named in the message.")
+    text = "The tool, infeed or feed rate of cycle 208 is not valid for the hole."
+    tool.check(way >= 0.0 and pitch > 0.0 and (feed > 0.0), text, "Correct the entries named in the message.")
     yield tool.to(clear)
     if way < SMALLEST:
         yield tool.to(bottom, feed)
@@ -288,9 +284,8 @@ def single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
 def heights(tool: CycleTool) -> tuple[float, float, float]:
     """Surface, set-up clearance above it, and bottom. Raises ProgramError for a depth that leads upwards."""
     surface, depth = tool.length(203, 0.0), tool.length(201)
-    if depth > 0.0:
-        text = "Depth Q201={depth} mm is positive (upward)."
-        raise tool.refuse(text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
+    text = "Depth Q201={depth} mm is positive (upward)."
+    tool.check(depth <= 0.0, text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
     return surface, surface + tool.length(200), surface + depth
 
 

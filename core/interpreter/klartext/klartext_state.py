@@ -201,6 +201,11 @@ class State:
         """
         return fault(line or self.line, column, code, worded(text, values), worded(hint, values))
 
+    def check(self, fine: object, column: int, code: str, text: str, hint: str, /, **values: object) -> None:
+        """Raise the error of ``refuse`` unless a condition holds."""
+        if not fine:
+            raise self.refuse(column, code, text, hint, **values)
+
     def place_is_read(self) -> None:
         """The program reads where an axis stands: behind a stop that is what a proof assumes."""
         self.place_assumed = self.place_assumed or self.behind_stop

@@ -115,8 +115,7 @@ def _slot(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[
     (x, y), clear = tool.here, tool.height
     end = x + first[0], y + first[1]
     width = (abs(second[0]) + abs(second[1])) / 2.0 - tool.radius
-    if width < -_SMALLEST:
-        raise tool.refuse("The tool is wider than the slot.", "Use a smaller tool.")
+    tool.check(width >= -_SMALLEST, "The tool is wider than the slot.", "Use a smaller tool.")
     surface, feed = clear - told.length(1), told.cutting_feed(6)
     ends = [(x, y), end]
     for at, done in enumerate(_levels(tool, abs(told.length(2)), abs(told.length(3)))):
@@ -147,8 +146,7 @@ def _pocket(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterato
     told = Told(state, lines, column)
     (x, y), clear = tool.here, tool.height
     half = abs(told.length(4, "X")) / 2.0 - tool.radius, abs(told.length(5, "Y")) / 2.0 - tool.radius
-    if min(half) < -_SMALLEST:
-        raise tool.refuse("The tool is wider than the pocket.", "Use a smaller tool.")
+    tool.check(min(half) >= -_SMALLEST, "The tool is wider than the pocket.", "Use a smaller tool.")
     surface, feed, turn = clear - told.length(1), told.cutting_feed(6), told.turn(6)
     step = tool.radius * 2.0 * _OVERLAP
     count = max(1, math.ceil(min(half) / step)) if step > _SMALLEST else 1
@@ -175,8 +173,7 @@ def _circular_pocket(state: State, tool: CycleTool, lines: Lines, column: int) -
     told = Told(state, lines, column)
     (x, y), clear = tool.here, tool.height
     radius = abs(told.length(4, "R" if told.has(4, "R") else "")) - tool.radius
-    if radius < -_SMALLEST:
-        raise tool.refuse("The tool is wider than the pocket.", "Use a smaller tool.")
+    tool.check(radius >= -_SMALLEST, "The tool is wider than the pocket.", "Use a smaller tool.")
     surface, feed, turn = clear - told.length(1), told.cutting_feed(5), told.turn(5)
     step = tool.radius * 2.0 * _OVERLAP
     count = max(1, math.ceil(radius / step)) if step > _SMALLEST else 1
@@ -196,9 +193,8 @@ def _thread_cutting(state: State, tool: CycleTool, lines: Lines, column: int) ->
     told = Told(state, lines, column)
     tool.warn_uncoupled()
     rpm, pitch, depth = tool.speed, told.length(2), told.length(1)
-    if not rpm or not pitch:
-        text = "Cycle 18 needs a spindle speed and a pitch."
-        raise tool.refuse(text, "Program S in TOOL CALL and PITCH in cycle 18.")
+    text = "Cycle 18 needs a spindle speed and a pitch."
+    tool.check(rpm and pitch, text, "Program S in TOOL CALL and PITCH in cycle 18.")
     yield tool.turn(rpm if pitch > 0.0 else -rpm)
     yield tool.tap(tool.height + depth, abs(pitch), in_hole=True)
     yield tool.stop()
@@ -217,9 +213,8 @@ def _levels(tool: CycleTool, depth: float, step: float) -> Iterator[float]:
         yield depth
         return
     count = math.ceil(depth / step - 1e-9)
-    if count > _MOST_LEVELS:
-        text = "An infeed of {step} mm would need {count} passes, which is too many."
-        raise tool.refuse(text, "Increase the infeed.", step=step, count=count)
+    text = "An infeed of {step} mm would need {count} passes, which is too many."
+    tool.check(count <= _MOST_LEVELS, text, "Increase the infeed.", step=step, count=count)
     yield from (min(step * at, depth) for at in range(1, count + 1))
 
 

@@ -82,8 +82,7 @@ def circular_pocket(tool: CycleTool) -> Iterator[Block]:
 def slot(tool: CycleTool) -> Iterator[Block]:
     """253: Q218 long and Q219 wide, turned by Q374; the tool stands at Q367 of it."""
     a, b = tool.length(218) / 2.0, tool.length(219) / 2.0
-    if a < b - SMALLEST:
-        raise tool.refuse("The slot is wider than it is long.", "Correct Q218 and Q219.")
+    tool.check(a >= b - SMALLEST, "The slot is wider than it is long.", "Correct Q218 and Q219.")
     ends = {0: (0.0, 0.0), 1: (a, 0.0), 2: (a - b, 0.0), 3: (b - a, 0.0), 4: (-a, 0.0)}
     seat = Seat(tool.here, tool.plain(374, 0.0)).moved(*_placed(tool, ends))
     yield from _pocket(tool, seat, Ring(a, b, b))
@@ -140,9 +139,8 @@ def _down(told: _Milling, seat: Seat, ring: Ring, above: float, z: float) -> Ite
 
 def _helix(told: _Milling, seat: Seat, radius: float, above: float, z: float) -> Iterator[Block]:
     tool = told.tool
-    if radius < SMALLEST * 1000.0:
-        text = "There is not enough room to plunge along a ramp."
-        raise tool.refuse(text, "Set Q366=+0 for a center-cutting tool.")
+    text = "There is not enough room to plunge along a ramp."
+    tool.check(radius >= SMALLEST * 1000.0, text, "Set Q366=+0 for a center-cutting tool.")
     begin = seat.at(radius, 0.0)
     yield tool.across(begin)
     yield tool.to(above, told.plunge)
@@ -225,8 +223,7 @@ def circular_stud(tool: CycleTool) -> Iterator[Block]:
 def _stud(tool: CycleTool, seat: Seat, wall: Ring, more: float) -> Iterator[Block]:
     """Level by level in rings that come nearer; ``more`` is how far the blank stands out."""
     told = _Milling(tool)
-    if more < SMALLEST:
-        raise tool.refuse("The blank is not larger than the stud.", "Correct the blank dimensions.")
+    tool.check(more >= SMALLEST, "The blank is not larger than the stud.", "Correct the blank dimensions.")
     last = wall.wider(tool.radius)
     rough = last.wider(told.side if told.scope != _FINISH else 0.0)
     outside = last.a + more + tool.radius + tool.length(200)

@@ -40,10 +40,9 @@ def read_contour(state: State, statement: Statement, lines: Sequence[Statement])
         if not (each.block_delete and state.setup.block_delete):
             reader.take(each)
     elements = reader.finish()
-    if not elements:
-        text = "The contour of G{one_shot} does not contain a line or an arc."
-        hint = "Write the points of the contour."
-        raise statement.refuse("", "cycle-contour-empty", text, hint, one_shot=statement.one_shot)
+    text = "The contour of G{one_shot} does not contain a line or an arc."
+    hint = "Write the points of the contour."
+    statement.check(elements, "", "cycle-contour-empty", text, hint, one_shot=statement.one_shot)
     return elements
 
 

@@ -86,10 +86,9 @@ def _retract(state: State, statement: Statement, first: float) -> float:
     if r is None:
         return state.z
     out = r + (state.dz if state.absolute else state.z)
-    if out <= first:
-        text = "{text} is inside the hole, at or below the depth of the first peck."
-        hint = "R is the Z position to which the drill retracts from the hole."
-        raise statement.refuse("R", "cycle-retract", text, hint, text=statement.words["R"].text)
+    text = "{text} is inside the hole, at or below the depth of the first peck."
+    hint = "R is the Z position to which the drill retracts from the hole."
+    statement.check(out > first, "R", "cycle-retract", text, hint, text=statement.words["R"].text)
     return out
 
 

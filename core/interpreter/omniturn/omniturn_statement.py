@@ -88,6 +88,13 @@ class Statement:
         column = at if isinstance(at, int) else at.column
         return program_error(self.line, column, code, worded(text, values), worded(hint, values))
 
+    def check(
+        self, fine: object, at: Word | str | int, code: str, text: str, hint: str = "", /, **values: object
+    ) -> None:
+        """Raise the error of ``refuse`` unless a condition holds."""
+        if not fine:
+            raise self.refuse(at, code, text, hint, **values)
+
     @property
     def code_column(self) -> int:
         """Column of the one-shot code, 0 where the line does not hold one."""

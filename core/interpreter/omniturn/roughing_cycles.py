@@ -82,9 +82,8 @@ def _falls_at_once(first: Element) -> bool:
 def _passes(
     state: State, statement: Statement, rougher: Rougher, area: Area, cut: float, elements: int
 ) -> None:
-    if area.deepest <= 0:
-        text = "No material remains to be cut between the contour and the start point."
-        raise statement.refuse("G", "cycle-nothing", text, "Start farther from the contour in X.")
+    text = "No material remains to be cut between the contour and the start point."
+    statement.check(area.deepest > 0, "G", "cycle-nothing", text, "Start farther from the contour in X.")
     count = ceil(area.deepest / cut - _WHOLE)
     check_count(statement, "I", count, "passes")
     if count * elements > _MOST_LOOKS:
@@ -104,23 +103,20 @@ def _view(state: State, statement: Statement, contour: list[Element]) -> Contour
     start, first, last = (state.x, state.z), contour[0].start, contour[-1].end
     for axis, letter in ((0, "X"), (1, "Z")):
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
-        if to_first * to_last < 0:
-            raise statement.refuse(
-                "G",
-                "cycle-quadrant",
-                "In {letter}, the start point is between the two ends of the contour, but it must be "
-                "outside them.",
-                "Move the start point so that both ends of the contour are on the same side of it, in X and "
-                "in Z.",
-                letter=letter,
-            )
-        if to_first == to_last == 0:
-            text = (
-                "Both ends of the contour have the same {letter} as the start point, so the contour does not "
-                "enclose an area to cut."
-            )
-            hint = "Move the start point away from the contour."
-            raise statement.refuse("G", "cycle-nothing", text, hint, letter=letter)
+        text = (
+            "In {letter}, the start point is between the two ends of the contour, but it must be outside "
+            "them."
+        )
+        hint = (
+            "Move the start point so that both ends of the contour are on the same side of it, in X and in Z."
+        )
+        statement.check(to_first * to_last >= 0, "G", "cycle-quadrant", text, hint, letter=letter)
+        text = (
+            "Both ends of the contour have the same {letter} as the start point, so the contour does not "
+            "enclose an area to cut."
+        )
+        hint = "Move the start point away from the contour."
+        statement.check(not to_first == to_last == 0, "G", "cycle-nothing", text, hint, letter=letter)
     return view_from(start, first, last)
 
 
@@ -152,8 +148,7 @@ def box_moves(state: State, statement: Statement) -> list[Move]:
 def _corner(state: State, statement: Statement, letter: str, start: float, offset: float) -> float:
     """X or Z of the corner opposite to the start."""
     end = length(state, statement, letter) + (offset if state.absolute else start)
-    if end == start:
-        text = "The box has zero size along {letter} because its corner is at the start point."
-        hint = "Correct {letter} or the start point."
-        raise statement.refuse(letter, "cycle-nothing", text, hint, letter=letter)
+    text = "The box has zero size along {letter} because its corner is at the start point."
+    hint = "Correct {letter} or the start point."
+    statement.check(end != start, letter, "cycle-nothing", text, hint, letter=letter)
     return end

@@ -147,10 +147,9 @@ def _depth(state: State, statement: Statement) -> tuple[float, float]:
 
 def _count(statement: Statement, depth: float, first: float, lead: float) -> int:
     """Return the number of passes. Raises ProgramError for an I that does not fit the lead."""
-    if first > lead:
-        text = "{text}: the first pass would be deeper than the lead."
-        hint = "Correct I (the depth of the first pass) or K."
-        raise statement.refuse("I", "thread-depth", text, hint, text=statement.words["I"].text)
+    text = "{text}: the first pass would be deeper than the lead."
+    hint = "Correct I (the depth of the first pass) or K."
+    statement.check(first <= lead, "I", "thread-depth", text, hint, text=statement.words["I"].text)
     count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
     if count > MOST_PASSES:
         text = "The thread would take {count} passes; the maximum is {most_passes}."

@@ -21,7 +21,7 @@ def _turning(cycle: Cycle) -> list[Step]:
     modal, sign = cycle.state.modal, 1 if direction == 3.0 else -1
     if not modal.rpm or modal.css:
         hint = "Write G97 with S before this block."
-        raise cycle.refused("speed-missing", "{call} needs S in rpm.", hint, call=cycle.line.call)
+        raise cycle.refused("speed-missing", "{call} needs S in rpm.", hint)
     if modal.spindle == sign:
         return []
     return [Step(0.0, 0.0, action=SpindleRun(sign * modal.rpm), spindle=sign)]
@@ -33,13 +33,11 @@ def lift_off(cycle: Cycle) -> Iterator[Block]:
     demand_position(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
     cycle.zero_only("RPO", "this lathe has no Y axis")
     angle = cycle.number("POSS")
-    if not 0.0 <= angle < 360.0:
-        text = "{name} must be an angle from 0 to less than 360 degrees"
-        raise cycle.wrong("POSS", text, "Correct the value.")
+    text = "{name} must be an angle from 0 to less than 360 degrees"
+    cycle.check(0.0 <= angle < 360.0, "POSS", text, "Correct the value.")
     aside, up = cycle.length("RPA"), cycle.length("RPAP")
-    if up * hole.down > 0.0:
-        text = "{name} would move the tool deeper into the hole"
-        raise cycle.wrong("RPAP", text, "Correct the sign of RPAP.")
+    text = "{name} would move the tool deeper into the hole"
+    cycle.check(up * hole.down <= 0.0, "RPAP", text, "Correct the sign of RPAP.")
     x = cycle.x
     steps = [
         *approach(cycle, hole), *_turning(cycle), Step(x, hole.bottom, needed_feed(cycle)),

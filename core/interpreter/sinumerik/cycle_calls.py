@@ -56,9 +56,8 @@ def cycle_blocks(state: State, line: Line, flow: Flow) -> Iterator[Block]:
 
 def _contour(cycle: Cycle, flow: Flow) -> list[Element]:
     named = cycle.text("NPP")
-    if not named:
-        hint = 'Write "NAME" for a subprogram, or "START:END" for two labels.'
-        raise cycle.wrong("NPP", "{name} does not contain the name of a contour", hint, WRONG_CONTOUR)
+    hint = 'Write "NAME" for a subprogram, or "START:END" for two labels.'
+    cycle.check(named, "NPP", "{name} does not contain the name of a contour", hint, WRONG_CONTOUR)
     known = flow.routine(named)
     lines = contour_lines(named, flow.running, known)
     if lines is None:

@@ -85,10 +85,9 @@ class Cycle:
 
     def _check(self) -> None:
         """Raises ProgramError where no cycle can run: the frame is turned, or compensation is on."""
-        if not self.state.programmed.plain:
-            text = "{call} cannot run in a frame that is rotated, scaled or mirrored."
-            hint = "Write TRANS without axes before this block."
-            raise self.refused("cycle-frame", text, hint, call=self.line.call)
+        text = "{call} cannot run in a frame that is rotated, scaled or mirrored."
+        hint = "Write TRANS without axes before this block."
+        self.require(self.state.programmed.plain, "cycle-frame", text, hint, call=self.line.call)
         plane = self.state.transformation
         if plane is not None and (self.line.call not in _LIVE or not plane.along_z):
             template = (
@@ -133,8 +132,7 @@ class Cycle:
     def size(self, name: str, default: float = 0.0) -> float:
         """A length without a sign. Raises ProgramError under 0."""
         value = self.length(name, default)
-        if value < 0.0:
-            raise self.wrong(name, "{name} is a size and cannot be negative", "Remove the sign.")
+        self.check(value >= 0.0, name, "{name} is a size and cannot be negative", "Remove the sign.")
         return value
 
     def needed(self, name: str) -> float:
@@ -146,23 +144,20 @@ class Cycle:
     def over_zero(self, name: str, alarm: int | str = "cycle-parameter") -> float:
         """A length that must be there and over 0. Raises ProgramError."""
         value = self.needed(name)
-        if value <= 0.0:
-            raise self.wrong(name, "{name} must be greater than 0", "Correct the value.", alarm)
+        self.check(value > 0.0, name, "{name} must be greater than 0", "Correct the value.", alarm)
         return value
 
     def whole(self, name: str, default: int, low: int, high: int) -> int:
         """A whole number between two. Raises ProgramError."""
         value = self.number(name, float(default))
         self._demand_whole(name, value)
-        if not low <= value <= high:
-            text = "{name} is {value} but must be between {low} and {high}"
-            raise self.wrong(name, text, "Correct the value.", value=value, low=low, high=high)
+        text = "{name} is {value} but must be between {low} and {high}"
+        self.check(low <= value <= high, name, text, "Correct the value.", value=value, low=low, high=high)
         return round(value)
 
     def _demand_whole(self, name: str, value: float) -> None:
-        if value != round(value):
-            text = "{name} is {value} but must be a whole number"
-            raise self.wrong(name, text, "Enter a whole number.", value=value)
+        text = "{name} is {value} but must be a whole number"
+        self.check(value == round(value), name, text, "Enter a whole number.", value=value)
 
     def zero_only(self, name: str, why: str) -> None:
         """Raises ProgramError where a parameter asks for what is not built."""
@@ -174,8 +169,7 @@ class Cycle:
         if not self.given(name) or not self.number(name):
             return self.state.modal.feed
         value = self.number(name)
-        if value < 0.0:
-            raise self.wrong(name, "{name} must be a feed rate above 0", "Correct the value.")
+        self.check(value >= 0.0, name, "{name} must be a feed rate above 0", "Correct the value.")
         value *= 25.4 if self.state.feed_in_inches else 1.0
         return value if self.state.modal.per_rev else value / 60.0
 
@@ -191,7 +185,13 @@ class Cycle:
         return round(value)
 
     def wrong(
-        self, name: str, what: str, hint: str, code: int | str = "cycle-parameter", /, **values: object
+        self,
+        name: str,
+        what: str,
+        hint: str = "Correct the value.",
+        code: int | str = "cycle-parameter",
+        /,
+        **values: object,
     ) -> ProgramError:
         """Return an error about one parameter; ``what`` and ``hint`` have holes for values."""
         argument = self._arguments.get(name)
@@ -199,6 +199,25 @@ class Cycle:
         values = {"name": name, "call": self.line.call, **values}
         text = Message("{call}: {what}.", call=self.line.call, what=worded(what, values))
         return self._fault(column, code, text, worded(hint, values))
+
+    def check(
+        self,
+        fine: object,
+        name: str,
+        what: str,
+        hint: str = "Correct the value.",
+        code: int | str = "cycle-parameter",
+        /,
+        **values: object,
+    ) -> None:
+        """Raise ``wrong`` unless a condition holds."""
+        if not fine:
+            raise self.wrong(name, what, hint, code, **values)
+
+    def require(self, fine: object, code: int | str, text: str, hint: str, /, **values: object) -> None:
+        """Raise ``refused`` unless a condition holds."""
+        if not fine:
+            raise self.refused(code, text, hint, **values)
 
     def refused(self, code: int | str, text: str, hint: str, /, **values: object) -> ProgramError:
         """Return an error about the whole call; ``text`` and ``hint`` have holes for values."""

@@ -28,15 +28,13 @@ def hole_of(cycle: Cycle) -> Hole:
     if cycle.state.plane != 17:
         text = "{call} drills perpendicular to plane G{plane}; drilling along Z needs G17."
         hint = "Write G17 before this block and G18 after it."
-        raise cycle.refused("cycle-plane", text, hint, call=cycle.line.call, plane=cycle.state.plane)
-    if cycle.number("_AXN", 3.0) not in {0.0, 3.0}:
-        text = "{name} selects an axis other than Z, which is not supported"
-        raise cycle.wrong("_AXN", text, "Omit _AXN.", "not-in-subset")
+        raise cycle.refused("cycle-plane", text, hint, plane=cycle.state.plane)
+    text = "{name} selects an axis other than Z, which is not supported"
+    cycle.check(cycle.number("_AXN", 3.0) in {0.0, 3.0}, "_AXN", text, "Omit _AXN.", "not-in-subset")
     retract, reference = cycle.needed("RTP"), cycle.needed("RFP")
     if cycle.given("DP") == cycle.given("DPR"):
-        if not cycle.given("DP"):
-            text = "{name} is missing"
-            raise cycle.wrong("DP", text, "Enter DP, or DPR measured from the reference plane.")
+        text = "{name} is missing"
+        cycle.check(cycle.given("DP"), "DP", text, "Enter DP, or DPR measured from the reference plane.")
         bottom = cycle.length("DP")
         if cycle.length("DPR") and abs(abs(bottom - reference) - cycle.length("DPR")) > _SAME:
             cycle.warn("cycle-depth-both", "DP and DPR differ, so DP is used.", "Omit DP or DPR.")
@@ -63,9 +61,8 @@ def seconds(cycle: Cycle, name: str) -> float:
     if value >= 0.0:
         return value
     rpm = abs(cycle.state.rpm)
-    if not rpm:
-        text = "{name} is in revolutions, but the spindle is stopped"
-        raise cycle.wrong(name, text, "Enter the dwell in seconds.")
+    text = "{name} is in revolutions, but the spindle is stopped"
+    cycle.check(rpm, name, text, "Enter the dwell in seconds.")
     return -value / rpm * 60.0
 
 
@@ -136,9 +133,8 @@ def depths(cycle: Cycle, hole: Hole) -> list[float]:
         name = "FDEP" if cycle.given("FDEP") else "FDPR"
         raise cycle.wrong(name, "{name} is deeper than the hole", "Correct the value.", FIRST_DEPTH)
     step, less, least = first or whole, cycle.number("DAM"), cycle.size("_MDEP")
-    if less <= -1.0:
-        text = "{name} must be an amount, or a factor greater than -1 and not greater than 0"
-        raise cycle.wrong("DAM", text, "Correct the value.")
+    text = "{name} must be an amount, or a factor greater than -1 and not greater than 0"
+    cycle.check(less > -1.0, "DAM", text, "Correct the value.")
     smallest = max(least, 0.0)
     found, reached, halved = [step], step, False
     while reached < whole - _SAME:

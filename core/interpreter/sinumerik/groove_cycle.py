@@ -42,15 +42,13 @@ class Groove(NamedTuple):
 def groove_of(cycle: Cycle) -> Groove:
     """The groove that a call asks for. Raises ProgramError by the parameter's name."""
     kind = (cycle.machining("VARI", range(1, 19)) - 1) % 10 + 1
-    if kind > 8:
-        raise cycle.wrong("VARI", "{name} must be 1 to 8 or 11 to 18", "Correct the value.", 61002)
+    cycle.check(kind <= 8, "VARI", "{name} must be 1 to 8 or 11 to 18", "Correct the value.", 61002)
     cycle.zero_only("STA1", "program a groove on a taper as a CYCLE95 contour")
     for name in ("RCO1", "RCO2", "RCI1", "RCI2"):
         cycle.zero_only(name, "program the corners as a CYCLE95 contour, or chamfer them with G1")
-    if kind % 2 == 0:
-        text = "{name} is {kind}, which specifies a face groove and is not supported"
-        hint = "Program a face groove as a CYCLE95 contour or in G1 blocks."
-        raise cycle.wrong("VARI", text, hint, "not-in-subset", kind=kind)
+    text = "{name} is {kind}, which specifies a face groove and is not supported"
+    hint = "Program a face groove as a CYCLE95 contour or in G1 blocks."
+    cycle.check(kind % 2 != 0, "VARI", text, hint, "not-in-subset", kind=kind)
     inside, right = kind in {3, 7}, kind > 4
     x, z = cycle.over_zero("SPD") / 2.0, cycle.needed("SPL")
     width, depth = cycle.over_zero("WIDG"), cycle.over_zero("DIAG", WRONG_FORM)
@@ -58,18 +56,16 @@ def groove_of(cycle: Cycle) -> Groove:
     here, there = _run(cycle, "ANG1", depth), _run(cycle, "ANG2", depth)
     low, high = (z - here - width, z - here) if right else (z + here, z + here + width)
     runs = (there, here) if right else (here, there)
-    if x - out * depth < 0.0:
-        text = "{name} makes the groove reach past the spindle centerline"
-        raise cycle.wrong("DIAG", text, "Correct SPD or DIAG.", WRONG_FORM)
+    text = "{name} makes the groove reach past the spindle centerline"
+    cycle.check(x - out * depth >= 0.0, "DIAG", text, "Correct SPD or DIAG.", WRONG_FORM)
     return Groove(out, x, x - out * depth, low, high, *runs)
 
 
 def _run(cycle: Cycle, name: str, depth: float) -> float:
     """How far a flank goes along Z from the bottom to the surface, mm. Raises ProgramError."""
     angle = cycle.number(name)
-    if not 0.0 <= angle <= _STEEPEST:
-        text = "{name} must be a flank angle from 0 to less than 90 degrees"
-        raise cycle.wrong(name, text, "Correct the value.")
+    text = "{name} must be a flank angle from 0 to less than 90 degrees"
+    cycle.check(0.0 <= angle <= _STEEPEST, name, text, "Correct the value.")
     return depth * tan(radians(angle))
 
 
@@ -83,27 +79,26 @@ def tool_width(cycle: Cycle, widest: float) -> tuple[float, bool]:
     key, tools = state.modal.tool, state.setup.tools
     if not key or state.modal.edge == 0:
         text = "{call} needs an active tool with an offset."
-        raise cycle.refused(NO_TOOL, text, "Write T and D before this block.", call=cycle.line.call)
+        raise cycle.refused(NO_TOOL, text, "Write T and D before this block.")
     number = cycle.whole("_DN", 0, 0, 9) or edge_of(key) + 1
     other = edge_key(tool_of(key), number)
     if key not in tools and other not in tools:
         width = min(_USUAL_WIDTH, widest)
         text = "{call} assumes a tool {width} mm wide because {key} is not set."
         hint = "Set both tool corners on the TOOL OFFSETS page (F8)."
-        cycle.warn("tool-width", text, hint, call=cycle.line.call, width=width, key=edge_name(key))
+        cycle.warn("tool-width", text, hint, width=width, key=edge_name(key))
         return width, False
     if key not in tools or other not in tools:
         name = edge_name(other)
         text = "{call} needs the tool width, but the other tool corner ({name}) is not set."
         hint = "Set {other} on the TOOL OFFSETS page (F8)."
-        raise cycle.refused(WRONG_WIDTH, text, hint, call=cycle.line.call, name=name, other=edge_name(other))
+        raise cycle.refused(WRONG_WIDTH, text, hint, name=name, other=edge_name(other))
     here, there = tools[key], tools[other]
     # A corner further to plus has the smaller machine position at part zero.
     way = here.z - there.z
-    if abs(way) < _SAME:
-        text = "{key} and {other} are at the same position, so the tool has no width."
-        hint = "Correct the offsets of the two tool corners."
-        raise cycle.refused(WRONG_WIDTH, text, hint, key=edge_name(key), other=edge_name(other))
+    text = "{key} and {other} are at the same position, so the tool has no width."
+    hint = "Correct the offsets of the two tool corners."
+    cycle.require(abs(way) >= _SAME, WRONG_WIDTH, text, hint, key=edge_name(key), other=edge_name(other))
     return abs(way), way > 0.0
 
 
@@ -113,10 +108,9 @@ def groove(cycle: Cycle) -> Iterator[Block]:
     bottom_left, flank_left = cycle.size("FAL1"), cycle.size("FAL2")
     width, at_low = tool_width(cycle, shape.high - shape.low - 2.0 * flank_left)
     room = shape.high - shape.low - 2.0 * flank_left - width
-    if room < -_SAME:
-        text = "{name} is {high} including FAL2 on both flanks, but the tool is {width} wide"
-        hint = "Use a narrower tool."
-        raise cycle.wrong("WIDG", text, hint, WRONG_WIDTH, high=shape.high - shape.low, width=width)
+    text = "{name} is {high} including FAL2 on both flanks, but the tool is {width} wide"
+    hint = "Use a narrower tool."
+    cycle.check(room >= -_SAME, "WIDG", text, hint, WRONG_WIDTH, high=shape.high - shape.low, width=width)
     feed = cycle.state.modal.feed
     if feed is None:
         raise cycle.refused(10860, "no feedrate is programmed.", "Program F before this block.")
@@ -125,9 +119,8 @@ def groove(cycle: Cycle) -> Iterator[Block]:
     steps = plan.begin()
     bottom = shape.bottom + shape.out * bottom_left
     count = ceil(max(room, 0.0) / (width * _OVERLAP) - _WHOLE)
-    if count > MOST_PASSES:
-        text = "{name} would need {count} cuts, which is too many"
-        raise cycle.wrong("WIDG", text, "Look for a missing decimal point.", count=f"{count:,}")
+    text = "{name} would need {count} cuts, which is too many"
+    cycle.check(count <= MOST_PASSES, "WIDG", text, "Look for a missing decimal point.", count=f"{count:,}")
     for k in range(count + 1):
         place = shape.high - flank_left - width - (room * k / count if count else 0.0)
         steps += plan.plunge(place, bottom)
@@ -145,8 +138,7 @@ class _Plan:
         self._cycle, self._shape, self._feed = cycle, shape, feed
         self._clear, self._corner = clear, corner
         self._infeed, self._dwell = cycle.size("IDEP"), cycle.number("DTB")
-        if self._dwell < 0.0:
-            raise cycle.wrong("DTB", "{name} must be a time of 0 s or more", "Correct the value.")
+        cycle.check(self._dwell >= 0.0, "DTB", "{name} must be a time of 0 s or more", "Correct the value.")
 
     def begin(self) -> list[Step]:
         """Off the part in depth first, from where the tool stands."""
@@ -172,9 +164,8 @@ class _Plan:
     def beside(self, place: float, run: float, width: float, bottom: float) -> list[Step]:
         """Plunges outwards from ``place`` under a flank that rises by ``run``, each less deep."""
         count = ceil(abs(run) / (width * _OVERLAP) - _WHOLE)
-        if count > MOST_PASSES:
-            text = "{name} would need {count} cuts, which is too many"
-            raise self._cycle.wrong("ANG1", text, "Check the angles.", count=f"{count:,}")
+        text = "{name} would need {count} cuts, which is too many"
+        self._cycle.check(count <= MOST_PASSES, "ANG1", text, "Check the angles.", count=f"{count:,}")
         steps: list[Step] = []
         for share in (k / (count + 1) for k in range(1, count + 1)):
             depth = bottom + (self._shape.top - bottom) * share

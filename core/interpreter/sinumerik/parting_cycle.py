@@ -28,10 +28,9 @@ def part_off(cycle: Cycle) -> Iterator[Block]:
     """
     cycle.zero_only("_RC", "cut the chamfer or the radius with G1 before the cycle")
     cycle.zero_only("_VARI", "the tool only retracts, because this machine has no parts catcher")
-    if cycle.whole("_AMODE", 0, 0, 10**8) % 100:
-        text = "{name} specifies depths measured from SPD, which is not supported"
-        hint = "Enter _DIAG1 and _DIAG2 as diameters, and omit _AMODE."
-        raise cycle.wrong("_AMODE", text, hint, "not-in-subset")
+    text = "{name} specifies depths measured from SPD, which is not supported"
+    hint = "Enter _DIAG1 and _DIAG2 as diameters, and omit _AMODE."
+    cycle.check(not cycle.whole("_AMODE", 0, 0, 10**8) % 100, "_AMODE", text, hint, "not-in-subset")
     slow, last = _depths(cycle)
     first, second = _feeds(cycle)
     before = cycle.state.modal

@@ -79,6 +79,13 @@ class Statement:
         axis = _axis(word) if word and word.name in known.AXES else ""
         return ProgramError(fault(line.number, column, code, line.block, text, hint, axis=axis))
 
+    def check(
+        self, fine: object, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
+    ) -> None:
+        """Raise the error of ``refuse`` unless a condition holds."""
+        if not fine:
+            raise self.refuse(word, code, text, hint, **values)
+
     def warning(self, word: Word | None, code: str, text: str, hint: str) -> Diagnostic:
         """The same that is no error."""
         return replace(self.refuse(word, code, text, hint).diagnostic, severity=Severity.WARNING)

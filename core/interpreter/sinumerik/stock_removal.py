@@ -59,9 +59,8 @@ def kind_of(cycle: Cycle) -> Kind:
 def stock_removal(cycle: Cycle, contour: list[Element]) -> Iterator[Block]:
     """The whole cycle. Raises ProgramError before the first block."""
     kind = kind_of(cycle)
-    if not contour:
-        text = "{name} refers to a contour without lines or arcs"
-        raise cycle.wrong("NPP", text, "Write the points of the contour.", WRONG_CONTOUR)
+    text = "{name} refers to a contour without lines or arcs"
+    cycle.check(contour, "NPP", text, "Write the points of the contour.", WRONG_CONTOUR)
     if len(contour) > _MOST_ELEMENTS:
         text = "{name} has {contour_count} elements; the maximum is {most_elements}"
         hint = "Split the contour into smaller parts."
@@ -151,14 +150,12 @@ class _Plan:
         """Equal passes of MID at most, and the run along the contour at its allowance."""
         cycle = self._cycle
         infeed = cycle.size("MID")
-        if not infeed:
-            text = "{name} is missing, so the depth of a pass is not defined"
-            raise cycle.wrong("MID", text, "Write MID.", NO_INFEED)
+        text = "{name} is missing, so the depth of a pass is not defined"
+        cycle.check(infeed, "MID", text, "Write MID.", NO_INFEED)
         contour, left = self._with_allowance()
         area, view = self._area(contour, left)
-        if area.deepest <= 0:
-            text = "{name} specifies a contour with no material to cut"
-            raise cycle.wrong("NPP", text, "Check the direction of the contour.", WRONG_CONTOUR)
+        text = "{name} specifies a contour with no material to cut"
+        cycle.check(area.deepest > 0, "NPP", text, "Check the direction of the contour.", WRONG_CONTOUR)
         count = ceil(area.deepest / infeed - _WHOLE)
         if count > MOST_PASSES or count * len(contour) > _MOST_LOOKS:
             text = "{name} would need {count} passes, which is too many"
@@ -227,9 +224,8 @@ class _Plan:
             return [self._step(move, feed)]
         steps: list[Step] = []
         count = ceil(abs(way) / length - _WHOLE)
-        if count > MOST_PASSES:
-            text = "{name} would interrupt a pass {count} times, which is too many"
-            raise self._cycle.wrong("DAM", text, "Correct the value.", count=f"{count:,}")
+        text = "{name} would interrupt a pass {count} times, which is too many"
+        self._cycle.check(count <= MOST_PASSES, "DAM", text, "Correct the value.", count=f"{count:,}")
         for k in range(1, count + 1):
             share = min(k * length / abs(way), 1.0)
             between = Move(at[0] + (move.x - at[0]) * share, at[1] + way * share)
@@ -260,7 +256,7 @@ def _nose_of(cycle: Cycle) -> tuple[float, Point]:
     if not edge.quadrant:
         text = "the tool has no tip quadrant, so {call} ignores the nose radius on tapers and arcs."
         hint = "Enter the tip quadrant on the TOOL OFFSETS page (F8)."
-        cycle.warn("comp-no-quadrant", text, hint, call=cycle.line.call)
+        cycle.warn("comp-no-quadrant", text, hint)
         return 0.0, (0.0, 0.0)
     z, x = TIP_DIRECTIONS[edge.quadrant]
     return edge.nose_radius, (x * edge.nose_radius, z * edge.nose_radius)

@@ -28,9 +28,8 @@ _INCH = 25.4
 def lead_of_tap(cycle: Cycle) -> float:
     """PIT or MPIT, under 0 for a left-hand thread: mm a revolution; 0 where neither is written."""
     unit = cycle.whole("_PITA", 0, 0, 4)
-    if unit == 4:
-        text = "{name} is 4, which specifies the lead as a module"
-        raise cycle.wrong("_PITA", text, "Enter PIT in mm.", WRONG_LEAD)
+    text = "{name} is 4, which specifies the lead as a module"
+    cycle.check(unit != 4, "_PITA", text, "Enter PIT in mm.", WRONG_LEAD)
     pit, size = cycle.number("PIT"), cycle.number("MPIT")
     if pit:
         in_inches = unit == 3 or (unit == 0 and not cycle.state.modal.metric)
@@ -38,9 +37,8 @@ def lead_of_tap(cycle: Cycle) -> float:
     if not size:
         return 0.0
     lead = COARSE_LEADS.get(round(abs(size)), 0.0) if size == round(size) else 0.0
-    if not lead:
-        text = "{name} does not define a lead"
-        raise cycle.wrong("MPIT", text, "Enter PIT, or MPIT from 3 to 68 for M3 to M68.", WRONG_LEAD)
+    text = "{name} does not define a lead"
+    cycle.check(lead, "MPIT", text, "Enter PIT, or MPIT from 3 to 68 for M3 to M68.", WRONG_LEAD)
     return copysign(lead, size)
 
 
@@ -52,19 +50,16 @@ def rigid(cycle: Cycle) -> Iterator[Block]:
     hole, state = hole_of(cycle), cycle.state
     demand_spindle_as_c(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
     lead = lead_of_tap(cycle)
-    if not lead:
-        text = "{name} does not define a lead"
-        raise cycle.wrong("PIT", text, "Enter PIT, or MPIT from 3 to 68 for M3 to M68.", WRONG_LEAD)
+    text = "{name} does not define a lead"
+    cycle.check(lead, "PIT", text, "Enter PIT, or MPIT from 3 to 68 for M3 to M68.", WRONG_LEAD)
     into = _speed(cycle, "SST", state.modal.rpm)
     out = _speed(cycle, "SST1", into)
     rest = cycle.whole("SDAC", 5, 3, 5)
-    if rest != 5 and not state.modal.rpm:
-        text = "{name} starts the spindle, but no S is programmed"
-        raise cycle.wrong("SDAC", text, "Write S before this block.")
+    text = "{name} starts the spindle, but no S is programmed"
+    cycle.check(rest == 5 or state.modal.rpm, "SDAC", text, "Write S before this block.")
     wanted = cycle.number("POSS")
-    if not 0.0 <= wanted < 360.0:
-        text = "{name} must be an angle from 0 to less than 360 degrees"
-        raise cycle.wrong("POSS", text, "Correct the value.")
+    text = "{name} must be an angle from 0 to less than 360 degrees"
+    cycle.check(0.0 <= wanted < 360.0, "POSS", text, "Correct the value.")
     lock = [Step(0.0, 0.0, action=SpindleLock(orient=False), spindle=0)]
     steps = [*approach(cycle, hole), *lock]
     if turn := shortest_turn(state, wanted):
@@ -81,16 +76,15 @@ def _speed(cycle: Cycle, name: str, default: float) -> float:
     """A speed for tapping, rpm, no faster than C turns."""
     value = cycle.number(name, default) or default
     most = cycle.state.setup.limits.c_max_rpm
-    if value <= 0.0:
-        text = "{name} does not define a speed"
-        raise cycle.wrong(name, text, "Enter a speed, or program S before the cycle.")
+    text = "{name} does not define a speed"
+    cycle.check(value > 0.0, name, text, "Enter a speed, or program S before the cycle.")
     if value > most:
         text = (
             "{call}: {name} is {value} rpm, but tapping with the C axis is limited to the C-axis maximum of "
             "{maximum} rpm."
         )
         hint = "Lower the speed."
-        cycle.warn("tap-speed", text, hint, call=cycle.line.call, name=name, value=value, maximum=most)
+        cycle.warn("tap-speed", text, hint, name=name, value=value, maximum=most)
     return min(value, most)
 
 
@@ -99,9 +93,8 @@ def _ways(cycle: Cycle, hole: Hole, lead: float, speeds: tuple[float, float]) ->
     kind, each = cycle.whole("_VARI", 0, 0, 2), cycle.size("_DAM")
     whole = abs(hole.bottom - hole.clear)
     count = max(ceil(whole / each - _WHOLE), 1) if kind and each else 1
-    if count > MOST_PASSES:
-        text = "{name} would need {count} steps, which is too many"
-        raise cycle.wrong("_DAM", text, "Look for a missing decimal point.", count=f"{count:,}")
+    text = "{name} would need {count} steps, which is too many"
+    cycle.check(count <= MOST_PASSES, "_DAM", text, "Look for a missing decimal point.", count=f"{count:,}")
     back, at, steps = cycle.size("_VRT") or 1.0, hole.clear, list[Step]()
 
     def turned(to: float, rpm: float) -> Step:
@@ -129,19 +122,17 @@ def compensating(cycle: Cycle) -> Iterator[Block]:
     """CYCLE840: fed in by the lead, the spindle turned back, fed out, turned as SDAC. Raises ProgramError."""
     hole, state = hole_of(cycle), cycle.state
     modal, sign = state.modal, state.modal.spindle
-    if not sign or not modal.rpm or modal.css:
-        text = "{call} needs the spindle to turn at a speed in rpm."
-        hint = "Write G97 with S and M3 or M4 before this block."
-        raise cycle.refused(NO_DIRECTION, text, hint, call=cycle.line.call)
+    text = "{call} needs the spindle to turn at a speed in rpm."
+    hint = "Write G97 with S and M3 or M4 before this block."
+    cycle.require(sign and modal.rpm and (not modal.css), NO_DIRECTION, text, hint)
     by_feed = _by_feed(cycle)
     back, rest = cycle.whole("SDR", 0, 0, 5), cycle.whole("SDAC", 3 if sign > 0 else 4, 3, 5)
     if back not in {0, 3, 4} or (back and (back == 3) is (sign > 0)):
         text = "{name} does not reverse the spindle for the tap"
         raise cycle.wrong("SDR", text, "Enter 0, or the reverse direction: 4 after M3, or 3 after M4.")
     lead = abs(lead_of_tap(cycle))
-    if not lead and not by_feed:
-        text = "{name} does not define a lead"
-        raise cycle.wrong("PIT", text, "Enter PIT or MPIT, or ENC 1 to use the active feed rate.", WRONG_LEAD)
+    hint = "Enter PIT or MPIT, or ENC 1 to use the active feed rate."
+    cycle.check(lead or by_feed, "PIT", "{name} does not define a lead", hint, WRONG_LEAD)
     feed = needed_feed(cycle) if by_feed else lead if modal.per_rev else lead * modal.rpm / 60.0
     deep = [
         Step(cycle.x, hole.bottom, feed, tap=True), *dwell(seconds(cycle, "DTB")),
@@ -158,9 +149,8 @@ def compensating(cycle: Cycle) -> Iterator[Block]:
 def _by_feed(cycle: Cycle) -> bool:
     """ENC: 0, 11 and 20 take the lead from PIT or MPIT, 1 from the feed in force. Raises ProgramError."""
     value = cycle.whole("ENC", 0, 0, 20)
-    if value not in {0, 1, 11, 20}:
-        text = "{name} is {value} but must be 0, 1, 11 or 20"
-        raise cycle.wrong("ENC", text, "Correct the value.", value=value)
+    text = "{name} is {value} but must be 0, 1, 11 or 20"
+    cycle.check(value in {0, 1, 11, 20}, "ENC", text, "Correct the value.", value=value)
     return value == 1
 
 
@@ -182,19 +172,16 @@ def tap(state: State, statement: Statement) -> Block:
             raise statement.refuse(other, "word-unused", text, hint, other=other.text, code=code)
     lead = statement.words.get("K")
     pitch = state.length(statement, lead) if lead is not None else state.tap_lead
-    if not pitch:
-        text = "{code} needs the lead K."
-        raise statement.refuse(lead or word, "thread-lead-missing", text, "Write K.", code=code)
+    text = "{code} needs the lead K."
+    statement.check(pitch, lead or word, "thread-lead-missing", text, "Write K.", code=code)
     state.tap_lead = pitch
     travel = travel_of(state, statement)
     way = travel.z - travel.z0
-    if abs(way) < _SAME:
-        text = "{code} does not move along Z."
-        raise statement.refuse(word, "thread-length", text, "Enter Z of the end point.", code=code)
+    text = "{code} does not move along Z."
+    statement.check(abs(way) >= _SAME, word, "thread-length", text, "Enter Z of the end point.", code=code)
     rpm = state.modal.rpm
-    if not rpm:
-        text = "No spindle speed is programmed for {code}."
-        raise statement.refuse(word, "speed-missing", text, "Write S in the block.", code=code)
+    text = "No spindle speed is programmed for {code}."
+    statement.check(rpm, word, "speed-missing", text, "Write S in the block.", code=code)
     rpm = min(rpm, state.setup.limits.c_max_rpm)
     # Into the hole, G331, a lead over 0 turns as M3 does; G332 is the same the other way round.
     sense = 1.0 if state.motion is Motion.TAP else -1.0

@@ -50,9 +50,8 @@ def lead_of(cycle: Cycle) -> float:
             cycle.zero_only(name, "CYCLE99 supports only the functions of CYCLE97")
     pit, size = cycle.length("PIT"), cycle.number("MPIT")
     if cycle.given("PIT") and pit:
-        if pit < 0.0:
-            text = "{name} is a lead and must be greater than 0"
-            raise cycle.wrong("PIT", text, "Correct the value.", WRONG_LEAD)
+        text = "{name} is a lead and must be greater than 0"
+        cycle.check(pit >= 0.0, "PIT", text, "Correct the value.", WRONG_LEAD)
         if size and abs(COARSE_LEADS.get(round(size), 0.0) - pit) > 1e-6:
             text = "{name} does not match a thread with lead {pit}"
             raise cycle.wrong("MPIT", text, "Omit MPIT.", WRONG_LEAD, pit=pit)
@@ -71,9 +70,8 @@ def read_thread(cycle: Cycle) -> Thread:
     kind = kind_of(cycle)
     out = -1.0 if kind in {2, 4} else 1.0
     z0, z1 = cycle.needed("SPL"), cycle.needed("FPL")
-    if abs(z1 - z0) < 1e-6:
-        text = "{name} is the same position as the start of the thread"
-        raise cycle.wrong("FPL", text, "Correct SPL or FPL.")
+    text = "{name} is the same position as the start of the thread"
+    cycle.check(abs(z1 - z0) >= 1e-06, "FPL", text, "Correct SPL or FPL.")
     along = 1.0 if z1 > z0 else -1.0
     x0 = cycle.over_zero("DM1") / 2.0
     x1 = cycle.over_zero("DM2") / 2.0
@@ -92,11 +90,9 @@ def depths_of(cycle: Cycle, *, equal_chip: bool) -> tuple[float, ...]:
     """Roughing to TDEP less FAL in NRC passes, FAL in one, then NID passes without infeed."""
     depth, left = cycle.over_zero("TDEP"), cycle.size("FAL")
     count, idle = cycle.whole("NRC", 1, 0, MOST_PASSES), cycle.whole("NID", 0, 0, MOST_PASSES)
-    if left >= depth:
-        text = "{name} is not less than TDEP, so no depth remains for roughing"
-        raise cycle.wrong("FAL", text, "Reduce FAL.")
-    if not count and not left:
-        raise cycle.wrong("NRC", "{name} is 0, so nothing would be cut", "Enter the number of passes.")
+    text = "{name} is not less than TDEP, so no depth remains for roughing"
+    cycle.check(left < depth, "FAL", text, "Reduce FAL.")
+    cycle.check(count or left, "NRC", "{name} is 0, so nothing would be cut", "Enter the number of passes.")
     rough = [(depth - left) * (sqrt(i / count) if equal_chip else i / count) for i in range(1, count + 1)]
     return (*rough, *((depth,) if left or not rough else ()), *([depth] * idle))
 
@@ -106,9 +102,8 @@ def shifts_of(cycle: Cycle, depths: tuple[float, ...]) -> tuple[float, ...]:
     angle = cycle.number("IANG")
     if cycle.line.call == "CYCLE99" and cycle.number("VARI") // 100 % 10 == 2:
         angle = -abs(angle)
-    if not -60.0 < angle < 60.0:
-        text = "{name} must be a flank angle of less than 60 degrees"
-        raise cycle.wrong("IANG", text, "Enter half the thread angle.")
+    text = "{name} must be a flank angle of less than 60 degrees"
+    cycle.check(-60.0 < angle < 60.0, "IANG", text, "Enter half the thread angle.")
     slope = tan(radians(abs(angle)))
     turn = -1.0 if angle < 0.0 else 1.0
     return tuple(depth * slope * (turn if i % 2 else 1.0) for i, depth in enumerate(depths))
@@ -135,9 +130,8 @@ def starts_of(cycle: Cycle) -> tuple[float, int]:
     """Start angle of the first thread, degrees, and how many there are. Raises ProgramError."""
     starts = cycle.whole("NUMTH" if cycle.line.call == "CYCLE99" else "NUMT", 0, 0, 100) or 1
     first = cycle.number("NSP")
-    if not 0.0 <= first < 360.0:
-        text = "{name} must be a start angle from 0 to less than 360 degrees"
-        raise cycle.wrong("NSP", text, "Correct the value.")
+    text = "{name} must be a start angle from 0 to less than 360 degrees"
+    cycle.check(0.0 <= first < 360.0, "NSP", text, "Correct the value.")
     return first, starts
 
 

@@ -57,10 +57,9 @@ def _growth(state: State, statement: Statement) -> float:
         return 0.0
     if word := statement.words.get("F"):
         value = state.length(statement, word)
-        if value <= 0.0:
-            text = "{word}: the lead change must be greater than 0."
-            hint = "Use G34 to increase the lead and G35 to decrease it."
-            raise statement.refuse(word, "not-positive", text, hint, word=word.text)
+        text = "{word}: the lead change must be greater than 0."
+        hint = "Use G34 to increase the lead and G35 to decrease it."
+        statement.check(value > 0.0, word, "not-positive", text, hint, word=word.text)
         state.lead_change = value
     if not state.lead_change:
         text = "G{motion} needs F, the lead change per revolution."
@@ -98,15 +97,13 @@ def _start_angle(
     angle = 0.0 if word is None else state.number(statement, word) % 360.0
     if word is None or not angle:
         return None
-    if state.threads:
-        text = "{word} is allowed only in the first block of a thread chain."
-        hint = "Write this word in the first block of the thread chain."
-        raise statement.refuse(word, "word-unused", text, hint, word=word.text)
+    text = "{word} is allowed only in the first block of a thread chain."
+    hint = "Write this word in the first block of the thread chain."
+    statement.check(not state.threads, word, "word-unused", text, hint, word=word.text)
     state.start_turns = turns = angle / 360.0
     far = (lead - 0.5 * growth * turns) * turns
-    if lead - growth * turns < _LEAST_LEAD:
-        text = "at this start point, the lead has already decreased to 0."
-        raise statement.refuse(word, "thread-lead-missing", text, "Lower F.")
+    text = "at this start point, the lead has already decreased to 0."
+    statement.check(lead - growth * turns >= _LEAST_LEAD, word, "thread-lead-missing", text, "Lower F.")
     share = far / abs(travel.z - travel.z0)
     x, z = (a - (b - a) * share for a, b in ((travel.x0, travel.x), (travel.z0, travel.z)))
     return rapid(state, statement, travel._replace(x=x, z=z))
@@ -127,15 +124,13 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
     word = along or across
     assert word is not None
     value = state.length(statement, word)
-    if value <= 0.0:
-        text = "{word}: a lead must be greater than 0."
-        raise statement.refuse(word, "not-positive", text, "Correct the value.", word=word.text)
+    text = "{word}: a lead must be greater than 0."
+    statement.check(value > 0.0, word, "not-positive", text, "Correct the value.", word=word.text)
     if along is not None:
         return value
     dx = abs(travel.x - travel.x0)
-    if dx < NO_WAY:
-        text = "{word} is the lead along X, but X does not move."
-        raise statement.refuse(word, "thread-lead-missing", text, "Write K.", word=word.text)
+    text = "{word} is the lead along X, but X does not move."
+    statement.check(dx >= NO_WAY, word, "thread-lead-missing", text, "Write K.", word=word.text)
     return value * abs(travel.z - travel.z0) / dx
 
 

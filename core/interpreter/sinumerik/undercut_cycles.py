@@ -90,8 +90,7 @@ class Place(NamedTuple):
 def shoulder_undercut(cycle: Cycle) -> Iterator[Block]:
     """CYCLE94. Raises ProgramError before the first block."""
     form = cycle.text("FORM")
-    if form not in {"E", "F"}:
-        raise cycle.wrong("FORM", '{name} must be "E" or "F"', "Correct the value.", WRONG_FORM)
+    cycle.check(form in {"E", "F"}, "FORM", '{name} must be "E" or "F"', "Correct the value.", WRONG_FORM)
     size = _at_shoulder(cycle, form)
     out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
     place = Place(cycle.needed("SPD") / 2.0, cycle.needed("SPL"), out, side)
@@ -116,10 +115,9 @@ def thread_undercut(cycle: Cycle) -> Iterator[Block]:
         raise cycle.wrong("FORM", '{name} must be "A", "B", "C" or "D"', "Correct the value.", WRONG_FORM)
     nominal = cycle.over_zero("DIATH", TOO_SMALL)
     lead = COARSE_LEADS.get(round(nominal), 0.0) if abs(nominal - round(nominal)) < _SAME else 0.0
-    if not lead:
-        text = "{name} is {nominal}, which is not a coarse thread size from M3 to M{largest_of_all}"
-        hint = "Program the undercut block by block."
-        raise cycle.wrong("DIATH", text, hint, TOO_SMALL, nominal=nominal, largest_of_all=_LARGEST_OF_ALL)
+    text = "{name} is {nominal}, which is not a coarse thread size from M3 to M{largest_of_all}"
+    hint = "Program the undercut block by block."
+    cycle.check(lead, "DIATH", text, hint, TOO_SMALL, nominal=nominal, largest_of_all=_LARGEST_OF_ALL)
     lacks, long, short, radius, long_inside, short_inside = _DIN_76[lead]
     out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
     inside = form in {"C", "D"}
@@ -155,13 +153,12 @@ def undercut(cycle: Cycle) -> Iterator[Block]:
     Its first seven parameters, and the order of all of them, are those of the maker's programming manual.
     """
     form = cycle.text("FORM")
-    if form not in {"A", "B", "E", "F"}:
-        text = "{name} is {form}, which is not supported"
-        hint = (
-            'Write form "A", "B", "E" or "F". For forms C and D, use CYCLE96. Program a free form (T) block '
-            "by block."
-        )
-        raise cycle.wrong("FORM", text, hint, WRONG_FORM, form=form or "missing")
+    text = "{name} is {form}, which is not supported"
+    hint = (
+        'Write form "A", "B", "E" or "F". For forms C and D, use CYCLE96. Program a free form (T) block by '
+        "block."
+    )
+    cycle.check(form in {"A", "B", "E", "F"}, "FORM", text, hint, WRONG_FORM, form=form or "missing")
     for name in ("_EPD", "_EPL", "_R1", "_R2", "_STA", "_VRT"):
         cycle.zero_only(name, _NOT_BUILT)
     out, side = position(cycle, _OF_PLACE[cycle.whole("_LAGE", 0, 0, 3)])
@@ -179,9 +176,8 @@ def _behind_thread(cycle: Cycle, form: str) -> Size:
         lead = _LEADS[cycle.whole("_PITI", 0, 0, len(_LEADS) - 1)]
     else:
         lead = COARSE_LEADS.get(round(cycle.needed("SPD")), 0.0)
-    if lead not in _DIN_76:
-        text = "{name} specifies a lead of {lead}, but no undercut is defined for that lead"
-        raise cycle.wrong("_PITI", text, "Program the undercut block by block.", TOO_SMALL, lead=lead)
+    text = "{name} specifies a lead of {lead}, but no undercut is defined for that lead"
+    cycle.check(lead in _DIN_76, "_PITI", text, "Program the undercut block by block.", TOO_SMALL, lead=lead)
     lacks, long, short, radius, *_ = _DIN_76[lead]
     return Size(lacks / 2.0, long if form == "A" else short, radius, 30.0)
 
@@ -189,9 +185,8 @@ def _behind_thread(cycle: Cycle, form: str) -> Size:
 def _in_passes(cycle: Cycle, place: Place, size: Size, feed: float, clear: float) -> list[Step]:
     """_VARI 1 roughs, 2 finishes, 3 does both: the profile at depths of _MID at most, above _FALX, _FALZ."""
     kind = cycle.whole("_VARI", 3, 1, 13)
-    if kind % 10 not in {1, 2, 3}:
-        hint = "Enter 1 for roughing, 2 for finishing or 3 for both."
-        raise cycle.wrong("_VARI", "{name} cannot be {value}", hint, MACHINING_TYPE, value=kind)
+    hint = "Enter 1 for roughing, 2 for finishing or 3 for both."
+    cycle.check(kind % 10 in {1, 2, 3}, "_VARI", "{name} cannot be {value}", hint, MACHINING_TYPE, value=kind)
     left = cycle.size("_FAL")
     up, off = max(left, cycle.size("_FALX")), max(left, cycle.size("_FALZ"))
     infeed = cycle.size("_MID") or size.depth
@@ -218,9 +213,8 @@ def position(cycle: Cycle, chosen: int) -> tuple[float, float]:
     Raises ProgramError.
     """
     state = cycle.state
-    if not state.modal.edge:
-        text = "{call} needs an active tool with an offset."
-        raise cycle.refused(61000, text, "Write T and D before this block.", call=cycle.line.call)
+    text = "{call} needs an active tool with an offset."
+    cycle.require(state.modal.edge, 61000, text, "Write T and D before this block.")
     quadrant = state.edge.quadrant
     if quadrant not in _BY_POSITION and (not chosen or state.edge.nose_radius):
         text = "the tip quadrant of the tool is {quadrant}, but an undercut needs a quadrant from 1 to 4."
@@ -267,10 +261,9 @@ def _cut(cycle: Cycle, place: Place, size: Size, feed: float, beside: float) -> 
 def _nose(cycle: Cycle, size: Size) -> float:
     """Nose radius of the tool, which must fit into the corners. Raises ProgramError."""
     nose = cycle.state.edge.nose_radius
-    if nose > size.radius + _SAME:
-        text = "the nose radius {nose} is larger than the radius {radius} of this undercut."
-        hint = "Use a tool with a smaller nose radius."
-        raise cycle.refused(NOSE_TOO_LARGE, text, hint, nose=nose, radius=size.radius)
+    text = "the nose radius {nose} is larger than the radius {radius} of this undercut."
+    hint = "Use a tool with a smaller nose radius."
+    cycle.require(nose <= size.radius + _SAME, NOSE_TOO_LARGE, text, hint, nose=nose, radius=size.radius)
     return nose
 
 
