@@ -10,6 +10,7 @@ from typing import NamedTuple
 from core.geometry.intersections import clearance, intersections
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point
 from core.geometry.roughing_area import Area, Span
+from core.interpreter.equal_passes import equal_depths
 
 
 class Move(NamedTuple):
@@ -28,6 +29,10 @@ class Move(NamedTuple):
 _SAME = 1e-6  # mm
 _NEARER = 0.002  # mm; what a way beside the contour may lack
 _TOUCHING = 0.02  # mm; where U is 0, the ways end on the contour
+
+
+MOST_ELEMENTS = 2_000
+MOST_LOOKS = 200_000  # elements times passes: a few seconds
 
 
 class StartNearError(Exception):
@@ -61,6 +66,11 @@ class Rougher:
             self._feed(depth, self._at[1])
             self._feed(depth, end)
         self._done.append((depth, spans))
+
+    def rough(self, count: int) -> None:
+        """So many equal passes, down to the deepest place."""
+        for depth in equal_depths(self._area.deepest, count):
+            self.cut(depth)
 
     def finish(self, *, backwards: bool) -> None:
         """Along the contour, then back to the start. Raises StartNearError."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from math import ceil
-
 from core.interpreter import units
 from core.interpreter.contour_passes import Move
+from core.interpreter.equal_passes import pass_count
 from core.interpreter.omniturn.canned_cycles import LIFT, check_count, length
 from core.interpreter.omniturn.code_rules import checked
 from core.interpreter.omniturn.omniturn_state import State
@@ -44,7 +43,7 @@ def peck_moves(state: State, statement: Statement) -> list[Move]:
             text=statement.words["K"].text,
             depth=deep,
         )
-    count = ceil((start - depth) / peck - _WHOLE)
+    count = pass_count(start - depth, peck)
     check_count(statement, "K", count, "pecks")
     rate, clear = _rate(state, statement), LIFT
     if "C" in statement.words:

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil
 
 from core.geometry.contour_offset import TrimError
 from core.geometry.lines_and_arcs import Element
 from core.geometry.roughing_area import Area
-from core.interpreter.contour_passes import ContourView, Move, Rougher, StartNearError, view_from
+from core.interpreter.contour_passes import (
+    MOST_ELEMENTS,
+    MOST_LOOKS,
+    ContourView,
+    Move,
+    Rougher,
+    StartNearError,
+    view_from,
+)
+from core.interpreter.equal_passes import equal_depths, pass_count
 from core.interpreter.omniturn.canned_cycles import LIFT, check_count, length, name
 from core.interpreter.omniturn.code_rules import number
 from core.interpreter.omniturn.cycle_contour import read_contour
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 
-_WHOLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
 _SAME = 1e-6  # mm
-_MOST_ELEMENTS = 2_000
-_MOST_LOOKS = 200_000  # elements times passes: a few seconds
 
 
 def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]) -> list[Move]:
@@ -30,14 +35,14 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
     cut = length(state, statement, "I") if statement.one_shot == 75 else None
     left = length(state, statement, "U")
     contour = read_contour(state, statement, lines)
-    if len(contour) > _MOST_ELEMENTS:
+    if len(contour) > MOST_ELEMENTS:
         raise statement.refuse(
             "G",
             "cycle-contour-long",
             "The contour has {contour_count} lines and arcs; the maximum is {most_elements}.",
             "Program the contour with fewer, longer moves.",
             contour_count=f"{len(contour):,}",
-            most_elements=f"{_MOST_ELEMENTS:,}",
+            most_elements=f"{MOST_ELEMENTS:,}",
         )
     view = _view(state, statement, contour)
     try:
@@ -84,14 +89,13 @@ def _passes(
 ) -> None:
     text = "No material remains to be cut between the contour and the start point."
     statement.check(area.deepest > 0, "G", "cycle-nothing", text, "Start farther from the contour in X.")
-    count = ceil(area.deepest / cut - _WHOLE)
+    count = pass_count(area.deepest, cut)
     check_count(statement, "I", count, "passes")
-    if count * elements > _MOST_LOOKS:
+    if count * elements > MOST_LOOKS:
         text = "{count} passes along a contour of {elements} lines and arcs are too many to calculate."
         hint = "Increase I, or program the contour with fewer moves."
         raise statement.refuse("I", "cycle-passes", text, hint, count=f"{count:,}", elements=f"{elements:,}")
-    for k in range(1, count + 1):
-        rougher.cut(area.deepest * k / count)
+    rougher.rough(count)
     if rougher.plunged:
         text = "The contour rises and falls again, so the tool plunges into the material after the rise."
         hint = "Check whether the tool can plunge into the material."
@@ -134,12 +138,12 @@ def box_moves(state: State, statement: Statement) -> list[Move]:
         text = "The allowance {text} leaves no material for the box cycle to cut."
         hint = "U must be less than the distance in X from the start point to the programmed X."
         raise statement.refuse("U", "cycle-nothing", text, hint, text=statement.words["U"].text)
-    count = ceil(depth / cut - _WHOLE)
+    count = pass_count(depth, cut)
     check_count(statement, "I", count, "passes")
     rapid = state.modal.rapid_rate
     moves: list[Move] = []
-    for k in range(1, count + 1):
-        level = state.x + towards * depth * k / count
+    for below in equal_depths(depth, count):
+        level = state.x + towards * below
         off = level - towards * LIFT
         moves += [Move(level, state.z), Move(level, z), Move(off, z, rapid), Move(off, state.z, rapid)]
     return [*moves, Move(state.x, state.z, rapid)]

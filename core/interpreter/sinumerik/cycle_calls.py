@@ -7,10 +7,9 @@ from dataclasses import replace
 
 from core.geometry.lines_and_arcs import Element
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.sinumerik.boring_cycles import lift_off, stop
 from core.interpreter.sinumerik.cycle_contour import WRONG_CONTOUR, contour_lines, read_contour
 from core.interpreter.sinumerik.cycle_parameters import Cycle
-from core.interpreter.sinumerik.drilling_cycles import bore, drill, peck
+from core.interpreter.sinumerik.drilling_cycles import bore, drill, lift_off, peck, stop
 from core.interpreter.sinumerik.groove_cycle import groove
 from core.interpreter.sinumerik.parting_cycle import part_off
 from core.interpreter.sinumerik.sinumerik_state import State

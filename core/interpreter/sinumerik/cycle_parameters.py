@@ -10,6 +10,7 @@ from typing import NamedTuple
 from core.geometry.lines_and_arcs import Point
 from core.interpreter.actions import Action, Dwell, SpindleLock, SpindleOrient, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.equal_passes import pass_count
 from core.interpreter.sinumerik.linear_moves import AxisTravel, block_of
 from core.interpreter.sinumerik.sinumerik_feeds import check_feed
 from core.interpreter.sinumerik.sinumerik_state import State
@@ -22,7 +23,11 @@ from core.language.sinumerik.sinumerik_words import Line
 from core.message import Message, worded
 
 TOO_MANY = 12330
-NO_FEED = 61003
+NO_FEED, NO_F = 61003, 10860
+NO_DIRECTION = 61102
+_CORRECT, _POINT = "Correct the value.", "Look for a missing decimal point."
+_OWN = "cycle-parameter"
+_Alarm = int | str
 MACHINING_TYPE = 61002
 MOST_PASSES = 10_000
 RETRACT = 1.0  # mm by which a cycle stays off the part where _VRT says nothing
@@ -141,7 +146,7 @@ class Cycle:
             raise self.wrong(name, "{name} is missing", "Add this parameter to {call}.", call=self.line.call)
         return self.length(name)
 
-    def over_zero(self, name: str, alarm: int | str = "cycle-parameter") -> float:
+    def over_zero(self, name: str, alarm: _Alarm = _OWN) -> float:
         """A length that must be there and over 0. Raises ProgramError."""
         value = self.needed(name)
         self.check(value > 0.0, name, "{name} must be greater than 0", "Correct the value.", alarm)
@@ -184,14 +189,39 @@ class Cycle:
             raise self.wrong(name, text, hint, MACHINING_TYPE, value=value, low=low, high=high)
         return round(value)
 
+    def angle(self, name: str, text: str) -> float:
+        """An angle from 0 to less than 360 degrees. Raises ProgramError."""
+        value = self.number(name)
+        self.check(0.0 <= value < 360.0, name, text)
+        return value
+
+    def pass_count(
+        self, whole: float, each: float, name: str, text: str, hint: str = _POINT, most: int = MOST_PASSES
+    ) -> int:
+        """How many passes of ``each`` a depth takes. Raises ProgramError for more than anyone means."""
+        count = pass_count(whole, each)
+        self.check(count <= min(most, MOST_PASSES), name, text, hint, count=f"{count:,}")
+        return count
+
+    def known_feed(
+        self, feed: float | None, alarm: int = NO_F, hint: str = "Program F before this block."
+    ) -> float:
+        """The feed. Raises ProgramError where there is none."""
+        if feed is None:
+            raise self.refused(alarm, "no feedrate is programmed.", hint)
+        return feed
+
+    def off_part(self, clear: float, out: float = 1.0) -> list[Step]:
+        """To X ``clear`` where the tool is nearer to the part; ``out``: the sign of X away from it."""
+        return [] if out * self.x >= out * clear else [Step(clear, self.z)]
+
+    def demand_tool(self) -> None:
+        """Raises ProgramError unless a tool with an offset is active."""
+        modal, text = self.state.modal, "{call} needs an active tool with an offset."
+        self.require(modal.tool and modal.edge, 61000, text, "Write T and D before this block.")
+
     def wrong(
-        self,
-        name: str,
-        what: str,
-        hint: str = "Correct the value.",
-        code: int | str = "cycle-parameter",
-        /,
-        **values: object,
+        self, name: str, what: str, hint: str = _CORRECT, code: _Alarm = _OWN, /, **values: object
     ) -> ProgramError:
         """Return an error about one parameter; ``what`` and ``hint`` have holes for values."""
         argument = self._arguments.get(name)
@@ -205,8 +235,8 @@ class Cycle:
         fine: object,
         name: str,
         what: str,
-        hint: str = "Correct the value.",
-        code: int | str = "cycle-parameter",
+        hint: str = _CORRECT,
+        code: _Alarm = _OWN,
         /,
         **values: object,
     ) -> None:
@@ -214,17 +244,17 @@ class Cycle:
         if not fine:
             raise self.wrong(name, what, hint, code, **values)
 
-    def require(self, fine: object, code: int | str, text: str, hint: str, /, **values: object) -> None:
-        """Raise ``refused`` unless a condition holds."""
-        if not fine:
-            raise self.refused(code, text, hint, **values)
-
-    def refused(self, code: int | str, text: str, hint: str, /, **values: object) -> ProgramError:
+    def refused(self, code: _Alarm, text: str, hint: str, /, **values: object) -> ProgramError:
         """Return an error about the whole call; ``text`` and ``hint`` have holes for values."""
         values = {"call": self.line.call, **values}
         return self._fault(self.line.call_column, code, worded(text, values), worded(hint, values))
 
-    def _fault(self, column: int, code: int | str, text: str, hint: str) -> ProgramError:
+    def require(self, fine: object, code: _Alarm, text: str, hint: str, /, **values: object) -> None:
+        """Raise ``refused`` unless a condition holds."""
+        if not fine:
+            raise self.refused(code, text, hint, **values)
+
+    def _fault(self, column: int, code: _Alarm, text: str, hint: str) -> ProgramError:
         return ProgramError(fault(self.line.number, column, code, self.line.block, text, hint))
 
     def warn(self, code: str, text: str, hint: str, /, **values: object) -> None:
@@ -292,9 +322,14 @@ class Cycle:
         return made
 
 
+def acting(action: Action, spindle: int | None = None) -> Step:
+    """Something that is done where the tool stands; ``spindle`` as in ``Step``."""
+    return Step(0.0, 0.0, action=action, spindle=spindle)
+
+
 def dwell(seconds: float) -> list[Step]:
     """Time at rest, where there is any."""
-    return [Step(0.0, 0.0, action=Dwell(seconds))] if seconds > 0.0 else []
+    return [acting(Dwell(seconds))] if seconds > 0.0 else []
 
 
 def _words(step: Step, diameter: bool) -> str:

@@ -8,20 +8,20 @@ D+1, as on the control.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, radians, tan
+from math import radians, tan
 from typing import NamedTuple
 
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, RETRACT, Cycle, Step, dwell
+from core.interpreter.equal_passes import equal_depths
+from core.interpreter.sinumerik.cycle_parameters import RETRACT, Cycle, Step, dwell
 from core.tool_edges import edge_key, edge_name, edge_of, tool_of
 
 WRONG_WIDTH = 61602
 WRONG_FORM = 61603
-NO_TOOL = 61000
 _SAME = 1e-6  # mm
-_WHOLE = 1e-6
 _STEEPEST = 89.999  # degrees
 _USUAL_WIDTH = 3.0  # mm, of a tool that the table does not have
+_CUTS = "{name} would need {count} cuts, which is too many"
 _OVERLAP = 0.95  # of the tool's width: what a cut beside another takes at most
 
 
@@ -65,7 +65,7 @@ def _run(cycle: Cycle, name: str, depth: float) -> float:
     """How far a flank goes along Z from the bottom to the surface, mm. Raises ProgramError."""
     angle = cycle.number(name)
     text = "{name} must be a flank angle from 0 to less than 90 degrees"
-    cycle.check(0.0 <= angle <= _STEEPEST, name, text, "Correct the value.")
+    cycle.check(0.0 <= angle <= _STEEPEST, name, text)
     return depth * tan(radians(angle))
 
 
@@ -77,9 +77,7 @@ def tool_width(cycle: Cycle, widest: float) -> tuple[float, bool]:
     """
     state = cycle.state
     key, tools = state.modal.tool, state.setup.tools
-    if not key or state.modal.edge == 0:
-        text = "{call} needs an active tool with an offset."
-        raise cycle.refused(NO_TOOL, text, "Write T and D before this block.")
+    cycle.demand_tool()
     number = cycle.whole("_DN", 0, 0, 9) or edge_of(key) + 1
     other = edge_key(tool_of(key), number)
     if key not in tools and other not in tools:
@@ -111,16 +109,12 @@ def groove(cycle: Cycle) -> Iterator[Block]:
     text = "{name} is {high} including FAL2 on both flanks, but the tool is {width} wide"
     hint = "Use a narrower tool."
     cycle.check(room >= -_SAME, "WIDG", text, hint, WRONG_WIDTH, high=shape.high - shape.low, width=width)
-    feed = cycle.state.modal.feed
-    if feed is None:
-        raise cycle.refused(10860, "no feedrate is programmed.", "Program F before this block.")
+    feed = cycle.known_feed(cycle.state.modal.feed)
     off = cycle.size("_VRT") or RETRACT
     plan = _Plan(cycle, shape, feed, shape.top + shape.out * off, 0.0 if at_low else width)
-    steps = plan.begin()
+    steps = cycle.off_part(shape.top + shape.out * off, shape.out)
     bottom = shape.bottom + shape.out * bottom_left
-    count = ceil(max(room, 0.0) / (width * _OVERLAP) - _WHOLE)
-    text = "{name} would need {count} cuts, which is too many"
-    cycle.check(count <= MOST_PASSES, "WIDG", text, "Look for a missing decimal point.", count=f"{count:,}")
+    count = cycle.pass_count(max(room, 0.0), width * _OVERLAP, "WIDG", _CUTS)
     for k in range(count + 1):
         place = shape.high - flank_left - width - (room * k / count if count else 0.0)
         steps += plan.plunge(place, bottom)
@@ -138,24 +132,17 @@ class _Plan:
         self._cycle, self._shape, self._feed = cycle, shape, feed
         self._clear, self._corner = clear, corner
         self._infeed, self._dwell = cycle.size("IDEP"), cycle.number("DTB")
-        cycle.check(self._dwell >= 0.0, "DTB", "{name} must be a time of 0 s or more", "Correct the value.")
-
-    def begin(self) -> list[Step]:
-        """Off the part in depth first, from where the tool stands."""
-        cycle, out = self._cycle, self._shape.out
-        return [] if out * cycle.x >= out * self._clear else [Step(self._clear, cycle.z)]
+        cycle.check(self._dwell >= 0.0, "DTB", "{name} must be a time of 0 s or more")
 
     def plunge(self, place: float, bottom: float) -> list[Step]:
         """Down in steps of IDEP, each with a short way back to break the chip; dwell; out."""
         shape = self._shape
         whole = abs(bottom - shape.top)
-        count = max(ceil(whole / self._infeed - _WHOLE), 1) if self._infeed else 1
-        if count > MOST_PASSES:
-            text = "{name} would need {count} steps, which is too many"
-            raise self._cycle.wrong("IDEP", text, "Look for a missing decimal point.", count=f"{count:,}")
+        text = "{name} would need {count} steps, which is too many"
+        count = max(self._cycle.pass_count(whole, self._infeed, "IDEP", text), 1) if self._infeed else 1
         steps = [self._to(self._clear, place)]
-        for k in range(1, count + 1):
-            depth = shape.top - shape.out * whole * k / count
+        for k, below in enumerate(equal_depths(whole, count), 1):
+            depth = shape.top - shape.out * below
             steps.append(self._to(depth, place, self._feed))
             if k < count:
                 steps.append(self._to(depth + shape.out * RETRACT, place))
@@ -163,9 +150,7 @@ class _Plan:
 
     def beside(self, place: float, run: float, width: float, bottom: float) -> list[Step]:
         """Plunges outwards from ``place`` under a flank that rises by ``run``, each less deep."""
-        count = ceil(abs(run) / (width * _OVERLAP) - _WHOLE)
-        text = "{name} would need {count} cuts, which is too many"
-        self._cycle.check(count <= MOST_PASSES, "ANG1", text, "Check the angles.", count=f"{count:,}")
+        count = self._cycle.pass_count(abs(run), width * _OVERLAP, "ANG1", _CUTS, "Check the angles.")
         steps: list[Step] = []
         for share in (k / (count + 1) for k in range(1, count + 1)):
             depth = bottom + (self._shape.top - bottom) * share

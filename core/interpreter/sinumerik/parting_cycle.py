@@ -12,11 +12,11 @@ from collections.abc import Iterator
 from core.interpreter.actions import SpindleRun
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.modal_state import Modal
-from core.interpreter.sinumerik.boring_cycles import NO_DIRECTION
-from core.interpreter.sinumerik.cycle_parameters import NO_FEED, RETRACT, Cycle, Step
+from core.interpreter.sinumerik.cycle_parameters import NO_DIRECTION, NO_FEED, RETRACT, Cycle, Step
 from core.interpreter.units import FEET_PER_MINUTE, METRES_PER_MINUTE
 
 WRONG_DEPTH = 61604
+_SPEED = "{name} is {value}, which is not a valid speed for this spindle"
 _DIRECTION = {3: 1, 4: -1}  # of _SDAC
 
 
@@ -36,13 +36,15 @@ def part_off(cycle: Cycle) -> Iterator[Block]:
     before = cycle.state.modal
     fast = _speed(cycle, before)
     rpm = cycle.number("_SS2")
-    if rpm < 0.0 or rpm > cycle.state.setup.limits.max_rpm:
-        text = "{name} is {value}, which is not a valid speed for this spindle"
-        raise cycle.wrong("_SS2", text, "Correct the value.", value=rpm)
+    cycle.check(0.0 <= rpm <= cycle.state.setup.limits.max_rpm, "_SS2", _SPEED, value=rpm)
     place, surface = cycle.needed("SPL"), cycle.needed("SPD") / 2.0
     clear = surface + (cycle.size("_SDIS") or RETRACT)
-    out = [Step(clear, cycle.z)] if cycle.x < clear else []
-    down = [*out, Step(max(clear, cycle.x), place), Step(clear, place), Step(slow, place, first)]
+    down = [
+        *cycle.off_part(clear),
+        Step(max(clear, cycle.x), place),
+        Step(clear, place),
+        Step(slow, place, first),
+    ]
     return _blocks(cycle, (fast, before, rpm), down, [Step(last, place, second), Step(clear, place)])
 
 
@@ -58,9 +60,7 @@ def _depths(cycle: Cycle) -> tuple[float, float]:
 
 
 def _feeds(cycle: Cycle) -> tuple[float, float]:
-    first = cycle.feed("_FF1")
-    if first is None:
-        raise cycle.refused(NO_FEED, "no feedrate is programmed.", "Write _FF1.")
+    first = cycle.known_feed(cycle.feed("_FF1"), NO_FEED, "Write _FF1.")
     second = cycle.feed("_FF2") if cycle.number("_FF2") else first
     return first, second or first
 
@@ -74,9 +74,8 @@ def _speed(cycle: Cycle, before: Modal) -> Modal:
         raise cycle.wrong("_SDAC", text, "Enter 3 for M3 or 4 for M4.", NO_DIRECTION, value=direction)
     modal = before._replace(spindle=_DIRECTION.get(direction, before.spindle))
     highest = cycle.state.setup.limits.max_rpm
-    if value < 0.0 or most < 0.0 or (value > highest and not most):
-        text = "{name} is {value}, which is not a valid speed for this spindle"
-        raise cycle.wrong("_SV1", text, "Correct the value.", value=value)
+    fine = value >= 0.0 and most >= 0.0 and (value <= highest or most)
+    cycle.check(fine, "_SV1", _SPEED, value=value)
     if value and most:
         unit = METRES_PER_MINUTE if before.metric else FEET_PER_MINUTE
         modal = modal._replace(css=True, surface_speed=value * unit, css_max=most)

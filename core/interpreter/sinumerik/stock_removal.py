@@ -9,24 +9,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from math import ceil
 from typing import NamedTuple
 
 from core.geometry.contour_offset import TrimError
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, shifted
 from core.geometry.roughing_area import Area
-from core.interpreter.actions import Dwell
-from core.interpreter.contour_passes import ContourView, Move, Rougher, StartNearError, view_from
+from core.interpreter.contour_passes import (
+    MOST_ELEMENTS,
+    MOST_LOOKS,
+    ContourView,
+    Move,
+    Rougher,
+    StartNearError,
+    view_from,
+)
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_contour import WRONG_CONTOUR
-from core.interpreter.sinumerik.cycle_parameters import MACHINING_TYPE, MOST_PASSES, RETRACT, Cycle, Step
+from core.interpreter.sinumerik.cycle_parameters import MACHINING_TYPE, RETRACT, Cycle, Step, dwell
 from core.message import Message
 from core.tool_edges import TIP_DIRECTIONS
 
 NO_INFEED = 61610
-_MOST_ELEMENTS = 2_000
-_MOST_LOOKS = 200_000  # elements times passes: a few seconds
-_WHOLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
 _SAME = 1e-6  # mm
 _ROUNDING = 200  # VARI from here on leaves the steps; the run along the contour takes them here
 
@@ -61,11 +64,11 @@ def stock_removal(cycle: Cycle, contour: list[Element]) -> Iterator[Block]:
     kind = kind_of(cycle)
     text = "{name} refers to a contour without lines or arcs"
     cycle.check(contour, "NPP", text, "Write the points of the contour.", WRONG_CONTOUR)
-    if len(contour) > _MOST_ELEMENTS:
+    if len(contour) > MOST_ELEMENTS:
         text = "{name} has {contour_count} elements; the maximum is {most_elements}"
         hint = "Split the contour into smaller parts."
         raise cycle.wrong(
-            "NPP", text, hint, contour_count=f"{len(contour):,}", most_elements=f"{_MOST_ELEMENTS:,}"
+            "NPP", text, hint, contour_count=f"{len(contour):,}", most_elements=f"{MOST_ELEMENTS:,}"
         )
     plan = _Plan(cycle, kind, contour)
     steps = plan.approach()
@@ -156,13 +159,10 @@ class _Plan:
         area, view = self._area(contour, left)
         text = "{name} specifies a contour with no material to cut"
         cycle.check(area.deepest > 0, "NPP", text, "Check the direction of the contour.", WRONG_CONTOUR)
-        count = ceil(area.deepest / infeed - _WHOLE)
-        if count > MOST_PASSES or count * len(contour) > _MOST_LOOKS:
-            text = "{name} would need {count} passes, which is too many"
-            raise cycle.wrong("MID", text, "Look for a missing decimal point.", count=f"{count:,}")
+        text = "{name} would need {count} passes, which is too many"
+        count = cycle.pass_count(area.deepest, infeed, "MID", text, most=MOST_LOOKS // len(contour))
         rougher = Rougher(area, 1.0, self._off)
-        for k in range(1, count + 1):
-            rougher.cut(area.deepest * k / count)
+        rougher.rough(count)
         if rougher.plunged and not cycle.number("FF2") and cycle.state.modal.feed is None:
             text = "{name} is missing, but the contour has a relief cut"
             raise cycle.wrong("FF2", text, "Write FF2.", 61003)
@@ -223,15 +223,14 @@ class _Plan:
         if not length or move.rapid is not None or move.centre is not None or abs(way) <= length + _SAME:
             return [self._step(move, feed)]
         steps: list[Step] = []
-        count = ceil(abs(way) / length - _WHOLE)
         text = "{name} would interrupt a pass {count} times, which is too many"
-        self._cycle.check(count <= MOST_PASSES, "DAM", text, "Correct the value.", count=f"{count:,}")
+        count = self._cycle.pass_count(abs(way), length, "DAM", text, "Correct the value.")
         for k in range(1, count + 1):
             share = min(k * length / abs(way), 1.0)
             between = Move(at[0] + (move.x - at[0]) * share, at[1] + way * share)
             steps.append(self._step(between, feed))
-            if k < count and seconds > 0:
-                steps.append(Step(steps[-1].x, steps[-1].z, action=Dwell(seconds)))
+            if k < count:
+                steps += dwell(seconds)
         return steps
 
     def _step(self, move: Move, feed: float | None = None) -> Step:

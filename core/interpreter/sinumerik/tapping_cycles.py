@@ -7,21 +7,19 @@ chuck the slide is fed by the revolution, and the spindle turned back at the bot
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, copysign
+from math import copysign
 
-from core.interpreter.actions import SpindleLock, SpindleRun
+from core.interpreter.actions import SpindleRun
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, Cycle, Step, dwell
-from core.interpreter.sinumerik.drilling_cycles import Hole, approach, hole_of, needed_feed, seconds
+from core.interpreter.sinumerik.cycle_parameters import NO_DIRECTION, Cycle, Step, acting, dwell
+from core.interpreter.sinumerik.drilling_cycles import Hole, hole_of, locked, seconds
 from core.interpreter.sinumerik.linear_moves import block_of, travel_of
 from core.interpreter.sinumerik.sinumerik_state import Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.interpreter.sinumerik.spindle_and_dwell import demand_spindle_as_c, shortest_turn
+from core.interpreter.sinumerik.spindle_and_dwell import demand_spindle_as_c
 from core.interpreter.sinumerik.thread_cycle import COARSE_LEADS, WRONG_LEAD
 
-NO_DIRECTION = 61102
 _SAME = 1e-6  # mm
-_WHOLE = 1e-6
 _INCH = 25.4
 
 
@@ -57,19 +55,16 @@ def rigid(cycle: Cycle) -> Iterator[Block]:
     rest = cycle.whole("SDAC", 5, 3, 5)
     text = "{name} starts the spindle, but no S is programmed"
     cycle.check(rest == 5 or state.modal.rpm, "SDAC", text, "Write S before this block.")
-    wanted = cycle.number("POSS")
-    text = "{name} must be an angle from 0 to less than 360 degrees"
-    cycle.check(0.0 <= wanted < 360.0, "POSS", text, "Correct the value.")
-    lock = [Step(0.0, 0.0, action=SpindleLock(orient=False), spindle=0)]
-    steps = [*approach(cycle, hole), *lock]
-    if turn := shortest_turn(state, wanted):
-        steps.append(Step(cycle.x, hole.clear, state.setup.limits.speeds[2], turn=turn))
-    steps += _ways(cycle, hole, lead, (into, out))
-    steps.append(Step(cycle.x, hole.retract))
-    if rest != 5:
-        sign = 1 if rest == 3 else -1
-        steps.append(Step(0.0, 0.0, action=SpindleRun(sign * state.modal.rpm), spindle=sign))
+    wanted = cycle.angle("POSS", "{name} must be an angle from 0 to less than 360 degrees")
+    steps = [hole.to(hole.clear), *locked(cycle, hole.to(hole.clear), wanted)]
+    steps += [*_ways(cycle, hole, lead, (into, out)), hole.to(hole.retract), *_after(cycle, rest)]
     return cycle.blocks(steps)
+
+
+def _after(cycle: Cycle, rest: int) -> list[Step]:
+    """What the spindle does behind the cycle: 3 and 4 as M3 and M4, 5 nothing."""
+    sign = 1 if rest == 3 else -1
+    return [] if rest == 5 else [acting(SpindleRun(sign * cycle.state.modal.rpm), sign)]
 
 
 def _speed(cycle: Cycle, name: str, default: float) -> float:
@@ -92,9 +87,8 @@ def _ways(cycle: Cycle, hole: Hole, lead: float, speeds: tuple[float, float]) ->
     """In one go, or by _DAM with a way back each time: _VRT (_VARI 1), or out of the hole (_VARI 2)."""
     kind, each = cycle.whole("_VARI", 0, 0, 2), cycle.size("_DAM")
     whole = abs(hole.bottom - hole.clear)
-    count = max(ceil(whole / each - _WHOLE), 1) if kind and each else 1
     text = "{name} would need {count} steps, which is too many"
-    cycle.check(count <= MOST_PASSES, "_DAM", text, "Look for a missing decimal point.", count=f"{count:,}")
+    count = max(cycle.pass_count(whole, each, "_DAM", text), 1) if kind and each else 1
     back, at, steps = cycle.size("_VRT") or 1.0, hole.clear, list[Step]()
 
     def turned(to: float, rpm: float) -> Step:
@@ -133,17 +127,11 @@ def compensating(cycle: Cycle) -> Iterator[Block]:
     lead = abs(lead_of_tap(cycle))
     hint = "Enter PIT or MPIT, or ENC 1 to use the active feed rate."
     cycle.check(lead or by_feed, "PIT", "{name} does not define a lead", hint, WRONG_LEAD)
-    feed = needed_feed(cycle) if by_feed else lead if modal.per_rev else lead * modal.rpm / 60.0
-    deep = [
-        Step(cycle.x, hole.bottom, feed, tap=True), *dwell(seconds(cycle, "DTB")),
-        Step(0.0, 0.0, action=SpindleRun(-sign * modal.rpm), spindle=-sign),
-    ]  # fmt: skip
-    steps = [*approach(cycle, hole), *(step._replace(in_hole=True) for step in deep)]
-    steps += [Step(cycle.x, hole.clear, feed, tap=True), Step(cycle.x, hole.retract)]
-    if rest != 5:
-        after = 1 if rest == 3 else -1
-        steps.append(Step(0.0, 0.0, action=SpindleRun(after * modal.rpm), spindle=after))
-    return cycle.blocks(steps)
+    feed = cycle.known_feed(modal.feed) if by_feed else lead if modal.per_rev else lead * modal.rpm / 60.0
+    into, out = (hole.to(z, feed)._replace(tap=True) for z in (hole.bottom, hole.clear))
+    deep = [into, *dwell(seconds(cycle, "DTB")), acting(SpindleRun(-sign * modal.rpm), -sign)]
+    steps = [hole.to(hole.clear), *(step._replace(in_hole=True) for step in deep), out, hole.to(hole.retract)]
+    return cycle.blocks([*steps, *_after(cycle, rest)])
 
 
 def _by_feed(cycle: Cycle) -> bool:

@@ -131,7 +131,7 @@ def starts_of(cycle: Cycle) -> tuple[float, int]:
     starts = cycle.whole("NUMTH" if cycle.line.call == "CYCLE99" else "NUMT", 0, 0, 100) or 1
     first = cycle.number("NSP")
     text = "{name} must be a start angle from 0 to less than 360 degrees"
-    cycle.check(0.0 <= first < 360.0, "NSP", text, "Correct the value.")
+    cycle.check(0.0 <= first < 360.0, "NSP", text)
     return first, starts
 
 

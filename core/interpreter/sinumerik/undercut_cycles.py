@@ -7,7 +7,7 @@ undercut has these sizes whatever the nose radius is.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, cos, radians, sin, tan
+from math import cos, radians, sin, tan
 from typing import NamedTuple
 
 from core.geometry.chamfer_and_rounding import rounding
@@ -16,7 +16,6 @@ from core.geometry.lines_and_arcs import Arc, Element, Line, Point, left_of, shi
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import (
     MACHINING_TYPE,
-    MOST_PASSES,
     NO_FEED,
     RETRACT,
     Cycle,
@@ -94,7 +93,7 @@ def shoulder_undercut(cycle: Cycle) -> Iterator[Block]:
     size = _at_shoulder(cycle, form)
     out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
     place = Place(cycle.needed("SPD") / 2.0, cycle.needed("SPL"), out, side)
-    return cycle.blocks(_cut(cycle, place, size, _feed(cycle.state.modal.feed, cycle), _CLEAR))
+    return cycle.blocks(_cut(cycle, place, size, cycle.known_feed(cycle.state.modal.feed, NO_FEED), _CLEAR))
 
 
 def _at_shoulder(cycle: Cycle, form: str) -> Size:
@@ -129,7 +128,7 @@ def thread_undercut(cycle: Cycle) -> Iterator[Block]:
             "undercuts"
         )
         raise cycle.wrong("FORM", template, "Correct FORM, or use another tool.", WRONG_EDGE, form=form)
-    feed = _feed(cycle.state.modal.feed, cycle)
+    feed = cycle.known_feed(cycle.state.modal.feed, NO_FEED)
     if not inside:
         size = Size(lacks / 2.0, long if form == "A" else short, radius, 30.0)
         place = Place(nominal / 2.0, cycle.needed("SPL"), out, side)
@@ -164,7 +163,7 @@ def undercut(cycle: Cycle) -> Iterator[Block]:
     out, side = position(cycle, _OF_PLACE[cycle.whole("_LAGE", 0, 0, 3)])
     size = _at_shoulder(cycle, form) if form in {"E", "F"} else _behind_thread(cycle, form)
     place = Place(cycle.over_zero("SPD", TOO_SMALL) / 2.0, cycle.needed("SPL"), out, side)
-    clear, feed = cycle.size("_SDIS") or _CLEAR, _feed(cycle.feed("_FFP"), cycle)
+    clear, feed = cycle.size("_SDIS") or _CLEAR, cycle.known_feed(cycle.feed("_FFP"), NO_FEED)
     if form in {"E", "F"}:
         return cycle.blocks(_cut(cycle, place, size, feed, clear))
     return cycle.blocks(_in_passes(cycle, place, size, feed, clear))
@@ -192,10 +191,8 @@ def _in_passes(cycle: Cycle, place: Place, size: Size, feed: float, clear: float
     infeed = cycle.size("_MID") or size.depth
     steps: list[Step] = []
     if kind % 10 != _FINISHES:
-        count = max(ceil((size.depth - up) / infeed - _SAME), 1)
-        if count > MOST_PASSES:
-            text = "{name} would need {count} passes, which is too many"
-            raise cycle.wrong("_MID", text, "Look for a missing decimal point.", count=f"{count:,}")
+        text = "{name} would need {count} passes, which is too many"
+        count = max(cycle.pass_count(size.depth - up, infeed, "_MID", text), 1)
         for k in range(1, count + 1):
             above = up + (size.depth - up) * (count - k) / count
             moved = place._replace(radius=place.radius + place.out * above, shoulder=place.shoulder
@@ -238,19 +235,12 @@ def profile(place: Place, size: Size) -> list[Element]:
     return [Line(begin, foot), Line(foot, low), Line(low, place.point(top, 0.0))]
 
 
-def _feed(feed: float | None, cycle: Cycle) -> float:
-    if feed is None:
-        raise cycle.refused(NO_FEED, "no feedrate is programmed.", "Program F before this block.")
-    return feed
-
-
 def _cut(cycle: Cycle, place: Place, size: Size, feed: float, beside: float) -> list[Step]:
     """Beside the part, down the slope, along and up; ``beside``: how far off the surface that begins, mm."""
     way = _of_tip(cycle, place, _rounded(profile(place, size), size.radius, _nose(cycle, size)))
     clear = place.radius + place.out * beside
     (x0, z0), (_, z1) = way[0].start, way[-1].end
-    steps = [] if place.out * cycle.x >= place.out * clear else [Step(clear, cycle.z)]
-    steps += [Step(clear, z0), Step(x0, z0, feed)]
+    steps = [*cycle.off_part(clear, place.out), Step(clear, z0), Step(x0, z0, feed)]
     for each in way:
         centre, clockwise = (each.centre, each.clockwise) if isinstance(each, Arc) else (None, False)
         steps.append(Step(*each.end, feed, centre, clockwise))
