@@ -5,25 +5,21 @@ A cycle from 200 on reads its Q parameters when it is called, so that one that h
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator, Mapping
 
-from core.geometry.lines_and_arcs import Point
 from core.geometry.rotation_frames import Vector
 from core.interpreter.actions import Dwell
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext import word_values
-from core.interpreter.klartext.circular_slot_cycle import circular_slot
 from core.interpreter.klartext.contour_cycles import CONTOURS, Figures, contour_data, run_contour
 from core.interpreter.klartext.cycle_moves import CycleTool
-from core.interpreter.klartext.finishing_cycles import OLDER_MILLED
 from core.interpreter.klartext.hole_cycles import HOLES
 from core.interpreter.klartext.klartext_state import State
-from core.interpreter.klartext.older_cycles import LAST_LINE, OLDER
+from core.interpreter.klartext.older_cycles import LAST_LINE, OLDER, Told
 from core.interpreter.klartext.plane_functions import plane
 from core.interpreter.klartext.pocket_cycles import MILLED
-from core.interpreter.klartext.point_patterns import points
+from core.interpreter.klartext.point_patterns import in_rows, on_circle, points
 from core.interpreter.klartext.q_functions import value
 from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext.cycle_blocks import contour_labels
@@ -53,14 +49,13 @@ from core.message import Message
 
 _PRESET, _CIRCLE, _ROWS = 247, 220, 221
 _CONTOUR, _CONTOUR_DATA = 14, 20
-_MACHINING = HOLES | MILLED | OLDER_MILLED | {254: circular_slot}
+_MACHINING = HOLES | MILLED
 _SURFACE = 203  # Q203
 _PRESET_NUMBER = 339  # Q339
 _DWELL, _CALL_PROGRAM, _ORIENT, _TILT, _TOLERANCE = 9, 12, 13, 19, 32
 _NO_CYCLE = frozenset({_DWELL, _CALL_PROGRAM, _ORIENT, _CONTOUR, _TILT, _TOLERANCE})
 _AT_ONCE = frozenset({_PRESET, _CIRCLE, _ROWS, _CONTOUR_DATA})
 _TRANSFORMS = frozenset({8, 10, 11})  # mirroring, rotation, scaling
-_MOST_PLACES = 10_000
 _MOST_CONTOURS = 128
 _PROGRAM = re.compile(r"(?:PGM\b|%)\s*", re.IGNORECASE)  # before the name of cycle 12
 _SET_UP = frozenset({"ABST", "DIST", "SETUP", "SET-UP", "SET UP"})  # the distance of cycle 19
@@ -200,7 +195,7 @@ class Cycles:
         if self._number in OLDER:
             self._demand_lines(column)
             tool = CycleTool(self._state, self._number, lambda _: None, column)
-            yield from OLDER[self._number](self._state, tool, self._lines, column)
+            yield from OLDER[self._number](Told(self._state, self._lines, column), tool)
             return
         tool = self._tool(self._number, column)
         if self._number in CONTOURS:
@@ -373,46 +368,9 @@ class Cycles:
             raise self._state.refuse(node.column, CYCLE_MISSING, text, hint, number=node.number)
         surface = tool.length(203, 0.0)
         above = surface + tool.length(204, 0.0) if tool.plain(301, 1.0) else surface + tool.length(200)
-        places = _on_circle(tool) if node.number == _CIRCLE else _in_rows(tool)
+        places = on_circle(tool) if node.number == _CIRCLE else in_rows(tool)
         for index, place in enumerate(places):
             if index == 0 or tool.height < above:
                 yield tool.to(max(above, tool.height))
             yield tool.across(place)
             yield from self.call(node.column)
-
-
-def _on_circle(tool: CycleTool) -> list[Point]:
-    centre, radius = (tool.length(216), tool.length(217)), tool.length(244) / 2.0
-    count, first = _count(tool, 241), tool.plain(245, 0.0)
-    step = tool.plain(247, 0.0)
-    if not step:
-        swept = tool.plain(246, first + 360.0) - first
-        step = swept / count if abs(swept) >= 360.0 or count == 1 else swept / (count - 1)
-    angles = (math.radians(first + step * at) for at in range(count))
-    return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]
-
-
-def _in_rows(tool: CycleTool) -> list[Point]:
-    """Row by row, there and back."""
-    x0, y0 = tool.length(225), tool.length(226)
-    columns, rows = _count(tool, 242), _count(tool, 243)
-    angle = math.radians(tool.plain(224, 0.0))
-    found = []
-    for row in range(rows):
-        order = range(columns) if row % 2 == 0 else range(columns - 1, -1, -1)
-        for column in order:
-            u, v = column * tool.length(237), row * tool.length(238)
-            found.append(
-                (
-                    x0 + u * math.cos(angle) - v * math.sin(angle),
-                    y0 + u * math.sin(angle) + v * math.cos(angle),
-                )
-            )
-    return found
-
-
-def _count(tool: CycleTool, q: int) -> int:
-    count = int(tool.plain(q))
-    text = "Q{parameter}={count} is not a valid number of positions."
-    tool.check(1 <= count <= _MOST_PLACES, text, "Enter a valid number.", parameter=q, count=count)
-    return count

@@ -1,4 +1,4 @@
-"""Cycles that mill pockets, slots and studs (251, 252, 253, 256, 257): level by level, walls and floor last.
+"""Cycles that mill pockets, slots and studs (210 to 215, 251 to 257): level by level, walls and floor last.
 
 Pockets are cleared from the inside out, studs from the blank inwards. The way is this control's own; what is
 left standing is what the parameters say. A ramp goes down by 3 degrees: the tool table tells no other angle.
@@ -9,15 +9,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 
-from core.geometry.lines_and_arcs import Arc
+from core.geometry.lines_and_arcs import Arc, Point
+from core.geometry.pocket_area import Loop
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.klartext.cycle_moves import CycleTool
+from core.interpreter.klartext.contour_cycles import floor_finishing, rough_out, side_finishing
+from core.interpreter.klartext.cycle_moves import CycleTool, Parameters
 from core.interpreter.klartext.hole_cycles import SMALLEST, heights, infeeds, levels, out
 from core.interpreter.klartext.milled_rings import Ring, Seat
+from core.language.klartext.q_parameters import MAX_FEED
 
 _RAMP = math.tan(math.radians(3.0))
 _MOST_OVERLAP = 1.9999
 _BOTH, _ROUGH, _FINISH = 0, 1, 2
+_MOST_SLOTS = 1_000
+_CENTRE, _LEFT_END, _MIDDLE, _RIGHT_END = range(4)
 
 
 class _Milling:
@@ -260,10 +265,128 @@ def _around(told: _Milling, seat: Seat, ring: Ring, feed: float) -> Iterator[Blo
     yield from _round_once(told, seat, ring, -tool.radius, feed)
 
 
-MILLED: dict[int, Callable[[CycleTool], Iterator[Block]]] = {
+# --- circular slots: areas with a boundary of their own, cleared by the rings of the SL cycles
+
+
+def circular_slot(tool: CycleTool) -> Iterator[Block]:
+    """254: Q219 wide on the circle Q375, from Q376 over Q248 degrees, Q377 times Q378 degrees on."""
+    surface, clear, _ = heights(tool)
+    safe = max(surface + tool.length(204, 0.0), clear) / tool.scale
+    centre, begin, sweep = _slot_place(tool)
+    count, step = int(tool.plain(377, 1.0)), tool.plain(378, 0.0)
+    text = "Q377={count} is not a valid number of slots."
+    tool.check(1 <= count <= _MOST_SLOTS, text, "Enter a valid number.", count=count)
+    scope = int(tool.plain(215, 0.0))
+    side, floor = tool.length(368, 0.0), tool.length(369, 0.0)
+    for at in range(count):
+        area = [slot_of(tool, centre, begin + at * step, sweep)]
+        asked = tool.seen({**_AS_CONTOUR, 7: safe, 19: 206 if tool.plain(366, 1.0) else 0.0})
+        if scope != _FINISH:
+            yield from rough_out(asked, area)
+        if scope == _FINISH or (scope == _BOTH and max(side, floor) > SMALLEST):
+            last = tool.seen({**_AS_CONTOUR, 3: 0.0, 4: 0.0, 7: safe, **_finishing(tool)})
+            if floor > SMALLEST:
+                yield from floor_finishing(last, area)
+            yield from side_finishing(last, area)
+
+
+def slot_of(tool: CycleTool, centre: Point, begin: float, sweep: float) -> Loop:
+    """The outline of one slot, counter-clockwise. Raises ProgramError for one that is none."""
+    radius, half = tool.length(375) / 2.0, tool.length(219) / 2.0
+    if not SMALLEST < half < radius or not 0.0 < abs(sweep) <= 360.0:
+        text = (
+            "A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible."
+        )
+        raise tool.refuse(text, "Correct Q219, Q248 and Q375.", half=2 * half, sweep=sweep, radius=2 * radius)
+    if radius * math.radians(360.0 - abs(sweep)) < 2.0 * half:
+        raise tool.refuse("The ends of the slot overlap.", "Reduce Q248.")
+    first, last = sorted((begin, begin + sweep))
+
+    def at(angle: float, away: float) -> Point:
+        turned = math.radians(angle)
+        return centre[0] + away * math.cos(turned), centre[1] + away * math.sin(turned)
+
+    wide, near = radius + half, radius - half
+    return [
+        Arc(at(first, wide), at(last, wide), centre, False),
+        Arc(at(last, wide), at(last, near), at(last, radius), False),
+        Arc(at(last, near), at(first, near), centre, True),
+        Arc(at(first, near), at(first, wide), at(first, radius), False),
+    ]
+
+
+def _slot_place(tool: CycleTool) -> tuple[Point, float, float]:
+    """Centre, begin and sweep: as told, or from the tool, which stands at an end or in the middle (Q367)."""
+    begin, sweep, radius = tool.plain(376), tool.plain(248), tool.length(375) / 2.0
+    place = int(tool.plain(367, 0.0))
+    share = {_LEFT_END: 0.0, _MIDDLE: 0.5, _RIGHT_END: 1.0}.get(place)
+    if share is None:
+        tool.check(place == _CENTRE, "Q367 must be 0, 1, 2 or 3.", "Correct Q367.")
+        return (tool.length(216), tool.length(217)), begin, sweep
+    turned = math.radians(begin)  # Q376 is the angle of the place where the tool stands
+    x, y = tool.here
+    return (x - radius * math.cos(turned), y - radius * math.sin(turned)), begin - share * sweep, sweep
+
+
+# A slot's parameters by the numbers of the SL cycles; what those have beyond is 0 or as they take it.
+_AS_CONTOUR: Parameters = {
+    1: 201, 2: 370, 3: 368, 4: 369, 5: 203, 6: 200, 9: 351, 10: 202, 11: 206, 12: 207, 14: 0.0,
+    18: 0.0, 208: MAX_FEED, 401: 100.0,
+}  # fmt: skip
+
+
+def _finishing(tool: CycleTool) -> Parameters:
+    """Finishing at Q385 in infeeds of Q338, at once where that is 0."""
+    feed: Parameters = {12: 385} if tool.plain(385, 0.0) else {}
+    return {**feed, 10: 338 if tool.plain(338, 0.0) else -1e9}
+
+
+# --- older cycles: round a centre of their own (Q216, Q217), as others with these parameters
+
+
+Milling = Callable[[CycleTool], Iterator[Block]]
+
+_HEIGHTS: Parameters = {200: 200, 201: 201, 203: 203, 204: 204}
+_SLOT: Parameters = {**_HEIGHTS, 202: 202, 206: 207, 207: 207, 215: 215, 219: 219, 338: 338, 366: 1.0}
+_WALLS: Parameters = {**_HEIGHTS, 202: 202, 206: 206, 207: 207, 215: 2.0, 338: 202}
+
+
+def _centred(milling: Milling, parameters: Parameters) -> Milling:
+    """A cycle round Q216 Q217, as another one with these parameters."""
+
+    def run(tool: CycleTool) -> Iterator[Block]:
+        surface, clear, _ = heights(tool)
+        yield tool.to(max(clear, surface + tool.length(204, 0.0), tool.height))
+        yield tool.across((tool.length(216), tool.length(217)))
+        yield from milling(tool.seen(parameters))
+
+    return run
+
+
+def _round_corners(tool: CycleTool) -> Iterator[Block]:
+    """212: corners of the tool's radius where Q220 tells none."""
+    radius = tool.length(220, 0.0) or tool.radius
+    yield from _centred(rectangular_pocket, {**_WALLS, 218: 218, 219: 219, 220: radius / tool.scale})(tool)
+
+
+def _older_stud(tool: CycleTool) -> Iterator[Block]:
+    """213: the blank stands out by Q221, or by as much as the tool is wide."""
+    more = 2.0 * (tool.plain(221, 0.0) or tool.radius / tool.scale)
+    sides = {424: tool.plain(218) + more, 425: tool.plain(219) + more}
+    yield from _centred(rectangular_stud, {**_WALLS, 218: 218, 219: 219, 220: 220, **sides})(tool)
+
+
+MILLED: dict[int, Milling] = {
+    210: _centred(slot, {**_SLOT, 218: 218, 374: 224}),
+    211: _centred(circular_slot, {**_SLOT, 216: 216, 217: 217, 375: 244, 376: 245, 248: 248}),
+    212: _round_corners,
+    213: _older_stud,
+    214: _centred(circular_pocket, {**_WALLS, 223: 223}),
+    215: _centred(circular_stud, {**_WALLS, 222: 222, 223: 223}),
     251: rectangular_pocket,
     252: circular_pocket,
     253: slot,
+    254: circular_slot,
     256: rectangular_stud,
     257: circular_stud,
 }

@@ -16,8 +16,7 @@ from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.stock_removal import stock_removal
 from core.interpreter.sinumerik.subprogram_flow import Flow
 from core.interpreter.sinumerik.tapping_cycles import compensating, rigid
-from core.interpreter.sinumerik.thread_chain_cycle import thread_chain
-from core.interpreter.sinumerik.thread_cycle import thread_cycle
+from core.interpreter.sinumerik.thread_cycle import thread_chain, thread_cycle
 from core.interpreter.sinumerik.undercut_cycles import shoulder_undercut, thread_undercut, undercut
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.sinumerik_words import Line

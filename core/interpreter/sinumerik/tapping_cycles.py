@@ -17,7 +17,7 @@ from core.interpreter.sinumerik.linear_moves import block_of, travel_of
 from core.interpreter.sinumerik.sinumerik_state import Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.interpreter.sinumerik.spindle_and_dwell import demand_spindle_as_c
-from core.interpreter.sinumerik.thread_cycle import COARSE_LEADS, WRONG_LEAD
+from core.interpreter.sinumerik.thread_cycle import WRONG_LEAD, check_lead, coarse_lead
 
 _SAME = 1e-6  # mm
 _INCH = 25.4
@@ -34,9 +34,8 @@ def lead_of_tap(cycle: Cycle) -> float:
         return _INCH / pit if unit == 2 else pit * (_INCH if in_inches else 1.0)
     if not size:
         return 0.0
-    lead = COARSE_LEADS.get(round(abs(size)), 0.0) if size == round(size) else 0.0
-    text = "{name} does not define a lead"
-    cycle.check(lead, "MPIT", text, "Enter PIT, or MPIT from 3 to 68 for M3 to M68.", WRONG_LEAD)
+    lead = coarse_lead(size)
+    check_lead(cycle, lead, "MPIT")
     return copysign(lead, size)
 
 
@@ -48,8 +47,7 @@ def rigid(cycle: Cycle) -> Iterator[Block]:
     hole, state = hole_of(cycle), cycle.state
     demand_spindle_as_c(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
     lead = lead_of_tap(cycle)
-    text = "{name} does not define a lead"
-    cycle.check(lead, "PIT", text, "Enter PIT, or MPIT from 3 to 68 for M3 to M68.", WRONG_LEAD)
+    check_lead(cycle, lead, "PIT")
     into = _speed(cycle, "SST", state.modal.rpm)
     out = _speed(cycle, "SST1", into)
     rest = cycle.whole("SDAC", 5, 3, 5)
