@@ -18494,36 +18494,6 @@
       <translation>Este salto se repite sin fin porque el bucle no cambia nada que influya en un salto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible.</source>
-      <translation>Una ranura de {half} mm de ancho sobre {sweep} grados en un círculo de {radius} mm de diámetro no es posible.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>Correct Q219, Q248 and Q375.</source>
-      <translation>Corrija Q219, Q248 y Q375.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>Enter a valid number.</source>
-      <translation>Indique un número válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>Q367 must be 0, 1, 2 or 3.</source>
-      <translation>Q367 debe ser 0, 1, 2 o 3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>Q377={count} is not a valid number of slots.</source>
-      <translation>Q377={count} no es un número de ranuras válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>The ends of the slot overlap.</source>
-      <translation>Los extremos de la ranura se solapan.</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/klartext/contour_cycles.py" />
       <source>Add path functions to the contour.</source>
       <translation>Agregue funciones de trayectoria al contorno.</translation>
@@ -18957,11 +18927,6 @@
       <location filename="core/interpreter/klartext/cycles.py" />
       <source>Preset {number} rotates the workpiece and cannot be activated while a tilted plane is active.</source>
       <translation>El preset {number} gira la pieza y no se puede activar con un plano inclinado activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
-      <source>Q{parameter}={count} is not a valid number of positions.</source>
-      <translation>Q{parameter}={count} no es un número de posiciones válido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -19870,8 +19835,18 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible.</source>
+      <translation>Una ranura de {half} mm de ancho sobre {sweep} grados en un círculo de {radius} mm de diámetro no es posible.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
       <source>Correct Q218 and Q219.</source>
       <translation>Corrija Q218 y Q219.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Correct Q219, Q248 and Q375.</source>
+      <translation>Corrija Q219, Q248 y Q375.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
@@ -19880,8 +19855,23 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Enter a valid number.</source>
+      <translation>Indique un número válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Q367 must be 0, 1, 2 or 3.</source>
+      <translation>Q367 debe ser 0, 1, 2 o 3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
       <source>Q367 must be 0, 1, 2, 3 or 4.</source>
       <translation>Q367 debe ser 0, 1, 2, 3 o 4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Q377={count} is not a valid number of slots.</source>
+      <translation>Q377={count} no es un número de ranuras válido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
@@ -19897,6 +19887,11 @@
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
       <source>The blank is not larger than the stud.</source>
       <translation>El bruto no es mayor que la isla.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>The ends of the slot overlap.</source>
+      <translation>Los extremos de la ranura se solapan.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
@@ -19917,6 +19912,11 @@
       <location filename="core/interpreter/klartext/point_patterns.py" />
       <source>Enter a whole number of 1 or more.</source>
       <translation>Indique un número entero de 1 o más.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/point_patterns.py" />
+      <source>Q{parameter}={count} is not a valid number of positions.</source>
+      <translation>Q{parameter}={count} no es un número de posiciones válido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/point_patterns.py" />
@@ -21774,46 +21774,6 @@
       <translation>la línea {position} depende de una entrada, y se desconoce el estado de esa entrada.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>Correct the sign of RPAP.</source>
-      <translation>Corrija el signo de RPAP.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>Enter the spindle direction.</source>
-      <translation>Indique el sentido de giro del husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>Write G97 with S before this block.</source>
-      <translation>Escriba G97 con S antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>this lathe has no Y axis</source>
-      <translation>este torno no tiene eje Y</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>{call} needs S in rpm.</source>
-      <translation>{call} necesita S en rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>{name} must be 3 or 4</source>
-      <translation>{name} debe ser 3 o 4</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>{name} must be an angle from 0 to less than 360 degrees</source>
-      <translation>{name} debe ser un ángulo de 0 a menos de 360 grados</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>{name} would move the tool deeper into the hole</source>
-      <translation>{name} llevaría la herramienta más adentro del agujero</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
       <source>Program a different end point.</source>
       <translation>Programe un punto final distinto.</translation>
@@ -21995,6 +21955,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Program F before this block.</source>
+      <translation>Programe F antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>Remove the sign.</source>
       <translation>Quite el signo.</translation>
     </message>
@@ -22010,6 +21975,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Write T and D before this block.</source>
+      <translation>Escriba T y D antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>Write TRAFOOF before this block.</source>
       <translation>Escriba TRAFOOF antes de este bloque.</translation>
     </message>
@@ -22017,6 +21987,11 @@
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>Write TRANS without axes before this block.</source>
       <translation>Escriba TRANS sin ejes antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>no feedrate is programmed.</source>
+      <translation>no hay avance programado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
@@ -22032,6 +22007,11 @@
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>{call} moves along Z, but {plane} is active.</source>
       <translation>{call} se mueve a lo largo de Z, pero {plane} está activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>{call} needs an active tool with an offset.</source>
+      <translation>{call} necesita una herramienta activa con corrector.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
@@ -22090,6 +22070,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Correct the sign of RPAP.</source>
+      <translation>Corrija el signo de RPAP.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>DP and DPR differ, so DP is used.</source>
       <translation>DP y DPR difieren, así que se usa DP.</translation>
     </message>
@@ -22110,6 +22095,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Enter the spindle direction.</source>
+      <translation>Indique el sentido de giro del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>Omit DP or DPR.</source>
       <translation>Omita DP o DPR.</translation>
     </message>
@@ -22120,23 +22110,28 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
-      <source>Program F before this block.</source>
-      <translation>Programe F antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>Write G17 before this block and G18 after it.</source>
       <translation>Escriba G17 antes de este bloque y G18 después.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
-      <source>no feedrate is programmed.</source>
-      <translation>no hay avance programado.</translation>
+      <source>Write G97 with S before this block.</source>
+      <translation>Escriba G97 con S antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>this lathe has no Y axis</source>
+      <translation>este torno no tiene eje Y</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>{call} drills perpendicular to plane G{plane}; drilling along Z needs G17.</source>
       <translation>{call} taladra perpendicular al plano G{plane}; taladrar a lo largo de Z necesita G17.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>{call} needs S in rpm.</source>
+      <translation>{call} necesita S en rpm.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
@@ -22165,6 +22160,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>{name} must be 3 or 4</source>
+      <translation>{name} debe ser 3 o 4</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>{name} must be a factor from 0.001 to 1</source>
       <translation>{name} debe ser un factor de 0.001 a 1</translation>
     </message>
@@ -22175,8 +22175,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>{name} must be an angle from 0 to less than 360 degrees</source>
+      <translation>{name} debe ser un ángulo de 0 a menos de 360 grados</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>{name} selects an axis other than Z, which is not supported</source>
       <translation>{name} selecciona un eje distinto de Z, lo que no se admite</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>{name} would move the tool deeper into the hole</source>
+      <translation>{name} llevaría la herramienta más adentro del agujero</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/fixed_points.py" />
@@ -22285,11 +22295,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
-      <source>Write T and D before this block.</source>
-      <translation>Escriba T y D antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>program a groove on a taper as a CYCLE95 contour</source>
       <translation>programe una ranura en un cono como contorno de CYCLE95</translation>
     </message>
@@ -22302,11 +22307,6 @@
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>{call} assumes a tool {width} mm wide because {key} is not set.</source>
       <translation>{call} supone una herramienta de {width} mm de ancho porque {key} no está puesto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
-      <source>{call} needs an active tool with an offset.</source>
-      <translation>{call} necesita una herramienta activa con corrector.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
@@ -23600,11 +23600,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
-      <source>Enter PIT, or MPIT from 3 to 68 for M3 to M68.</source>
-      <translation>Indique PIT, o MPIT de 3 a 68 para M3 a M68.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
       <source>Enter Z of the end point.</source>
       <translation>Indique la Z del punto final.</translation>
     </message>
@@ -23714,11 +23709,6 @@
       <translation>{value} no es una posición válida de un eje módulo; las posiciones válidas van de 0 a menos de 360</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_chain_cycle.py" />
-      <source>{name} does not continue the thread in the same Z direction</source>
-      <translation>{name} no continúa la rosca en la misma dirección Z</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
       <source>CYCLE99 supports only the functions of CYCLE97</source>
       <translation>CYCLE99 admite sólo las funciones de CYCLE97</translation>
@@ -23727,6 +23717,11 @@
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
       <source>Correct SPL or FPL.</source>
       <translation>Corrija SPL o FPL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>Enter PIT, or MPIT from 3 to 68 for M3 to M68.</source>
+      <translation>Indique PIT, o MPIT de 3 a 68 para M3 a M68.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
@@ -23752,6 +23747,11 @@
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
       <source>Reduce FAL.</source>
       <translation>Reduzca FAL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>{name} does not continue the thread in the same Z direction</source>
+      <translation>{name} no continúa la rosca en la misma dirección Z</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />

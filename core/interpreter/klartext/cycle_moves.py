@@ -16,7 +16,6 @@ from core.interpreter.klartext.tool_call import radius_of
 from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, WRONG_RPM
 from core.language.klartext.q_parameters import MAX_FEED, TOOL_FEED
-from core.message import Message
 
 _TURN = 360.0
 UNORIENTED = "the spindle of this machine cannot be oriented"
@@ -128,8 +127,8 @@ class CycleTool:
         self._tell(Severity.NOTE, "cycle-otherwise", "Cycle {number}: {what}", what=text)
 
     def _tell(self, severity: Severity, code: str, text: str, hint: str = "", /, **values: object) -> None:
-        said = Message(text, number=self._number, **values)
-        self._state.tell_once(self._column, severity, code, said, hint)
+        values = {"number": self._number, **values}
+        self._state.tell_once(self._column, severity, code, text, hint, **values)
 
     @property
     def point_angle(self) -> float:

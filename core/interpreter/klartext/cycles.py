@@ -119,11 +119,8 @@ class Cycles:
     def _not_supported(self, node: Cycle | CycleLine) -> ProgramError:
         """The error of a cycle that is refused by its number, to be raised."""
         kind = _ON_CYLINDER.get(node.number)
-        name = Message(
-            "CYCL DEF {number}{kind}",
-            number=node.number,
-            kind=Message(" (cylinder surface, {kind})", kind=kind) if kind else "",
-        )
+        told = Message(" (cylinder surface, {kind})", kind=kind) if kind else ""
+        name = Message("CYCL DEF {number}{kind}", number=node.number, kind=told)
         return unsupported(self._state.line, node.column, name, INSTEAD_OF_CYCLE.get(node.number, ""))
 
     def _begin(self, number: int) -> None:
@@ -155,12 +152,9 @@ class Cycles:
         if found is not None:
             state.kinematics = state.kinematics.with_preset(found)
         elif number:
-            text = Message(
-                "This machine has no preset table, so preset {number} uses the zero from the machine file.",
-                number=f"{number:g}",
-            )
+            text = "This machine has no preset table, so preset {number} uses the zero from the machine file."
             hint = "Set the preset on the PRESETS page."
-            state.tell_once(column, Severity.WARNING, "preset", text, hint)
+            state.tell_once(column, Severity.WARNING, "preset", text, hint, number=number)
         state.preset()
 
     def line(self, node: CycleLine) -> Iterator[Block]:
@@ -284,12 +278,8 @@ class Cycles:
     def _tilted(self, node: CycleLine) -> Plane:
         """Cycle 19 as a PLANE: spatial angles, without which it ends; nothing moves. Raises ProgramError."""
         if node.text and node.text.upper() not in _SET_UP:
-            raise syntax(
-                self._state.line,
-                node.column,
-                Message("{node} is not an axis.", node=node.text),
-                "Use only A, B and C in cycle 19.",
-            )
+            text = Message("{node} is not an axis.", node=node.text)
+            raise syntax(self._state.line, node.column, text, "Use only A, B and C in cycle 19.")
         if not node.words:
             return Plane("RESET", (), Positioning("STAY"), node.column)
         named = {word.axis: word for word in node.words}
@@ -336,11 +326,8 @@ class Cycles:
             yield from self.call(node.column)
         tool = self._tool(self._number, node.column)
         if self._number not in _MACHINING:
-            raise unsupported(
-                self._state.line,
-                node.column,
-                Message("CYCL CALL POS with cycle {number}", number=self._number),
-            )
+            what = Message("CYCL CALL POS with cycle {number}", number=self._number)
+            raise unsupported(self._state.line, node.column, what)
         x, y = tool.here
         for word in node.axes:
             at = word_values.coordinate(self._state, word)

@@ -214,11 +214,14 @@ class State:
         """An error of a formula, which may rest on such a place."""
         return ProgramError(resting_on(error.diagnostic, AT_THE_STOP)) if self.place_assumed else error
 
-    def tell_once(self, column: int, severity: Severity, code: str, text: str, hint: str = "") -> None:
+    def tell_once(
+        self, column: int, severity: Severity, code: str, text: str, hint: str = "", /, **values: object
+    ) -> None:
         """A finding that is the same wherever it stands: told at its first place."""
+        text = worded(text, values)
         if text not in self.reported:
             self.reported.add(text)
-            self.log.add(Diagnostic(self.line, column, severity, code, text, hint))
+            self.log.add(Diagnostic(self.line, column, severity, code, text, worded(hint, values)))
 
     def unheeded(self, what: str, column: int) -> None:
         """Tell that something steers nothing here."""

@@ -74,25 +74,17 @@ class Cycle:
     def _by_name(self) -> dict[str, Argument]:
         names, arguments = CYCLES[self.line.call], self.line.arguments or ()
         if len(arguments) > len(names):
-            text = Message(
-                "{call} accepts {names_count} parameters, but the call passes {arguments_count}.",
-                call=self.line.call,
-                names_count=len(names),
-                arguments_count=len(arguments),
-            )
-            raise self._fault(
-                arguments[len(names)].column,
-                TOO_MANY,
-                text,
-                Message("Use only these parameters: {names}.", names=", ".join(names)),
-            )
+            text = "{call} accepts {names_count} parameters, but the call passes {arguments_count}."
+            told = {"call": self.line.call, "names_count": len(names), "arguments_count": len(arguments)}
+            hint = Message("Use only these parameters: {names}.", names=", ".join(names))
+            raise self._fault(arguments[len(names)].column, TOO_MANY, Message(text, **told), hint)
         return {name: each for name, each in zip(names, arguments, strict=False) if each.given}
 
     def _check(self) -> None:
         """Raises ProgramError where no cycle can run: the frame is turned, or compensation is on."""
         text = "{call} cannot run in a frame that is rotated, scaled or mirrored."
         hint = "Write TRANS without axes before this block."
-        self.require(self.state.programmed.plain, "cycle-frame", text, hint, call=self.line.call)
+        self.require(self.state.programmed.plain, "cycle-frame", text, hint)
         plane = self.state.transformation
         if plane is not None and (self.line.call not in _LIVE or not plane.along_z):
             template = (
@@ -101,11 +93,10 @@ class Cycle:
                 else "{call} moves along Z, but {plane} is active."
             )
             hint = "Write TRAFOOF before this block."
-            raise self.refused("transformation", template, hint, call=self.line.call, plane=plane.name)
-        if self.state.modal.nose_comp != 40:
-            text = "{what} is not allowed while G{state} is active."
-            hint = "Write G40 and a move before this block."
-            raise self.refused("comp-with", text, hint, what=self.line.call, state=self.state.modal.nose_comp)
+            raise self.refused("transformation", template, hint, plane=plane.name)
+        text, on = "{what} is not allowed while G{state} is active.", self.state.modal.nose_comp
+        hint = "Write G40 and a move before this block."
+        self.require(on == 40, "comp-with", text, hint, what=self.line.call, state=on)
 
     def given(self, name: str) -> bool:
         """Whether the call hands this parameter over."""

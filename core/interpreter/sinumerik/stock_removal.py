@@ -26,7 +26,6 @@ from core.interpreter.contour_passes import (
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_contour import WRONG_CONTOUR
 from core.interpreter.sinumerik.cycle_parameters import MACHINING_TYPE, RETRACT, Cycle, Step, dwell
-from core.message import Message
 from core.tool_edges import TIP_DIRECTIONS
 
 NO_INFEED = 61610
@@ -48,13 +47,11 @@ def kind_of(cycle: Cycle) -> Kind:
     value = cycle.number("VARI", -1.0)
     number = round(value) % _ROUNDING
     if value != round(value) or value < 1 or number not in range(1, 13) or value > _ROUNDING + 12:
-        told = (
-            Message("{name} is {value}; valid types are 1 to 12", value=f"{value:g}", name="VARI")
-            if cycle.given("VARI")
-            else ("{name} is missing; valid types are 1 to 12")
-        )
+        wrong = "{name} is {value}; valid types are 1 to 12"
+        missing = "{name} is missing; valid types are 1 to 12"
         hint = "Enter 1 for roughing, 5 for finishing or 9 for both, for external machining along Z."
-        raise cycle.wrong("VARI", told, hint, MACHINING_TYPE)
+        text = wrong if cycle.given("VARI") else missing
+        raise cycle.wrong("VARI", text, hint, MACHINING_TYPE, value=value)
     rest = (number - 1) % 4
     return Kind(rest % 2 == 1, rest >= 2, number <= 4 or number >= 9, number >= 5)
 
