@@ -235,11 +235,9 @@ def switch(state: State, statement: Statement, code: int, *, called: bool) -> Co
     if code == 40 and on == 40:
         return None
     check_when(state, statement, G_CODES[code])
-    if called:
-        text = Message("G{code} is not allowed in a subroutine.", code=code)
-        raise statement.refuse(
-            1, "comp-subroutine", text, "Write the compensated contour in the main program."
-        )
+    text = "G{code} is not allowed in a subroutine."
+    hint = "Write the compensated contour in the main program."
+    statement.check(not called, 1, "comp-subroutine", text, hint, code=code)
     state.adopt(state.modal._replace(nose_comp=code))
     state.contour.approach = 0 if code == 40 else statement.line
     state.contour.active, state.fast = True, False
@@ -252,39 +250,24 @@ def check_under_nose(state: State, statement: Statement) -> None:
     if on == 40:
         return
     if statement.ends_program:
-        text = Message("The program ends while G{state} is active.", state=on)
-        raise statement.refuse(
-            1, "comp-open", text, "Move off the part, and write G40 before the end of the program."
-        )
+        hint = "Move off the part, and write G40 before the end of the program."
+        raise statement.refuse(1, "comp-open", "The program ends while G{state} is active.", hint, state=on)
     if statement.flow and statement.flow not in FLOW_CODES:
-        raise statement.refuse(
-            1,
-            "comp-with",
-            Message(
-                "The plane commands (~PLXC) and (~PLZC) are not allowed while G{state} is active.", state=on
-            ),
-            "Write G40 before this line.",
-        )
-    if statement.calls:
-        text = Message("A subroutine cannot be called while G{state} is active.", state=on)
-        raise statement.refuse(
-            1, "comp-subroutine", text, "Write the compensated contour in the main program."
-        )
+        text = "The plane commands (~PLXC) and (~PLZC) are not allowed while G{state} is active."
+        raise statement.refuse(1, "comp-with", text, "Write G40 before this line.", state=on)
+    text = "A subroutine cannot be called while G{state} is active."
+    hint = "Write the compensated contour in the main program."
+    statement.check(not statement.calls, 1, "comp-subroutine", text, hint, state=on)
     refused = statement.one_shot is not None and not statement.entry.under_nose
     if refused or statement.locks or _TURNS_C & statement.words.keys():
         word = statement.code or statement.m_word
         what = word.text if word is not None else "C"
-        raise statement.refuse(
-            1,
-            "comp-with",
-            Message("{what} is not allowed while G{state} is active.", what=what, state=on),
-            "Write G40 before this line.",
-        )
+        text = "{what} is not allowed while G{state} is active."
+        raise statement.refuse(1, "comp-with", text, "Write G40 before this line.", what=what, state=on)
     other = statement.value("D") not in {None, state.modal.secondary}
     if other and "T" not in statement.words and not state.contour.approach:
-        text = Message("D cannot change while G{state} is active.", state=on)
         hint = "Write D only on the first move after G41 or G42."
-        raise statement.refuse("D", "comp-d", text, hint)
+        raise statement.refuse("D", "comp-d", "D cannot change while G{state} is active.", hint, state=on)
 
 
 def check_approach(state: State, block: Block) -> None:
@@ -313,12 +296,12 @@ def check_approach(state: State, block: Block) -> None:
             block, "comp-radius", text, "Enter the nose radius without a sign; G41 and G42 set the side."
         )
     if not radius:
-        text = Message(
-            "R of D{secondary} is 0, so G{state} does not compensate.",
-            secondary=state.modal.secondary,
-            state=on,
+        template = "R of D{secondary} is 0, so G{state} does not compensate."
+        hint, told = (
+            "Enter the nose radius in the offset table.",
+            {"secondary": state.modal.secondary, "state": on},
         )
-        state.log.warn(block.line, 0, "comp-no-radius", text, "Enter the nose radius in the offset table.")
+        state.log.warn(block.line, 0, "comp-no-radius", template, hint, **told)
 
 
 def nose_radius(state: State) -> float:
