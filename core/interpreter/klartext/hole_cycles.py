@@ -222,7 +222,7 @@ def bore_milling(tool: CycleTool) -> Iterator[Block]:
     x, y = tool.here
     pitch = tool.length(334)
     text = "The tool, infeed or feed rate of cycle 208 is not valid for the hole."
-    tool.check(way >= 0.0 and pitch > 0.0 and (feed > 0.0), text, "Correct the entries named in the message.")
+    tool.check(way >= 0.0 and pitch > 0.0 and feed > 0.0, text, "Correct the entries named in the message.")
     yield tool.to(clear)
     if way < SMALLEST:
         yield tool.to(bottom, feed)

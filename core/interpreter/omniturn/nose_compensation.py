@@ -20,7 +20,7 @@ from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Item, State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import ProgramError, program_error
-from core.message import Message
+from core.message import Message, worded
 
 # --- approach and departure: far enough from the part, and clear of it
 
@@ -39,9 +39,9 @@ class ApproachOrDeparture(NamedTuple):
         """What messages call it."""
         return "departure" if self.departs else "approach"
 
-    def refused(self, why: str, text: str, hint: str) -> ProgramError:
+    def refused(self, why: str, text: str, hint: str, /, **values: object) -> ProgramError:
         """The error to raise for this approach or departure; ``why`` ends the diagnostic's code."""
-        return _refused(self.block, f"comp-{self.name}{why}", text, hint)
+        return _refused(self.block, f"comp-{self.name}{why}", text, hint, **values)
 
     def check(self, way: Line, free: Point, corner: Point, log: Log) -> None:
         """Off the part it must begin or end R or more from it, better 2R: else a warning; and never cut it.
@@ -49,22 +49,19 @@ class ApproachOrDeparture(NamedTuple):
         ``free`` is that end as programmed, ``corner`` where the contour begins or ends. Raises ProgramError.
         """
         if dist(free, corner) < self.radius - SAME_POINT:
-            text = Message(
+            raise self.refused(
+                "-short",
                 "The {lead} move is {length} long, which is less than the nose radius of {nose}.",
+                "Move farther away from the part.",
                 lead=self.name,
                 length=self.block.modal.length_text(dist(free, corner)),
                 nose=self.block.modal.length_text(self.radius),
             )
-            raise self.refused("-short", text, "Move farther away from the part.")
         self._check_distance(min(distance(element, free) for element in self.contour), log)
         if cuts_in(way, self.contour, self.radius):
-            text = Message(
-                "With G{code}, the tool nose cuts into the part during the {lead}.",
-                code=self.code,
-                lead=self.name,
-            )
-            template = "Choose a different path for the {lead}, or switch between G41 and G42."
-            raise _refused(self.block, "comp-gouge", text, Message(template, lead=self.name))
+            text = "With G{code}, the tool nose cuts into the part during the {lead}."
+            hint = "Choose a different path for the {lead}, or switch between G41 and G42."
+            raise _refused(self.block, "comp-gouge", text, hint, code=self.code, lead=self.name)
 
     def _check_distance(self, off: float, log: Log) -> None:
         if off >= 2 * self.radius - SAME_POINT:
@@ -120,11 +117,9 @@ class _Contour(ContourStage):
     def close(self) -> Iterator[Block]:
         """G40: the last move departs. Raises ProgramError."""
         if not self.count:
-            text = Message(
-                "{name} has no contour move between its approach and its departure.", name=self._mark.name
-            )
+            text = "{name} has no contour move between its approach and its departure."
             hint = "Write the contour between the approach and the departure."
-            raise _refused(self.last.block, "comp-empty", text, hint)
+            raise _refused(self.last.block, "comp-empty", text, hint, name=self._mark.name)
         pieces = self._rest()
         way = Line(pieces[-1].element.end, (self.last.block.x, self.last.block.z))
         self._check_departure(way)  # before anything that was held comes out
@@ -197,8 +192,8 @@ class Compensation:
             else:
                 contour.last.after.append(item)
         elif item.kind not in FOLLOWED or item.c != item.c0:
-            text = Message("{name} cannot compensate this move.", name=mark.name)
-            raise _refused(item, "comp-with", text, "Write G40 before this line.")
+            text = "{name} cannot compensate this move."
+            raise _refused(item, "comp-with", text, "Write G40 before this line.", name=mark.name)
         elif contour is None:
             self._contour = _Contour(self._moves, self._log, mark, item, self.radius)
         else:
@@ -210,8 +205,8 @@ class Compensation:
         self.drop()
 
 
-def _refused(block: Block, code: str, text: str, hint: str) -> ProgramError:
-    return program_error(block.line, 0, code, text, hint)
+def _refused(block: Block, code: str, text: str, hint: str, /, **values: object) -> ProgramError:
+    return program_error(block.line, 0, code, worded(text, values), worded(hint, values))
 
 
 # --- words: where they may stand, and what may not stand under them
@@ -277,24 +272,18 @@ def check_approach(state: State, block: Block) -> None:
         return
     on = state.modal.nose_comp
     if block.kind not in STRAIGHT:
-        text = Message(
-            "The first move after G{state} on line {line} is not a straight line.", state=on, line=line
-        )
-        raise _refused(block, "comp-approach", text, "Program the approach as a straight line with D.")
+        text = "The first move after G{state} on line {line} is not a straight line."
+        hint = "Program the approach as a straight line with D."
+        raise _refused(block, "comp-approach", text, hint, state=on, line=line)
     if state.contour.d_line != block.line or not state.modal.secondary:
-        text = Message("The first move after G{state} on line {line} has no D.", state=on, line=line)
-        raise _refused(
-            block,
-            "comp-approach",
-            text,
-            "Write Dn on the first move after G41 or G42; R of Dn is the nose radius.",
-        )
+        text = "The first move after G{state} on line {line} has no D."
+        hint = "Write Dn on the first move after G41 or G42; R of Dn is the nose radius."
+        raise _refused(block, "comp-approach", text, hint, state=on, line=line)
     radius = state.setup.secondary[state.modal.secondary].r if _known(state) else 0.0
     if radius < 0:
-        text = Message("R of D{secondary} is negative.", secondary=state.modal.secondary)
-        raise _refused(
-            block, "comp-radius", text, "Enter the nose radius without a sign; G41 and G42 set the side."
-        )
+        text = "R of D{secondary} is negative."
+        hint = "Enter the nose radius without a sign; G41 and G42 set the side."
+        raise _refused(block, "comp-radius", text, hint, secondary=state.modal.secondary)
     if not radius:
         template = "R of D{secondary} is 0, so G{state} does not compensate."
         hint, told = (

@@ -116,7 +116,7 @@ def compensating(cycle: Cycle) -> Iterator[Block]:
     modal, sign = state.modal, state.modal.spindle
     text = "{call} needs the spindle to turn at a speed in rpm."
     hint = "Write G97 with S and M3 or M4 before this block."
-    cycle.require(sign and modal.rpm and (not modal.css), NO_DIRECTION, text, hint)
+    cycle.require(sign and modal.rpm and not modal.css, NO_DIRECTION, text, hint)
     by_feed = _by_feed(cycle)
     back, rest = cycle.whole("SDR", 0, 0, 5), cycle.whole("SDAC", 3 if sign > 0 else 4, 3, 5)
     if back not in {0, 3, 4} or (back and (back == 3) is (sign > 0)):
