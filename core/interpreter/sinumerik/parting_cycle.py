@@ -39,13 +39,9 @@ def part_off(cycle: Cycle) -> Iterator[Block]:
     cycle.check(0.0 <= rpm <= cycle.state.setup.limits.max_rpm, "_SS2", _SPEED, value=rpm)
     place, surface = cycle.needed("SPL"), cycle.needed("SPD") / 2.0
     clear = surface + (cycle.size("_SDIS") or RETRACT)
-    down = [
-        *cycle.off_part(clear),
-        Step(max(clear, cycle.x), place),
-        Step(clear, place),
-        Step(slow, place, first),
-    ]
-    return _blocks(cycle, (fast, before, rpm), down, [Step(last, place, second), Step(clear, place)])
+    down = [*cycle.off_part(clear), Step(max(clear, cycle.x), place), Step(clear, place)]
+    through = [Step(last, place, second), Step(clear, place)]
+    return _blocks(cycle, (fast, before, rpm), [*down, Step(slow, place, first)], through)
 
 
 def _depths(cycle: Cycle) -> tuple[float, float]:
