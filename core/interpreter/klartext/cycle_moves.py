@@ -107,9 +107,9 @@ class CycleTool:
         """An error of this cycle, to be raised; the number of the cycle fills the hole ``number``."""
         return self._state.refuse(self._column, code, text, hint, **{"number": self._number, **values})
 
-    def check(self, fine: object, text: str, hint: str, code: str = INPUT_VALUE, /, **values: object) -> None:
+    def check(self, ok: object, text: str, hint: str, code: str = INPUT_VALUE, /, **values: object) -> None:
         """Raise the error of ``refuse`` unless a condition holds."""
-        if not fine:
+        if not ok:
             raise self.refuse(text, hint, code, **values)
 
     @property

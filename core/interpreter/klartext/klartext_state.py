@@ -201,9 +201,9 @@ class State:
         """
         return fault(line or self.line, column, code, worded(text, values), worded(hint, values))
 
-    def check(self, fine: object, column: int, code: str, text: str, hint: str, /, **values: object) -> None:
+    def check(self, ok: object, column: int, code: str, text: str, hint: str, /, **values: object) -> None:
         """Raise the error of ``refuse`` unless a condition holds."""
-        if not fine:
+        if not ok:
             raise self.refuse(column, code, text, hint, **values)
 
     def place_is_read(self) -> None:

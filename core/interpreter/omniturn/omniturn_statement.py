@@ -89,10 +89,10 @@ class Statement:
         return program_error(self.line, column, code, worded(text, values), worded(hint, values))
 
     def check(
-        self, fine: object, at: Word | str | int, code: str, text: str, hint: str = "", /, **values: object
+        self, ok: object, at: Word | str | int, code: str, text: str, hint: str = "", /, **values: object
     ) -> None:
         """Raise the error of ``refuse`` unless a condition holds."""
-        if not fine:
+        if not ok:
             raise self.refuse(at, code, text, hint, **values)
 
     @property

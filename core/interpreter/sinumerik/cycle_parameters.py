@@ -222,17 +222,10 @@ class Cycle:
         return self._fault(column, code, text, worded(hint, values))
 
     def check(
-        self,
-        fine: object,
-        name: str,
-        what: str,
-        hint: str = _CORRECT,
-        code: _Alarm = _OWN,
-        /,
-        **values: object,
+        self, ok: object, name: str, what: str, hint: str = _CORRECT, code: _Alarm = _OWN, /, **values: object
     ) -> None:
         """Raise ``wrong`` unless a condition holds."""
-        if not fine:
+        if not ok:
             raise self.wrong(name, what, hint, code, **values)
 
     def refused(self, code: _Alarm, text: str, hint: str, /, **values: object) -> ProgramError:
@@ -240,9 +233,9 @@ class Cycle:
         values = {"call": self.line.call, **values}
         return self._fault(self.line.call_column, code, worded(text, values), worded(hint, values))
 
-    def require(self, fine: object, code: _Alarm, text: str, hint: str, /, **values: object) -> None:
+    def require(self, ok: object, code: _Alarm, text: str, hint: str, /, **values: object) -> None:
         """Raise ``refused`` unless a condition holds."""
-        if not fine:
+        if not ok:
             raise self.refused(code, text, hint, **values)
 
     def _fault(self, column: int, code: _Alarm, text: str, hint: str) -> ProgramError:

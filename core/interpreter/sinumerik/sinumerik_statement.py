@@ -80,10 +80,10 @@ class Statement:
         return ProgramError(fault(line.number, column, code, line.block, text, hint, axis=axis))
 
     def check(
-        self, fine: object, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
+        self, ok: object, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
     ) -> None:
         """Raise the error of ``refuse`` unless a condition holds."""
-        if not fine:
+        if not ok:
             raise self.refuse(word, code, text, hint, **values)
 
     def warning(self, word: Word | None, code: str, text: str, hint: str) -> Diagnostic:
