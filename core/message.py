@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 from string import Formatter
 from typing import Any, Self
@@ -67,6 +67,16 @@ class Message(str):
         made = str.__new__(Message, CASES[case](str.__str__(self)))
         made.template, made.values, made.case = self.template, self.values, case
         return made
+
+
+def worded(text: str, values: Mapping[str, object]) -> str:
+    """Put values into a text, floats with six digits at most.
+
+    A message has its values already; without values a text stays as it is.
+    """
+    if not values or isinstance(text, Message):
+        return text
+    return Message(text, **{name: f"{v:g}" if isinstance(v, float) else v for name, v in values.items()})
 
 
 @lru_cache(4096)

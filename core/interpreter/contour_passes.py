@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from core.geometry.contour_offset import Area, Span
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, clearance, intersections
+from core.interpreter.equal_passes import equal_depths
 
 
 class Move(NamedTuple):
@@ -27,6 +28,10 @@ class Move(NamedTuple):
 _SAME = 1e-6  # mm
 _NEARER = 0.002  # mm; what a way beside the contour may lack
 _TOUCHING = 0.02  # mm; where U is 0, the ways end on the contour
+
+
+MOST_ELEMENTS = 2_000
+MOST_LOOKS = 200_000  # elements times passes: a few seconds
 
 
 class StartNearError(Exception):
@@ -60,6 +65,11 @@ class Rougher:
             self._feed(depth, self._at[1])
             self._feed(depth, end)
         self._done.append((depth, spans))
+
+    def rough(self, count: int) -> None:
+        """So many equal passes, down to the deepest place."""
+        for depth in equal_depths(self._area.deepest, count):
+            self.cut(depth)
 
     def finish(self, *, backwards: bool) -> None:
         """Along the contour, then back to the start. Raises StartNearError."""

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from core.language.diagnostics import Diagnostic, Severity
+from core.message import worded
 
 MOST_OF_A_KIND = 100
 MOST_COUNTED = 10_000
@@ -108,6 +109,7 @@ class Log:
         self._others += 1
         self.found.append(found)
 
-    def warn(self, line: int, column: int, code: str, message: str, hint: str = "") -> None:
-        """Keep a warning."""
-        self.add(Diagnostic(line, column, Severity.WARNING, code, message, hint))
+    def warn(self, line: int, column: int, code: str, text: str, hint: str = "", /, **values: object) -> None:
+        """Keep a warning; ``values`` fill the holes of ``text`` and ``hint``."""
+        found = Diagnostic(line, column, Severity.WARNING, code, worded(text, values), worded(hint, values))
+        self.add(found)

@@ -16,11 +16,10 @@ from core.geometry.pocket_area import AreaError, Cut, Loop, Within, begun_at, cl
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext.contour_figures import OPEN, ContourFigure, area_of
 from core.interpreter.klartext.cycle_moves import CycleTool
-from core.interpreter.klartext.hole_cycles import SMALLEST, infeeds
+from core.interpreter.klartext.hole_cycles import SMALLEST, levels
 from core.interpreter.klartext.klartext_state import State
 from core.language.diagnostics import ProgramError
 from core.language.klartext.q_parameters import MAX_FEED
-from core.message import Message
 
 _RAMP = math.tan(math.radians(3.0))
 _MOST_OVERLAP = 2.0
@@ -37,11 +36,8 @@ class Clearing:
     def __init__(self, tool: CycleTool, area: Sequence[Loop] = (), above: float | None = None) -> None:
         self.tool, self.area = tool, area
         depth = tool.length(1)
-        if depth > 0.0:
-            raise tool.refuse(
-                Message("Depth Q1={depth} mm is positive (upward).", depth=f"{depth:+.10g}"),
-                "Enter the depth with a minus sign.",
-            )
+        text = "Depth Q1={depth} mm is positive (upward)."
+        tool.check(depth <= 0.0, text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
         self.surface = tool.length(5, 0.0)
         self.bottom = self.surface + depth
         self.clear = self.surface + (tool.length(6) if above is None else above)
@@ -59,21 +55,14 @@ class Clearing:
     def step(self) -> float:
         """From ring to ring: Q2 tool radii, and no more than one, which leaves nothing standing."""
         overlap = self.tool.plain(2, 1.0)
-        if not 0.0 < overlap < _MOST_OVERLAP:
-            text = Message(
-                "With path overlap {named}={overlap}, the cycle cannot clear the area.",
-                named=self.tool.named(2),
-                overlap=f"{overlap:g}",
-            )
-            raise self.tool.refuse(text, "Enter a value between 0.0001 and 1.9999.")
+        text = "With path overlap {named}={overlap}, the cycle cannot clear the area."
+        hint = "Enter a value between 0.0001 and 1.9999."
+        self.tool.check(0.0 < overlap < _MOST_OVERLAP, text, hint, named=self.tool.named(2), overlap=overlap)
         return min(overlap, 1.0) * self.tool.radius
 
     def levels(self, bottom: float) -> list[float]:
         """Heights of the infeeds, the bottom last."""
-        whole = self.surface - bottom
-        if whole < SMALLEST:
-            return []
-        return [self.surface - done for done in infeeds(self.tool, whole, abs(self.tool.length(10)))]
+        return levels(self.tool, self.surface, bottom, lambda: abs(self.tool.length(10)))
 
     def plan(self, radius: float) -> list[Cut]:
         """The rings that clear one level with a tool of this radius, mm."""
@@ -86,12 +75,9 @@ class Clearing:
 
     def unfit(self, problem: AreaError | GougeError) -> ProgramError:
         """What is told where a contour cannot be followed at the tool's radius."""
-        text = Message(
-            "The contour cannot be milled with tool radius {radius} mm plus the allowance: {problem}.",
-            radius=f"{self.tool.radius:.10g}",
-            problem=problem,
-        )
-        return self.tool.refuse(text, "Use a smaller tool, or correct the contour.")
+        text = "The contour cannot be milled with tool radius {radius} mm plus the allowance: {problem}."
+        hint, radius = "Use a smaller tool, or correct the contour.", f"{self.tool.radius:.10g}"
+        return self.tool.refuse(text, hint, radius=radius, problem=problem)
 
     def above(self) -> Iterator[Block]:
         """To the clearance height."""
@@ -109,13 +95,9 @@ class Clearing:
 
 def contour_data(tool: CycleTool) -> None:
     """20: the data are kept in Q1 to Q9; looked at where they are told. Raises ProgramError."""
-    if tool.length(1) > 0.0:
-        raise tool.refuse("Depth Q1 is positive (upward).", "Enter the depth with a minus sign.")
-    if not 0.0 < tool.plain(2, 1.0) < _MOST_OVERLAP:
-        raise tool.refuse(
-            "With the programmed path overlap Q2, the cycle cannot clear the area.",
-            "Set Q2 to a value between 0.0001 and 1.9999.",
-        )
+    tool.check(tool.length(1) <= 0.0, "Depth Q1 is positive (upward).", "Enter the depth with a minus sign.")
+    text = "With the programmed path overlap Q2, the cycle cannot clear the area."
+    tool.check(0.0 < tool.plain(2, 1.0) < _MOST_OVERLAP, text, "Set Q2 to a value between 0.0001 and 1.9999.")
 
 
 # --- clearing -------------------------------------------------------------------------------------------
@@ -126,10 +108,8 @@ def pilot_drilling(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
     told = Clearing(tool, area)
     radius = tool.radius_of(int(tool.plain(13)))
     if radius is None or radius <= SMALLEST:
-        text = Message(
-            "Rough-out tool {plain} (Q13) has no radius in the tool table.", plain=f"{tool.plain(13):g}"
-        )
-        raise tool.refuse(text, "Set Q13 to the number of a measured tool.")
+        text = "Rough-out tool {plain} (Q13) has no radius in the tool table."
+        raise tool.refuse(text, "Set Q13 to the number of a measured tool.", plain=tool.plain(13))
     feed, bottom = told.tool.cut(11), told.bottom + told.floor
     yield from told.above()
     for cut in told.plan(radius):
@@ -168,9 +148,7 @@ def _down_to(told: Clearing, cut: Cut, top: float, z: float, slow: float) -> Ite
     """To the start of a ring at its depth, or where a ramp along it has ended."""
     tool = told.tool
     if not cut.straight:
-        yield tool.to(max(told.clear, tool.height))
-        yield tool.across(cut.ramp[0].start)
-        yield tool.to(told.clear)
+        yield from tool.over(cut.ramp[0].start, told.clear)
         yield from _ramp(told, cut, top, z, slow)
     elif math.dist(tool.here, cut.loop[0].start) > SAME_POINT:
         yield tool.across(cut.loop[0].start, None, slow)
@@ -184,9 +162,8 @@ def _ramp(told: Clearing, cut: Cut, top: float, z: float, slow: float) -> Iterat
         yield tool.to(z, told.tool.cut(11))
     else:
         feed, length, ring = told.tool.cut(19), (top - z) / _RAMP, sum(element.length for element in cut.ramp)
-        if length > _MOST_RAMP * ring:
-            text = "There is not enough room to plunge along a ramp."
-            raise tool.refuse(text, "Use a center-cutting tool and plunge vertically.")
+        text = "There is not enough room to plunge along a ramp."
+        tool.check(length <= _MOST_RAMP * ring, text, "Use a center-cutting tool and plunge vertically.")
         way, rest = walked(cut.ramp, length)
         done = 0.0
         for element in way:
@@ -217,9 +194,7 @@ def floor_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
     for cut in plan if told.surface - told.bottom > SMALLEST else ():
         start = cut.loop[0].start
         if not cut.straight:
-            yield tool.to(max(told.clear, tool.height))
-            yield tool.across(start)
-            yield tool.to(told.clear)
+            yield from tool.over(start, told.clear)
             yield tool.to(told.bottom, plunge)
         elif math.dist(tool.here, start) > SAME_POINT:
             yield tool.across(start, None, feed)
@@ -247,9 +222,7 @@ def side_finishing(tool: CycleTool, area: Sequence[Loop]) -> Iterator[Block]:
         ring = [element.reversed() for element in reversed(loop)] if told.against else loop
         ring, to_it, off_it = _led(ring, room, apart, tool.radius, against=told.against)
         for z in told.levels(told.bottom):
-            yield tool.to(max(told.clear, tool.height))
-            yield tool.across(to_it.start if to_it else ring[0].start)
-            yield tool.to(told.clear)
+            yield from tool.over(to_it.start if to_it else ring[0].start, told.clear)
             yield tool.to(z, plunge)
             yield from _along(tool, [each for each in (to_it, *ring, off_it) if each is not None], feed)
         yield tool.to(told.clear)
@@ -311,11 +284,8 @@ def contour_train(tool: CycleTool, figures: Figures) -> Iterator[Block]:
 def _beside(told: Clearing, figure: ContourFigure) -> list[Element]:
     """The way of the tool's centre, its radius and Q3 off the contour; on it without RL or RR."""
     elements = list(figure.elements)
-    if not elements:
-        raise told.tool.refuse(
-            Message("Contour {figure} does not contain any elements.", figure=figure.label),
-            "Add path functions to the contour.",
-        )
+    text = "Contour {figure} does not contain any elements."
+    told.tool.check(elements, text, "Add path functions to the contour.", figure=figure.label)
     if not figure.side:
         return elements
     apart = told.tool.radius + told.side

@@ -98,9 +98,8 @@ def area_of(state: State, figures: Sequence[ContourFigure], column: int) -> list
     for figure in figures:
         loop = _closed(state, figure, column)
         (pockets if _is_pocket(state, figure, loop, column) else islands).append(loop)
-    if not pockets:
-        text = "Cycle 14 lists only islands and no pocket, so there is nothing to clear."
-        raise state.refuse(column, INPUT_VALUE, text, "Program the outer contour clockwise with RR.")
+    text = "Cycle 14 lists only islands and no pocket, so there is nothing to clear."
+    state.check(pockets, column, INPUT_VALUE, text, "Program the outer contour clockwise with RR.")
     return _bounded(state, [*pockets, *islands], _inside(pockets, islands), column)
 
 
@@ -109,38 +108,32 @@ def _bounded(state: State, loops: Sequence[Loop], inside: Callable[[Point], bool
     try:
         found = boundary(loops, inside)
     except AreaError as problem:
-        raise state.refuse(
-            column,
-            INPUT_VALUE,
-            Message("The contours cannot be combined: {problem}.", problem=problem),
-            "Correct the entries named in the message.",
-        ) from None
-    if not found:
-        text = "The contours do not enclose an area because the islands cover the pockets."
-        raise state.refuse(column, INPUT_VALUE, text, "Correct the contours.")
+        text = "The contours cannot be combined: {problem}."
+        hint = "Correct the entries named in the message."
+        raise state.refuse(column, INPUT_VALUE, text, hint, problem=problem) from None
+    text = "The contours do not enclose an area because the islands cover the pockets."
+    state.check(found, column, INPUT_VALUE, text, "Correct the contours.")
     return found
 
 
 def _closed(state: State, figure: ContourFigure, column: int) -> Loop:
     """The contour as a loop. Raises ProgramError for an open one."""
-    if not figure.elements:
-        text = Message("Contour {figure} does not contain any elements.", figure=figure.label)
-        raise state.refuse(column, CYCLE_MISSING, text, "Add path functions to the contour.")
+    text = "Contour {figure} does not contain any elements."
+    hint = "Add path functions to the contour."
+    state.check(figure.elements, column, CYCLE_MISSING, text, hint, figure=figure.label)
     gap = math.dist(figure.elements[-1].end, figure.elements[0].start)
-    if gap > OPEN:
-        text = Message(
-            "Contour {figure} ends {gap} mm from its start.", figure=figure.label, gap=f"{gap:.10g}"
-        )
-        raise state.refuse(column, INPUT_VALUE, text, "End the contour at its start point.")
+    text = "Contour {figure} ends {gap} mm from its start."
+    hint = "End the contour at its start point."
+    state.check(gap <= OPEN, column, INPUT_VALUE, text, hint, figure=figure.label, gap=f"{gap:.10g}")
     return follows(figure.elements)
 
 
 def _is_pocket(state: State, figure: ContourFigure, loop: Loop, column: int) -> bool:
     if figure.pocket is not None:
         return figure.pocket
-    if not figure.side:
-        text = Message("No machining side is programmed for contour {figure}.", figure=figure.label)
-        raise state.refuse(column, CYCLE_MISSING, text, "Write RL or RR in the first block of the contour.")
+    text = "No machining side is programmed for contour {figure}."
+    hint = "Write RL or RR in the first block of the contour."
+    state.check(figure.side, column, CYCLE_MISSING, text, hint, figure=figure.label)
     return goes_round(loop) == (figure.side == "L")
 
 

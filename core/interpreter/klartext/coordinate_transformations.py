@@ -13,7 +13,6 @@ from core.interpreter.klartext import word_values
 from core.interpreter.klartext.klartext_state import ORIGIN, ROTARY, SLIDES, State
 from core.language.klartext.klartext_faults import INPUT_VALUE, NO_TABLE, WRONG_AXIS
 from core.language.klartext.klartext_nodes import AxisWord, Datum, Transform, Value
-from core.message import Message
 
 MOST_FACTOR = 99.999999
 MOST_ROW = 999_999.0
@@ -49,8 +48,8 @@ def _of_the_table(state: State, row: Value, column: int) -> tuple[AxisWord, ...]
     number = int(word_values.number(state, row, "#", MOST_ROW, 0.0))
     found = state.datum_table.get(number)
     if found is None:
-        text = Message("The datum table has no row {number}.", number=number)
-        raise state.refuse(column, NO_TABLE, text, "Correct the row number, or add the row.")
+        text = "The datum table has no row {number}."
+        raise state.refuse(column, NO_TABLE, text, "Correct the row number, or add the row.", number=number)
     told = ((axis, found[axis]) for axis in (*SLIDES, *ROTARY) if axis in found)
     return tuple(
         AxisWord(axis, Value(value / (state.scale if axis in SLIDES else 1.0)), column=column)
@@ -59,14 +58,9 @@ def _of_the_table(state: State, row: Value, column: int) -> tuple[AxisWord, ...]
 
 
 def _demand_no_turn(state: State, axis: str, value: float, column: int) -> None:
-    if value:
-        text = Message("A datum shift of rotary axis {axis} is not supported.", axis=axis)
-        raise state.refuse(
-            column,
-            WRONG_AXIS,
-            text,
-            "Position the rotary axis with an L block, or program the plane with PLANE.",
-        )
+    text = "A datum shift of rotary axis {axis} is not supported."
+    hint = "Position the rotary axis with an L block, or program the plane with PLANE."
+    state.check(not value, column, WRONG_AXIS, text, hint, axis=axis)
 
 
 def transform(state: State, node: Transform) -> None:
@@ -85,7 +79,6 @@ def transform(state: State, node: Transform) -> None:
         state.figure = replace(figure, rotation=figure.rotation + value if node.incremental else value)
         return
     factor = word_values.number(state, node.value, "SCL", MOST_FACTOR, 0.0)
-    if factor <= 0.0:
-        text = "A scaling factor of 0 is not allowed."
-        raise state.refuse(node.column, INPUT_VALUE, text, "Program SCL with a factor such as 0.99.")
+    text = "A scaling factor of 0 is not allowed."
+    state.check(factor > 0.0, node.column, INPUT_VALUE, text, "Program SCL with a factor such as 0.99.")
     state.figure = replace(figure, factor=factor)

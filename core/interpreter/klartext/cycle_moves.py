@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 from core.geometry.lines_and_arcs import Arc, Point
@@ -16,7 +16,6 @@ from core.interpreter.klartext.tool_call import radius_of
 from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext.klartext_faults import CYCLE_MISSING, INPUT_VALUE, WRONG_RPM
 from core.language.klartext.q_parameters import MAX_FEED, TOOL_FEED
-from core.message import Message
 
 _TURN = 360.0
 UNORIENTED = "the spindle of this machine cannot be oriented"
@@ -79,8 +78,8 @@ class CycleTool:
         if found is None:
             found = default
         if found is None:
-            text = Message("Cycle {number} needs {parameter}.", number=self._number, parameter=self.named(q))
-            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Add the parameter to CYCL DEF.")
+            text, hint = "Cycle {number} needs {parameter}.", "Add the parameter to CYCL DEF."
+            raise self.refuse(text, hint, CYCLE_MISSING, parameter=self.named(q))
         return found
 
     def length(self, q: int, default: float | None = None) -> float:
@@ -92,28 +91,26 @@ class CycleTool:
         found = self.plain(q)
         if found == TOOL_FEED and self._state.tool_feed is not None:
             return per_minute(self._state, self._state.tool_feed, self._state.tool_feed_per, self._column)
-        if found <= 0.0:
-            text = Message(
-                "{parameter} of cycle {number} is not a valid feed rate.",
-                parameter=self.named(q),
-                number=self._number,
-            )
-            raise self._state.refuse(self._column, INPUT_VALUE, text, "Enter a feed rate above 0.")
+        text = "{parameter} of cycle {number} is not a valid feed rate."
+        self.check(found > 0.0, text, "Enter a feed rate above 0.", parameter=self.named(q))
         return None if found >= MAX_FEED else found
 
     def cut(self, q: int) -> float:
         """A feed that cuts, as programmed. Raises ProgramError for a rapid."""
         found = self.feed(q)
         if found is None:
-            raise self.refuse(
-                Message("{parameter} is set to rapid, but this is a cutting move.", parameter=self.named(q)),
-                "Enter a feed rate.",
-            )
+            text = "{parameter} is set to rapid, but this is a cutting move."
+            raise self.refuse(text, "Enter a feed rate.", parameter=self.named(q))
         return found
 
-    def refuse(self, text: str, hint: str) -> ProgramError:
-        """An error of this cycle, to be raised."""
-        return self._state.refuse(self._column, INPUT_VALUE, text, hint)
+    def refuse(self, text: str, hint: str, code: str = INPUT_VALUE, /, **values: object) -> ProgramError:
+        """An error of this cycle, to be raised; the number of the cycle fills the hole ``number``."""
+        return self._state.refuse(self._column, code, text, hint, **{"number": self._number, **values})
+
+    def check(self, ok: object, text: str, hint: str, code: str = INPUT_VALUE, /, **values: object) -> None:
+        """Raise the error of ``refuse`` unless a condition holds."""
+        if not ok:
+            raise self.refuse(text, hint, code, **values)
 
     @property
     def radius(self) -> float:
@@ -127,19 +124,20 @@ class CycleTool:
 
     def tell(self, text: str) -> None:
         """Something about this cycle that is done otherwise, once."""
-        said = Message("Cycle {number}: {what}", number=self._number, what=text)
-        self._state.tell_once(self._column, Severity.NOTE, "cycle-otherwise", said)
+        self._tell(Severity.NOTE, "cycle-otherwise", "Cycle {number}: {what}", what=text)
+
+    def _tell(self, severity: Severity, code: str, text: str, hint: str = "", /, **values: object) -> None:
+        values = {"number": self._number, **values}
+        self._state.tell_once(self._column, severity, code, text, hint, **values)
 
     @property
     def point_angle(self) -> float:
         """Of the tool's point, degrees. Raises ProgramError where the tool table does not tell it."""
         row = self._state.setup.mill_tools.get(self._state.modal.tool)
         if row is None or not 0.0 < row.point < 180.0:
-            text = Message(
-                "Cycle {number} needs the point angle of the tool for a programmed diameter.",
-                number=self._number,
-            )
-            raise self.refuse(text, "Enter the point angle in the tool table, or program Q343=+0 and Q201.")
+            text = "Cycle {number} needs the point angle of the tool for a programmed diameter."
+            hint = "Enter the point angle in the tool table, or program Q343=+0 and Q201."
+            raise self.refuse(text, hint)
         return row.point
 
     @property
@@ -162,11 +160,8 @@ class CycleTool:
     def rpm(self) -> float:
         """Speed of the spindle, signed. Raises ProgramError where it stands."""
         found = self.turns
-        if not found:
-            text = Message("Cycle {number} needs a running spindle.", number=self._number)
-            raise self._state.refuse(
-                self._column, WRONG_RPM, text, "Start the spindle with M3 before the cycle."
-            )
+        text = "Cycle {number} needs a running spindle."
+        self.check(found, text, "Start the spindle with M3 before the cycle.", WRONG_RPM)
         return found
 
     @property
@@ -176,36 +171,34 @@ class CycleTool:
 
     def thread_speed(self, pitch: float) -> float:
         """S in the direction of a thread, signed: a pitch under 0 is a left-hand one. Raises ProgramError."""
-        if not self.speed:
-            text = Message("Cycle {number} needs a spindle speed.", number=self._number)
-            raise self._state.refuse(self._column, WRONG_RPM, text, "Program S in TOOL CALL.")
+        self.check(self.speed, "Cycle {number} needs a spindle speed.", "Program S in TOOL CALL.", WRONG_RPM)
         return math.copysign(self.speed, pitch)
 
     def warn_uncoupled(self) -> None:
         """Z follows the spindle by its speed, not by its angle: it stands while the spindle turns round."""
-        text = Message(
+        text = (
             "Cycle {number}: Z is not synchronized with the spindle angle, so Z stops "
-            "while the spindle reverses.",
-            number=self._number,
+            "while the spindle reverses."
         )
-        hint = "Use a floating tap holder."
-        self._state.tell_once(self._column, Severity.WARNING, "tapping-uncoupled", text, hint)
+        self._tell(Severity.WARNING, "tapping-uncoupled", text, "Use a floating tap holder.")
 
     def warn_unoriented(self) -> None:
         """Nothing stops the spindle of this mill at an angle: the edge may point anywhere."""
-        text = Message(
-            "Cycle {number} moves the cutting edge away from the wall, but {unoriented}.",
-            number=self._number,
-            unoriented=UNORIENTED,
-        )
+        text = "Cycle {number} moves the cutting edge away from the wall, but {unoriented}."
         hint = "Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment."
-        self._state.tell_once(self._column, Severity.WARNING, "spindle-not-oriented", text, hint)
+        self._tell(Severity.WARNING, "spindle-not-oriented", text, hint, unoriented=UNORIENTED)
 
     # --- what it does -------------------------------------------------------------------------------------
 
     def to(self, z: float, feed: float | None = None) -> Block:
         """Up or down to ``z``; without a feed in rapid."""
         return self.across(self.here, z, feed)
+
+    def over(self, at: Point, clear: float) -> Iterator[Block]:
+        """At the height ``clear`` or above it to a place, and down to that height, in rapid."""
+        yield self.to(max(clear, self.height))
+        yield self.across(at)
+        yield self.to(clear)
 
     def tap(self, z: float, lead: float, *, in_hole: bool = False) -> Block:
         """Into a thread or out of it: ``lead`` mm a revolution, whatever the feed override says.
@@ -215,13 +208,11 @@ class CycleTool:
         state, rpm = self._state, self._state.modal.rpm
         fastest = state.kinematics.slides[2].vmax
         if (rate := lead * rpm / 60.0) > fastest:
-            text = Message(
-                "A lead of {lead} mm at S{rpm} requires a Z feed rate above the maximum of {fastest} mm/min.",
-                lead=f"{lead:.10g}",
-                rpm=f"{rpm:g}",
-                fastest=f"{fastest * 60.0:.10g}",
+            text = (
+                "A lead of {lead} mm at S{rpm} requires a Z feed rate above the maximum of {fastest} mm/min."
             )
-            raise self.refuse(text, "Lower S.")
+            hint = "Lower S."
+            raise self.refuse(text, hint, lead=f"{lead:.10g}", rpm=rpm, fastest=f"{fastest * 60.0:.10g}")
         goal = state.machine((*self.here, z))
         made = state.move(Kind.FEED, dict(zip(SLIDES, goal, strict=True)), rate)
         return replace(made, feed=lead, per_rev=True, coupled=True, in_hole=in_hole)
@@ -270,13 +261,9 @@ class CycleTool:
         number, state = int(self.plain(q, 0.0)), self._state
         if number == 0:
             return []
-        if number not in {8, 9}:
-            text = Message(
-                "Q{parameter} selects M{number}, which is not a coolant function of this machine.",
-                parameter=q,
-                number=number,
-            )
-            raise self.refuse(text, "Enter 8 for coolant on or 9 for coolant off.")
+        text = "Q{parameter} selects M{number}, which is not a coolant function of this machine."
+        hint = "Enter 8 for coolant on or 9 for coolant off."
+        self.check(number in {8, 9}, text, hint, parameter=q, number=number)
         state.modal = state.modal._replace(coolant=number == 8)
         return [state.action(Coolant(number == 8))]
 
@@ -295,10 +282,8 @@ class CycleTool:
         """The spindle held at the angle of a parameter. Raises ProgramError."""
         angle = self.plain(q, 0.0)
         if not -_TURN <= angle <= _TURN:
-            raise self.refuse(
-                Message("{parameter} is not a valid spindle angle.", parameter=self.named(q)),
-                "Enter an angle from -360 to 360 degrees.",
-            )
+            text = "{parameter} is not a valid spindle angle."
+            raise self.refuse(text, "Enter an angle from -360 to 360 degrees.", parameter=self.named(q))
         return oriented(self._state, angle)
 
     def halt(self, message: str) -> Block:

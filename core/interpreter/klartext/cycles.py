@@ -5,25 +5,21 @@ A cycle from 200 on reads its Q parameters when it is called, so that one that h
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator, Mapping
 
-from core.geometry.lines_and_arcs import Point
 from core.geometry.rotation_frames import Vector
 from core.interpreter.actions import Dwell
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext import word_values
-from core.interpreter.klartext.circular_slot_cycle import circular_slot
 from core.interpreter.klartext.contour_cycles import CONTOURS, Figures, contour_data, run_contour
 from core.interpreter.klartext.cycle_moves import CycleTool
-from core.interpreter.klartext.finishing_cycles import OLDER_MILLED
 from core.interpreter.klartext.hole_cycles import HOLES
 from core.interpreter.klartext.klartext_state import State
-from core.interpreter.klartext.older_cycles import LAST_LINE, OLDER
+from core.interpreter.klartext.older_cycles import LAST_LINE, OLDER, Told
 from core.interpreter.klartext.plane_functions import plane
 from core.interpreter.klartext.pocket_cycles import MILLED
-from core.interpreter.klartext.point_patterns import points
+from core.interpreter.klartext.point_patterns import in_rows, on_circle, points
 from core.interpreter.klartext.q_functions import value
 from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext.cycle_blocks import contour_labels
@@ -53,14 +49,13 @@ from core.message import Message
 
 _PRESET, _CIRCLE, _ROWS = 247, 220, 221
 _CONTOUR, _CONTOUR_DATA = 14, 20
-_MACHINING = HOLES | MILLED | OLDER_MILLED | {254: circular_slot}
+_MACHINING = HOLES | MILLED
 _SURFACE = 203  # Q203
 _PRESET_NUMBER = 339  # Q339
 _DWELL, _CALL_PROGRAM, _ORIENT, _TILT, _TOLERANCE = 9, 12, 13, 19, 32
 _NO_CYCLE = frozenset({_DWELL, _CALL_PROGRAM, _ORIENT, _CONTOUR, _TILT, _TOLERANCE})
 _AT_ONCE = frozenset({_PRESET, _CIRCLE, _ROWS, _CONTOUR_DATA})
 _TRANSFORMS = frozenset({8, 10, 11})  # mirroring, rotation, scaling
-_MOST_PLACES = 10_000
 _MOST_CONTOURS = 128
 _PROGRAM = re.compile(r"(?:PGM\b|%)\s*", re.IGNORECASE)  # before the name of cycle 12
 _SET_UP = frozenset({"ABST", "DIST", "SETUP", "SET-UP", "SET UP"})  # the distance of cycle 19
@@ -102,13 +97,12 @@ class Cycles:
         """CYCL DEF of a cycle from 200 on. Patterns are run at once. Raises ProgramError."""
         state = self._state
         known = node.number in _MACHINING.keys() | CONTOURS | _AT_ONCE
-        if 300 <= node.number <= 399:
-            text = Message(
-                "Cycle {number} is a machine-builder cycle, and this machine does not have "
-                "machine-builder cycles.",
-                number=node.number,
-            )
-            raise state.refuse(node.column, CYCLE_UNKNOWN, text, "Remove this text from the program.")
+        text = (
+            "Cycle {number} is a machine-builder cycle, and this machine does not have machine-builder "
+            "cycles."
+        )
+        hint = "Remove this text from the program."
+        state.check(not 300 <= node.number <= 399, node.column, CYCLE_UNKNOWN, text, hint, number=node.number)
         if not known:
             raise self._not_supported(node)
         for each in node.values:
@@ -125,11 +119,8 @@ class Cycles:
     def _not_supported(self, node: Cycle | CycleLine) -> ProgramError:
         """The error of a cycle that is refused by its number, to be raised."""
         kind = _ON_CYLINDER.get(node.number)
-        name = Message(
-            "CYCL DEF {number}{kind}",
-            number=node.number,
-            kind=Message(" (cylinder surface, {kind})", kind=kind) if kind else "",
-        )
+        told = Message(" (cylinder surface, {kind})", kind=kind) if kind else ""
+        name = Message("CYCL DEF {number}{kind}", number=node.number, kind=told)
         return unsupported(self._state.line, node.column, name, INSTEAD_OF_CYCLE.get(node.number, ""))
 
     def _begin(self, number: int) -> None:
@@ -144,30 +135,26 @@ class Cycles:
         state, number = self._state, self._state.q.get(_PRESET_NUMBER, 0.0)
         found = state.setup.presets.get(int(number)) if number == int(number) else None
         if found is None and set(state.setup.presets) - {0}:
-            text = Message("Preset {number} is not in the preset table.", number=f"{number:g}")
-            raise state.refuse(
-                column, INPUT_VALUE, text, "Set the preset on the PRESETS page, or correct Q339."
-            )
+            text = "Preset {number} is not in the preset table."
+            hint = "Set the preset on the PRESETS page, or correct Q339."
+            raise state.refuse(column, INPUT_VALUE, text, hint, number=number)
         if (
             found is not None
             and state.plane is not None
             and state.kinematics.with_preset(found).basic != state.kinematics.basic
         ):
-            text = Message(
-                "Preset {number} rotates the workpiece and cannot be activated while a tilted "
-                "plane is active.",
-                number=f"{number:g}",
+            text = (
+                "Preset {number} rotates the workpiece and cannot be activated while a tilted plane is "
+                "active."
             )
-            raise state.refuse(column, CONTRADICTION, text, "Write PLANE RESET STAY before this block.")
+            hint = "Write PLANE RESET STAY before this block."
+            raise state.refuse(column, CONTRADICTION, text, hint, number=number)
         if found is not None:
             state.kinematics = state.kinematics.with_preset(found)
         elif number:
-            text = Message(
-                "This machine has no preset table, so preset {number} uses the zero from the machine file.",
-                number=f"{number:g}",
-            )
+            text = "This machine has no preset table, so preset {number} uses the zero from the machine file."
             hint = "Set the preset on the PRESETS page."
-            state.tell_once(column, Severity.WARNING, "preset", text, hint)
+            state.tell_once(column, Severity.WARNING, "preset", text, hint, number=number)
         state.preset()
 
     def line(self, node: CycleLine) -> Iterator[Block]:
@@ -196,14 +183,13 @@ class Cycles:
 
         ``figures`` are the contours of ``contours``, as their subprograms say them.
         """
-        if not self._number:
-            text = "No machining cycle is defined."
-            raise self._state.refuse(column, CYCLE_MISSING, text, "Write CYCL DEF before this block.")
+        text = "No machining cycle is defined."
+        self._state.check(self._number, column, CYCLE_MISSING, text, "Write CYCL DEF before this block.")
         self._demand_plain_feeds(column)
         if self._number in OLDER:
             self._demand_lines(column)
             tool = CycleTool(self._state, self._number, lambda _: None, column)
-            yield from OLDER[self._number](self._state, tool, self._lines, column)
+            yield from OLDER[self._number](Told(self._state, self._lines, column), tool)
             return
         tool = self._tool(self._number, column)
         if self._number in CONTOURS:
@@ -214,19 +200,18 @@ class Cycles:
 
     def _demand_figures(self, figures: Figures, column: int) -> None:
         """Raises ProgramError where no contour has been named."""
-        if not figures:
-            text = Message("No contour is defined for cycle {number}.", number=self._number)
-            raise self._state.refuse(
-                column, CYCLE_MISSING, text, "List the contour labels in cycle 14 before this block."
-            )
+        text = "No contour is defined for cycle {number}."
+        hint = "List the contour labels in cycle 14 before this block."
+        self._state.check(figures, column, CYCLE_MISSING, text, hint, number=self._number)
 
     def _demand_lines(self, column: int) -> None:
         """Raises ProgramError where a line of an older cycle has not been told."""
         number = self._number
         missing = next((part for part in range(1, LAST_LINE[number] + 1) if part not in self._lines), None)
         if missing is not None:
-            text = Message("Line {number}.{missing} of the cycle is missing.", number=number, missing=missing)
-            raise self._state.refuse(column, CYCLE_MISSING, text, "Complete the CYCL DEF.")
+            text = "Line {number}.{missing} of the cycle is missing."
+            hint = "Complete the CYCL DEF."
+            raise self._state.refuse(column, CYCLE_MISSING, text, hint, number=number, missing=missing)
 
     def _tool(self, number: int, column: int) -> CycleTool:
         return CycleTool(self._state, number, self._state.q.get, column)
@@ -254,15 +239,13 @@ class Cycles:
 
     def _angle(self, node: CycleLine) -> float:
         """The angle of cycle 13, to which M19 brings the spindle. Raises ProgramError."""
-        if not node.words:
-            text = "No angle is programmed in cycle 13."
-            raise self._state.refuse(node.column, CYCLE_MISSING, text, "Write ANGLE with a value in degrees.")
+        hint = "Write ANGLE with a value in degrees."
+        self._state.check(node.words, node.column, CYCLE_MISSING, "No angle is programmed in cycle 13.", hint)
         angle = value(self._state, node.words[-1].value.formula)
         if not -360.0 <= angle <= 360.0:
-            text = Message("{parameter} is not a valid spindle angle.", parameter=f"{angle:g}")
-            raise self._state.refuse(
-                node.words[-1].column, INPUT_VALUE, text, "Enter an angle from -360 to 360 degrees."
-            )
+            text = "{parameter} is not a valid spindle angle."
+            hint = "Enter an angle from -360 to 360 degrees."
+            raise self._state.refuse(node.words[-1].column, INPUT_VALUE, text, hint, parameter=angle)
         return angle
 
     def _name_contours(self, node: CycleLine) -> None:
@@ -271,37 +254,32 @@ class Cycles:
             self._contours = ()
             return
         labels = contour_labels(node.text)
-        if not labels:
-            text = "Cycle 14 does not list any label."
-            raise self._state.refuse(
-                node.column, CYCLE_MISSING, text, "Write the labels, for example CONTOUR LABEL1 /2."
-            )
+        hint = "Write the labels, for example CONTOUR LABEL1 /2."
+        self._state.check(labels, node.column, CYCLE_MISSING, "Cycle 14 does not list any label.", hint)
         self._contours += tuple(ContourPart(label, None) for label in labels)
         if len(self._contours) > _MOST_CONTOURS:
-            text = Message(
+            raise self._state.refuse(
+                node.column,
+                INPUT_VALUE,
                 "Cycle 14 lists {contours_count} contours; the maximum is {most_contours}.",
+                "Combine some of the contours.",
                 contours_count=len(self._contours),
                 most_contours=_MOST_CONTOURS,
             )
-            raise self._state.refuse(node.column, INPUT_VALUE, text, "Combine some of the contours.")
 
     def _seconds(self, word: AxisWord) -> float:
         """The time of cycle 9. Raises ProgramError for one under 0."""
         seconds = value(self._state, word.value.formula)
         if seconds < 0.0:
-            text = Message("The dwell time of {seconds} s is negative.", seconds=f"{seconds:g}")
-            raise self._state.refuse(word.column, INPUT_VALUE, text, "Enter a time above 0.")
+            text = "The dwell time of {seconds} s is negative."
+            raise self._state.refuse(word.column, INPUT_VALUE, text, "Enter a time above 0.", seconds=seconds)
         return seconds
 
     def _tilted(self, node: CycleLine) -> Plane:
         """Cycle 19 as a PLANE: spatial angles, without which it ends; nothing moves. Raises ProgramError."""
         if node.text and node.text.upper() not in _SET_UP:
-            raise syntax(
-                self._state.line,
-                node.column,
-                Message("{node} is not an axis.", node=node.text),
-                "Use only A, B and C in cycle 19.",
-            )
+            text = Message("{node} is not an axis.", node=node.text)
+            raise syntax(self._state.line, node.column, text, "Use only A, B and C in cycle 19.")
         if not node.words:
             return Plane("RESET", (), Positioning("STAY"), node.column)
         named = {word.axis: word for word in node.words}
@@ -325,17 +303,11 @@ class Cycles:
     def call_pattern(self, node: CycleCall) -> Iterator[Block]:
         """CYCL CALL PAT: the cycle at every point, between them at the safe height. Raises ProgramError."""
         state = self._state
-        if not self._points:
-            text = "Neither PATTERN DEF nor SEL PATTERN has defined any points."
-            raise state.refuse(node.column, CYCLE_MISSING, text, "Write PATTERN DEF before this block.")
-        if self._number not in _MACHINING:
-            text = "CYCL CALL PAT needs a preceding cycle with a number of 200 or higher."
-            raise state.refuse(
-                node.column,
-                CYCLE_MISSING,
-                text,
-                "Write the CYCL DEF of a machining cycle before this block.",
-            )
+        text = "Neither PATTERN DEF nor SEL PATTERN has defined any points."
+        state.check(self._points, node.column, CYCLE_MISSING, text, "Write PATTERN DEF before this block.")
+        text = "CYCL CALL PAT needs a preceding cycle with a number of 200 or higher."
+        hint = "Write the CYCL DEF of a machining cycle before this block."
+        state.check(self._number in _MACHINING, node.column, CYCLE_MISSING, text, hint)
         speed = None if node.feed is None else word_values.feed_word(state, node.feed, node.column)
         surface = state.q.get(_SURFACE, 0.0)
         for x, y, above in self._points:
@@ -354,11 +326,8 @@ class Cycles:
             yield from self.call(node.column)
         tool = self._tool(self._number, node.column)
         if self._number not in _MACHINING:
-            raise unsupported(
-                self._state.line,
-                node.column,
-                Message("CYCL CALL POS with cycle {number}", number=self._number),
-            )
+            what = Message("CYCL CALL POS with cycle {number}", number=self._number)
+            raise unsupported(self._state.line, node.column, what)
         x, y = tool.here
         for word in node.axes:
             at = word_values.coordinate(self._state, word)
@@ -381,58 +350,14 @@ class Cycles:
         """The cycle told before at every place of a circle (220) or of rows (221)."""
         tool = self._tool(node.number, node.column)
         if self._number not in _MACHINING:
-            text = Message("Cycle {number} needs a preceding machining cycle.", number=node.number)
-            raise self._state.refuse(
-                node.column,
-                CYCLE_MISSING,
-                text,
-                "Write the CYCL DEF of a machining cycle before this block.",
-            )
+            text = "Cycle {number} needs a preceding machining cycle."
+            hint = "Write the CYCL DEF of a machining cycle before this block."
+            raise self._state.refuse(node.column, CYCLE_MISSING, text, hint, number=node.number)
         surface = tool.length(203, 0.0)
         above = surface + tool.length(204, 0.0) if tool.plain(301, 1.0) else surface + tool.length(200)
-        places = _on_circle(tool) if node.number == _CIRCLE else _in_rows(tool)
+        places = on_circle(tool) if node.number == _CIRCLE else in_rows(tool)
         for index, place in enumerate(places):
             if index == 0 or tool.height < above:
                 yield tool.to(max(above, tool.height))
             yield tool.across(place)
             yield from self.call(node.column)
-
-
-def _on_circle(tool: CycleTool) -> list[Point]:
-    centre, radius = (tool.length(216), tool.length(217)), tool.length(244) / 2.0
-    count, first = _count(tool, 241), tool.plain(245, 0.0)
-    step = tool.plain(247, 0.0)
-    if not step:
-        swept = tool.plain(246, first + 360.0) - first
-        step = swept / count if abs(swept) >= 360.0 or count == 1 else swept / (count - 1)
-    angles = (math.radians(first + step * at) for at in range(count))
-    return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]
-
-
-def _in_rows(tool: CycleTool) -> list[Point]:
-    """Row by row, there and back."""
-    x0, y0 = tool.length(225), tool.length(226)
-    columns, rows = _count(tool, 242), _count(tool, 243)
-    angle = math.radians(tool.plain(224, 0.0))
-    found = []
-    for row in range(rows):
-        order = range(columns) if row % 2 == 0 else range(columns - 1, -1, -1)
-        for column in order:
-            u, v = column * tool.length(237), row * tool.length(238)
-            found.append(
-                (
-                    x0 + u * math.cos(angle) - v * math.sin(angle),
-                    y0 + u * math.sin(angle) + v * math.cos(angle),
-                )
-            )
-    return found
-
-
-def _count(tool: CycleTool, q: int) -> int:
-    count = int(tool.plain(q))
-    if not 1 <= count <= _MOST_PLACES:
-        raise tool.refuse(
-            Message("Q{parameter}={count} is not a valid number of positions.", parameter=q, count=count),
-            "Enter a valid number.",
-        )
-    return count

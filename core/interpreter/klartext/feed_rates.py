@@ -12,7 +12,6 @@ from core.interpreter.klartext.klartext_state import SAME_POINT, State
 from core.language.diagnostics import Severity
 from core.language.klartext.klartext_faults import INPUT_VALUE, WRONG_RPM, unsupported
 from core.language.klartext.klartext_nodes import MCode
-from core.message import Message
 
 REVOLUTION, TOOTH = "U", "Z"
 MOST_FEED = 99_999.999
@@ -48,8 +47,9 @@ def _factor(state: State, code: MCode) -> float:
     if value.q is not None:
         raise unsupported(state.line, value.column, "M103 with a Q parameter")
     if not 0.0 < value.number <= 100.0:
-        text = Message("M103 F{number} must be above 0 and at most 100 percent.", number=f"{value.number:g}")
-        raise state.refuse(value.column, INPUT_VALUE, text, "Write M103 F20 for a fifth of the feed.")
+        text = "M103 F{number} must be above 0 and at most 100 percent."
+        hint = "Write M103 F20 for a fifth of the feed."
+        raise state.refuse(value.column, INPUT_VALUE, text, hint, number=value.number)
     return value.number / 100.0
 
 
@@ -63,23 +63,17 @@ def per_minute(state: State, feed: float, per: str, column: int) -> float:
     word = "F under M136" if state.per_revolution and per == REVOLUTION else f"F{per}"
     rpm = state.modal.rpm if state.modal.spindle else 0.0
     if rpm <= 0.0:
-        text = Message("{word} depends on the spindle speed, but the spindle is stopped.", word=word)
-        raise state.refuse(column, WRONG_RPM, text, "Start the spindle with M3 or M4 before this block.")
+        text = "{word} depends on the spindle speed, but the spindle is stopped."
+        hint = "Start the spindle with M3 or M4 before this block."
+        raise state.refuse(column, WRONG_RPM, text, hint, word=word)
     made = feed * rpm * (_teeth(state, column) if per == TOOTH else 1)
     made *= 1.0 if state.scale == 1.0 else _TENTHS
     if made > MOST_FEED:
-        text = Message(
-            "{word} {feed} at S{rpm} gives a feed rate of {count}, which is above the maximum.",
-            word=word,
-            feed=f"{feed:g}",
-            rpm=f"{rpm:g}",
-            count=f"{made:g}",
-        )
-        raise state.refuse(column, INPUT_VALUE, text, "Correct the feed rate.")
-    note = Message(
-        "{word} uses the programmed S, so the spindle override does not change the feed rate.", word=word
-    )
-    state.tell_once(column, Severity.NOTE, "feed-by-programmed-speed", note)
+        text = "{word} {feed} at S{rpm} gives a feed rate of {count}, which is above the maximum."
+        hint = "Correct the feed rate."
+        raise state.refuse(column, INPUT_VALUE, text, hint, word=word, feed=feed, rpm=rpm, count=made)
+    text = "{word} uses the programmed S, so the spindle override does not change the feed rate."
+    state.tell_once(column, Severity.NOTE, "feed-by-programmed-speed", text, word=word)
     return made
 
 
@@ -87,13 +81,9 @@ def _teeth(state: State, column: int) -> int:
     tool = state.modal.tool
     row = state.setup.mill_tools.get(tool)
     if row is None or row.teeth < 1:
-        text = Message(
-            "FZ is feed per tooth, but the number of teeth (CUT) of tool {tool} is not in the tool table.",
-            tool=tool,
-        )
-        raise state.refuse(
-            column, INPUT_VALUE, text, "Enter the number of teeth (CUT) in the tool table, or program F."
-        )
+        text = "FZ is feed per tooth, but the number of teeth (CUT) of tool {tool} is not in the tool table."
+        hint = "Enter the number of teeth (CUT) in the tool table, or program F."
+        raise state.refuse(column, INPUT_VALUE, text, hint, tool=tool)
     return row.teeth
 
 

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from core.geometry.lines_and_arcs import Arc
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.klartext.cycle_moves import HOW_ORIENTED, UNORIENTED, CycleTool
-from core.message import Message
 
 SMALLEST = 1e-6  # mm; less is no depth
 _ASIDE = 0.2  # mm that a boring bar goes aside before it is drawn out
@@ -19,26 +18,6 @@ _EDGE = {
     (0.0, 1.0): "TURN THE CUTTING EDGE TOWARD Y-",
 }
 _MOST_PECKS = 10_000
-
-
-def drilling(tool: CycleTool) -> Iterator[Block]:
-    """200: in infeeds, out of the hole after each."""
-    surface, clear, bottom = heights(tool)
-    feed = tool.feed(206)
-    yield tool.to(clear)
-    if abs(bottom - surface) < SMALLEST:
-        return
-    before = 0.0
-    for depth in infeeds(tool, surface - bottom, tool.length(202)):
-        if before:
-            yield from tool.dwell(tool.plain(210, 0.0))
-            yield tool.to(min(clear, surface - before + tool.length(200)))
-        yield tool.to(surface - depth, feed)
-        if depth < surface - bottom:
-            yield tool.to(clear)
-        before = depth
-    yield from tool.dwell(tool.plain(211, 0.0))
-    yield from out(tool, surface, clear, None)
 
 
 def reaming(tool: CycleTool) -> Iterator[Block]:
@@ -83,12 +62,8 @@ def aside(tool: CycleTool, directions: tuple[int, ...]) -> tuple[float, float]:
     """Q214: which way the tool leaves the wall, along X or Y. Raises ProgramError for another number."""
     number = tool.plain(214, 0.0)
     if number not in directions:
-        text = Message(
-            "Q214 must be a whole number from {directions} to {directions2}.",
-            directions=directions[0],
-            directions2=directions[-1],
-        )
-        raise tool.refuse(text, "Correct Q214.")
+        text = "Q214 must be a whole number from {directions} to {directions2}."
+        raise tool.refuse(text, "Correct Q214.", directions=directions[0], directions2=directions[-1])
     return {0: (0.0, 0.0), 1: (-1.0, 0.0), 2: (0.0, -1.0), 3: (1.0, 0.0), 4: (0.0, 1.0)}[int(number)]
 
 
@@ -99,25 +74,13 @@ def back_boring(tool: CycleTool) -> Iterator[Block]:
     Q252 is how far the edge stands over the tip, Q250 how thick the part is, Q251 how far the tool goes
     beside the centre.
     """
-    if not tool.orients:
-        text = Message(
-            "Cycle 204 moves through the hole with the spindle oriented, but {unoriented}.",
-            unoriented=UNORIENTED,
-        )
-        raise tool.refuse(
-            text,
-            Message("Bore from the other side of the part, or {how_oriented}.", how_oriented=HOW_ORIENTED),
-        )
+    text = "Cycle 204 moves through the hole with the spindle oriented, but {unoriented}."
+    hint = "Bore from the other side of the part, or {how_oriented}."
+    tool.check(tool.orients, text, hint, unoriented=UNORIENTED, how_oriented=HOW_ORIENTED)
     rpm, (along_x, along_y) = tool.rpm, aside(tool, (1, 2, 3, 4))
     surface, depth = tool.length(203, 0.0), tool.length(249)
-    if depth < 0.0:
-        raise tool.refuse(
-            Message(
-                "Q249 = {depth} mm is negative, so the tool would move away from the part.",
-                depth=f"{depth:+.10g}",
-            ),
-            "Enter the depth without a minus sign.",
-        )
+    text = "Q249 = {depth} mm is negative, so the tool would move away from the part."
+    tool.check(depth >= 0.0, text, "Enter the depth without a minus sign.", depth=f"{depth:+.10g}")
     clear, through, slow = surface + tool.length(200), tool.length(250) + tool.length(252), tool.feed(253)
     lowest, end = surface - through - tool.length(200), surface - through + depth
     (x, y), off = tool.here, tool.length(251)
@@ -138,6 +101,11 @@ def back_boring(tool: CycleTool) -> Iterator[Block]:
     yield from out(tool, surface, clear, slow)
     yield tool.across((x, y))
     yield tool.turn(rpm)
+
+
+def drilling(tool: CycleTool) -> Iterator[Block]:
+    """200: as 203 in equal infeeds, out of the hole after each."""
+    return universal_drilling(tool.seen({q: q for q in (200, 201, 202, 203, 204, 206, 210, 211)}))
 
 
 def universal_drilling(tool: CycleTool) -> Iterator[Block]:
@@ -226,8 +194,7 @@ def _thread(tool: CycleTool) -> tuple[float, float]:
     """Millimetres a revolution, and the signed speed into the thread. Raises ProgramError for no pitch."""
     tool.warn_uncoupled()
     pitch = tool.length(239)
-    if pitch == 0.0:
-        raise tool.refuse("Pitch Q239 must not be 0.", "Enter the thread pitch.")
+    tool.check(pitch != 0.0, "Pitch Q239 must not be 0.", "Enter the thread pitch.")
     return abs(pitch), tool.thread_speed(pitch)
 
 
@@ -254,11 +221,8 @@ def bore_milling(tool: CycleTool) -> Iterator[Block]:
     way = tool.length(335) / 2.0 - tool.radius
     x, y = tool.here
     pitch = tool.length(334)
-    if way < 0.0 or pitch <= 0.0 or feed <= 0.0:
-        raise tool.refuse(
-            "The tool, infeed or feed rate of cycle 208 is not valid for the hole.",
-            "Correct the entries named in the message.",
-        )
+    text = "The tool, infeed or feed rate of cycle 208 is not valid for the hole."
+    tool.check(way >= 0.0 and pitch > 0.0 and feed > 0.0, text, "Correct the entries named in the message.")
     yield tool.to(clear)
     if way < SMALLEST:
         yield tool.to(bottom, feed)
@@ -320,11 +284,8 @@ def single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
 def heights(tool: CycleTool) -> tuple[float, float, float]:
     """Surface, set-up clearance above it, and bottom. Raises ProgramError for a depth that leads upwards."""
     surface, depth = tool.length(203, 0.0), tool.length(201)
-    if depth > 0.0:
-        raise tool.refuse(
-            Message("Depth Q201={depth} mm is positive (upward).", depth=f"{depth:+.10g}"),
-            "Enter the depth with a minus sign.",
-        )
+    text = "Depth Q201={depth} mm is positive (upward)."
+    tool.check(depth <= 0.0, text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
     return surface, surface + tool.length(200), surface + depth
 
 
@@ -336,14 +297,18 @@ def infeeds(
         yield whole
         return
     if whole / max(step if not smaller else least or step, SMALLEST) > _MOST_PECKS:
-        raise tool.refuse(
-            Message("An infeed of {step} mm would need too many pecks.", step=f"{step:g}"), "Increase Q202."
-        )
+        raise tool.refuse("An infeed of {step} mm would need too many pecks.", "Increase Q202.", step=step)
     done = 0.0
     while whole - done > SMALLEST:
         done = min(done + step, whole)
         yield done if whole - done > SMALLEST else whole
         step = max(step - smaller, least, SMALLEST) if smaller else step
+
+
+def levels(tool: CycleTool, surface: float, bottom: float, step: Callable[[], float]) -> list[float]:
+    """Heights of the infeeds from the surface down, the bottom last; none where there is no depth."""
+    whole = surface - bottom
+    return [] if whole < SMALLEST else [surface - done for done in infeeds(tool, whole, step())]
 
 
 def out(tool: CycleTool, surface: float, clear: float, feed: float | None) -> Iterator[Block]:

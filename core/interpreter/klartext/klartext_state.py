@@ -19,7 +19,7 @@ from core.interpreter.working_plane import Angles, Corners, PlaneSystem, Swivel
 from core.language.diagnostics import AT_THE_STOP, Diagnostic, ProgramError, Severity, resting_on
 from core.language.klartext.klartext_faults import fault
 from core.language.klartext.table_file import Row
-from core.message import Message
+from core.message import Message, worded
 
 ORIGIN: Vector = (0.0, 0.0, 0.0)
 
@@ -191,9 +191,19 @@ class State:
         """F as mm/s: mm/min, or tenths of an inch a minute in an INCH program."""
         return word / 60.0 if self.scale == 1.0 else word * 0.1 * MM_PER_INCH / 60.0
 
-    def refuse(self, column: int, code: str, message: str, hint: str, line: int = 0) -> ProgramError:
-        """An error to be raised, at this column of the line that is being executed, or of ``line``."""
-        return fault(line or self.line, column, code, message, hint)
+    def refuse(
+        self, column: int, code: str, text: str, hint: str, line: int = 0, /, **values: object
+    ) -> ProgramError:
+        """An error to be raised, at this column of the line that is being executed, or of ``line``.
+
+        ``values`` fill the holes of ``text`` and ``hint``.
+        """
+        return fault(line or self.line, column, code, worded(text, values), worded(hint, values))
+
+    def check(self, ok: object, column: int, code: str, text: str, hint: str, /, **values: object) -> None:
+        """Raise the error of ``refuse`` unless a condition holds."""
+        if not ok:
+            raise self.refuse(column, code, text, hint, **values)
 
     def place_is_read(self) -> None:
         """The program reads where an axis stands: behind a stop that is what a proof assumes."""
@@ -203,11 +213,14 @@ class State:
         """An error of a formula, which may rest on such a place."""
         return ProgramError(resting_on(error.diagnostic, AT_THE_STOP)) if self.place_assumed else error
 
-    def tell_once(self, column: int, severity: Severity, code: str, text: str, hint: str = "") -> None:
+    def tell_once(
+        self, column: int, severity: Severity, code: str, text: str, hint: str = "", /, **values: object
+    ) -> None:
         """A finding that is the same wherever it stands: told at its first place."""
+        text = worded(text, values)
         if text not in self.reported:
             self.reported.add(text)
-            self.log.add(Diagnostic(self.line, column, severity, code, text, hint))
+            self.log.add(Diagnostic(self.line, column, severity, code, text, worded(hint, values)))
 
     def unheeded(self, what: str, column: int) -> None:
         """Tell that something steers nothing here."""

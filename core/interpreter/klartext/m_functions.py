@@ -65,24 +65,27 @@ def check(state: State, codes: Sequence[MCode]) -> None:
         if code.number in {M91, M92}:
             _check_datum(state, code, codes)
         if code.number == M19 and not limits.spindle_oriented:
-            text: str = Message("M19 stops the spindle at an angle, but {unoriented}.", unoriented=UNORIENTED)
             raise state.refuse(
                 code.column,
                 M_UNDEFINED,
-                text,
-                Message("{how_oriented}, or remove M19.", how_oriented=HOW_ORIENTED.capitalize()),
+                "M19 stops the spindle at an angle, but {unoriented}.",
+                "{how_oriented}, or remove M19.",
+                unoriented=UNORIENTED,
+                how_oriented=HOW_ORIENTED.capitalize(),
             )
         if code.number in _NOT_BUILT - known:
             raise unsupported(state.line, code.column, f"M{code.number}")
         if code.number not in known:
-            text = Message("M{number} is not defined in the machine file.", number=code.number)
-            raise state.refuse(code.column, M_UNDEFINED, text, _ADVICE.get(code.number, _OWN))
+            text = "M{number} is not defined in the machine file."
+            raise state.refuse(
+                code.column, M_UNDEFINED, text, _ADVICE.get(code.number, _OWN), number=code.number
+            )
         if code.number in UNHEEDED | limits.m_ignored:
             state.unheeded(f"M{code.number}", code.column)
         if code.number == SISTER_TOOL:
             text = (
-                "On this control, M101 does not change to a replacement tool, so the called "
-                "tool remains in use."
+                "On this control, M101 does not change to a replacement tool, so the called tool remains in "
+                "use."
             )
             hint = "Check the tool life before you start the program."
             state.tell_once(code.column, Severity.WARNING, "no-replacement-tool", text, hint)
@@ -97,9 +100,9 @@ def check(state: State, codes: Sequence[MCode]) -> None:
 
 def _check_datum(state: State, code: MCode, codes: Sequence[MCode]) -> None:
     """M91 and M92: not while M128 is on, and one of both."""
-    if state.m128:
-        text: str = Message("M{number} is not allowed while M128 is active.", number=code.number)
-        raise state.refuse(code.column, NOT_WITH_M128, text, "Switch M128 off with M129 before this block.")
+    text = "M{number} is not allowed while M128 is active."
+    hint = "Switch M128 off with M129 before this block."
+    state.check(not state.m128, code.column, NOT_WITH_M128, text, hint, number=code.number)
     if {M91, M92} <= {other.number for other in codes}:
         text = "M91 and M92 cannot be in the same block because they measure from different datums."
         raise state.refuse(code.column, CONTRADICTION, text, "Remove one of the two.")
@@ -169,9 +172,8 @@ def end(state: State) -> Block:
 
 
 def _start(state: State, code: MCode) -> Block:
-    if not state.modal.rpm:
-        why = Message("M{number} starts the spindle, but no TOOL CALL sets S.", number=code.number)
-        raise state.refuse(code.column, WRONG_RPM, why, "Program S in TOOL CALL.")
+    text = "M{number} starts the spindle, but no TOOL CALL sets S."
+    state.check(state.modal.rpm, code.column, WRONG_RPM, text, "Program S in TOOL CALL.", number=code.number)
     state.modal = state.modal._replace(spindle=_TURNS[code.number], oriented=None)
     return state.action(actions.SpindleRun(state.modal.rpm * state.modal.spindle))
 

@@ -16,7 +16,6 @@ from core.interpreter.klartext.klartext_state import State
 from core.interpreter.klartext.q_functions import value
 from core.language.klartext.klartext_faults import CYCLE_MISSING
 from core.language.klartext.klartext_nodes import CycleLine
-from core.message import Message
 
 Lines = Mapping[int, CycleLine]
 _SMALLEST = 1e-6  # mm
@@ -32,6 +31,11 @@ class Told:
         self._lines = lines
         self._column = column
 
+    @property
+    def cycle(self) -> int:
+        """The number of the cycle."""
+        return next(iter(self._lines.values())).number if self._lines else 0
+
     def number(self, part: int, axis: str = "") -> float:
         """The first number of a line, or that of its word for an axis.
 
@@ -40,14 +44,11 @@ class Told:
         words = self._lines[part].words if part in self._lines else ()
         word = next((each for each in words if each.axis == axis), None)
         if word is None:
-            number = next(iter(self._lines.values())).number if self._lines else 0
-            text = Message(
-                "Line {number}.{part} of the cycle has no {axis}.",
-                number=number,
-                part=part,
-                axis=axis or "number",
+            text = "Line {number}.{part} of the cycle has no {axis}."
+            hint = "Complete the CYCL DEF."
+            raise self._state.refuse(
+                self._column, CYCLE_MISSING, text, hint, number=self.cycle, part=part, axis=axis or "number"
             )
-            raise self._state.refuse(self._column, CYCLE_MISSING, text, "Complete the CYCL DEF.")
         return value(self._state, word.value.formula)
 
     def length(self, part: int, axis: str = "") -> float:
@@ -77,9 +78,8 @@ class Told:
         return part in self._lines and any(word.axis == axis for word in self._lines[part].words)
 
 
-def _pecking(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+def _pecking(told: Told, tool: CycleTool) -> Iterator[Block]:
     """1: down by infeeds; out in rapid, and in rapid to just before the chips."""
-    told = Told(state, lines, column)
     clear, feed = tool.height, told.feed(5)
     depth, step = abs(told.length(2)), abs(told.length(3))
     surface = clear - told.length(1)
@@ -93,10 +93,9 @@ def _pecking(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterat
     yield tool.to(clear)
 
 
-def _tapping(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+def _tapping(told: Told, tool: CycleTool) -> Iterator[Block]:
     """2 at a feed; 17 by a pitch, whose sign starts the spindle. It turns round at the bottom."""
-    told = Told(state, lines, column)
-    rigid = next(iter(lines.values())).number == _RIGID
+    rigid = told.cycle == _RIGID
     clear, before = tool.height, tool.turns
     if rigid:
         tool.warn_uncoupled()
@@ -111,15 +110,13 @@ def _tapping(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterat
     yield from tool.turning(before)
 
 
-def _slot(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+def _slot(told: Told, tool: CycleTool) -> Iterator[Block]:
     """3: along the first side by levels, then round at the width."""
-    told = Told(state, lines, column)
     first, second = _sides(told, 4), _sides(told, 5)
     (x, y), clear = tool.here, tool.height
     end = x + first[0], y + first[1]
     width = (abs(second[0]) + abs(second[1])) / 2.0 - tool.radius
-    if width < -_SMALLEST:
-        raise tool.refuse("The tool is wider than the slot.", "Use a smaller tool.")
+    tool.check(width >= -_SMALLEST, "The tool is wider than the slot.", "Use a smaller tool.")
     surface, feed = clear - told.length(1), told.cutting_feed(6)
     ends = [(x, y), end]
     for at, done in enumerate(_levels(tool, abs(told.length(2)), abs(told.length(3)))):
@@ -145,16 +142,13 @@ def _round_slot(tool: CycleTool, start: Point, end: Point, width: float, feed: f
         yield tool.across(corner, None, feed)
 
 
-def _pocket(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+def _pocket(told: Told, tool: CycleTool) -> Iterator[Block]:
     """4: from the middle outwards in rectangles, level by level."""
-    told = Told(state, lines, column)
     (x, y), clear = tool.here, tool.height
     half = abs(told.length(4, "X")) / 2.0 - tool.radius, abs(told.length(5, "Y")) / 2.0 - tool.radius
-    if min(half) < -_SMALLEST:
-        raise tool.refuse("The tool is wider than the pocket.", "Use a smaller tool.")
+    tool.check(min(half) >= -_SMALLEST, "The tool is wider than the pocket.", "Use a smaller tool.")
     surface, feed, turn = clear - told.length(1), told.cutting_feed(6), told.turn(6)
-    step = tool.radius * 2.0 * _OVERLAP
-    count = max(1, math.ceil(min(half) / step)) if step > _SMALLEST else 1
+    count = _ring_count(tool, min(half))
     for done in _levels(tool, abs(told.length(2)), abs(told.length(3))):
         yield tool.across((x, y), None, feed)
         yield tool.to(surface - done, told.feed(3))
@@ -173,16 +167,13 @@ def _pocket(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterato
     yield tool.across((x, y))
 
 
-def _circular_pocket(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+def _circular_pocket(told: Told, tool: CycleTool) -> Iterator[Block]:
     """5: from the middle outwards in circles, level by level."""
-    told = Told(state, lines, column)
     (x, y), clear = tool.here, tool.height
     radius = abs(told.length(4, "R" if told.has(4, "R") else "")) - tool.radius
-    if radius < -_SMALLEST:
-        raise tool.refuse("The tool is wider than the pocket.", "Use a smaller tool.")
+    tool.check(radius >= -_SMALLEST, "The tool is wider than the pocket.", "Use a smaller tool.")
     surface, feed, turn = clear - told.length(1), told.cutting_feed(5), told.turn(5)
-    step = tool.radius * 2.0 * _OVERLAP
-    count = max(1, math.ceil(radius / step)) if step > _SMALLEST else 1
+    count = _ring_count(tool, radius)
     for done in _levels(tool, abs(told.length(2)), abs(told.length(3))):
         yield tool.across((x, y), None, feed)
         yield tool.to(surface - done, told.feed(3))
@@ -194,18 +185,21 @@ def _circular_pocket(state: State, tool: CycleTool, lines: Lines, column: int) -
     yield tool.across((x, y))
 
 
-def _thread_cutting(state: State, tool: CycleTool, lines: Lines, column: int) -> Iterator[Block]:
+def _thread_cutting(told: Told, tool: CycleTool) -> Iterator[Block]:
     """18: from where the tool stands, at pitch times speed, to the depth; the spindle stops there."""
-    told = Told(state, lines, column)
     tool.warn_uncoupled()
     rpm, pitch, depth = tool.speed, told.length(2), told.length(1)
-    if not rpm or not pitch:
-        raise tool.refuse(
-            "Cycle 18 needs a spindle speed and a pitch.", "Program S in TOOL CALL and PITCH in cycle 18."
-        )
+    text = "Cycle 18 needs a spindle speed and a pitch."
+    tool.check(rpm and pitch, text, "Program S in TOOL CALL and PITCH in cycle 18.")
     yield tool.turn(rpm if pitch > 0.0 else -rpm)
     yield tool.tap(tool.height + depth, abs(pitch), in_hole=True)
     yield tool.stop()
+
+
+def _ring_count(tool: CycleTool, width: float) -> int:
+    """Rings from the middle of a pocket out to its wall."""
+    step = tool.radius * 2.0 * _OVERLAP
+    return max(1, math.ceil(width / step)) if step > _SMALLEST else 1
 
 
 def _sides(told: Told, part: int) -> Point:
@@ -221,20 +215,13 @@ def _levels(tool: CycleTool, depth: float, step: float) -> Iterator[float]:
         yield depth
         return
     count = math.ceil(depth / step - 1e-9)
-    if count > _MOST_LEVELS:
-        raise tool.refuse(
-            Message(
-                "An infeed of {step} mm would need {count} passes, which is too many.",
-                step=f"{step:g}",
-                count=count,
-            ),
-            "Increase the infeed.",
-        )
+    text = "An infeed of {step} mm would need {count} passes, which is too many."
+    tool.check(count <= _MOST_LEVELS, text, "Increase the infeed.", step=step, count=count)
     yield from (min(step * at, depth) for at in range(1, count + 1))
 
 
 _RIGID = 17
-OLDER: dict[int, Callable[[State, CycleTool, Lines, int], Iterator[Block]]] = {
+OLDER: dict[int, Callable[[Told, CycleTool], Iterator[Block]]] = {
     1: _pecking,
     2: _tapping,
     3: _slot,

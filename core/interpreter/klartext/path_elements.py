@@ -206,16 +206,14 @@ def _by_radius(state: State, node: Move, start: Point, end: Point, _: Point | No
 def _tangential(state: State, node: Move, start: Point, end: Point, before: Point | None) -> Arc | None:
     """CT and CTP: goes on in the direction of the element before; straight on it is a line."""
     if before is None:
-        text = Message("No move precedes {form}, so its starting direction is not defined.", form=node.form)
-        raise state.refuse(node.column, PREVIOUS, text, "Program a move before this block.")
+        text = "No move precedes {form}, so its starting direction is not defined."
+        raise state.refuse(node.column, PREVIOUS, text, "Program a move before this block.", form=node.form)
     dx, dy = end[0] - start[0], end[1] - start[1]
     aside = -before[1] * dx + before[0] * dy  # of the end to the left of the way
     if abs(aside) < _PARALLEL * max(1.0, math.hypot(dx, dy)):
         if before[0] * dx + before[1] * dy <= 0.0:
-            text = Message(
-                "{form} would have to reverse its direction to reach its end point.", form=node.form
-            )
-            raise state.refuse(node.column, ARC_END, text, "Correct the end point.")
+            text = "{form} would have to reverse its direction to reach its end point."
+            raise state.refuse(node.column, ARC_END, text, "Correct the end point.", form=node.form)
         return None
     radius = (dx * dx + dy * dy) / (2.0 * aside)  # positive where the centre is on the left
     centre = start[0] - before[1] * radius, start[1] + before[0] * radius
@@ -237,13 +235,9 @@ def _round_the_pole(state: State, node: Move, made: PathElement) -> Iterator[Pat
     sweep = _sweep(state, node, first)
     turns = math.ceil(abs(sweep) / 360.0 - 1e-9)
     if turns > _MOST_TURNS:
-        text = Message("CP makes {revolutions} revolutions, which is too many.", revolutions=turns)
-        raise state.refuse(
-            node.column,
-            ARC_END,
-            text,
-            Message("Program at most {most_turns} revolutions.", most_turns=_MOST_TURNS),
-        )
+        text = "CP makes {revolutions} revolutions, which is too many."
+        hint = "Program at most {most_turns} revolutions."
+        raise state.refuse(node.column, ARC_END, text, hint, revolutions=turns, most_turns=_MOST_TURNS)
     z1 = _along(state, node.word("XYZ"[order[2]]), start[2])
     here = start
     for turn in range(1, turns + 1):
@@ -285,14 +279,11 @@ def _demand_radius(state: State, node: Move, radius: float) -> None:
 
 def _demand_on_circle(state: State, node: Move, first: float, last: float) -> None:
     if abs(first - last) > ON_CIRCLE:
-        text = Message(
-            "The end point is {last} mm from the pole, but the start point is {first} mm from the pole.",
-            last=f"{last:.10g}",
-            first=f"{first:.10g}",
-        )
-        raise state.refuse(node.column, ARC_END, text, "Correct the end point or CC.")
+        text = "The end point is {last} mm from the pole, but the start point is {first} mm from the pole."
+        hint = "Correct the end point or CC."
+        raise state.refuse(node.column, ARC_END, text, hint, last=f"{last:.10g}", first=f"{first:.10g}")
 
 
 def _no_turn(state: State, node: Move) -> Arc:
-    text = Message("{form} needs DR+ or DR-.", form=node.form)
-    raise state.refuse(node.column, DIRECTION, text, "Write DR+ for counterclockwise.")
+    text = "{form} needs DR+ or DR-."
+    raise state.refuse(node.column, DIRECTION, text, "Write DR+ for counterclockwise.", form=node.form)

@@ -93,8 +93,8 @@ class PathRunner:
         """RND or CHF behind an element that waits for it. Raises ProgramError where there is none."""
         last = next((each for each in reversed(self._waiting) if isinstance(each, PathElement)), None)
         if last is None or last.flat is None or self._corner is not None:
-            text = Message("{form} must follow a path in the working plane.", form=node.form)
-            raise self._state.refuse(node.column, ROUNDING, text, _BETWEEN)
+            text = "{form} must follow a path in the working plane."
+            raise self._state.refuse(node.column, ROUNDING, text, _BETWEEN, form=node.form)
         self._corner, self._corner_line = node, self._state.line
 
     def between(self, event: Event) -> Iterator[Block]:
@@ -106,11 +106,9 @@ class PathRunner:
 
     def finish(self, column: int, what: str) -> Iterator[Block]:
         """Everything that waits, before ``what``, which radius compensation does not let through."""
-        if self._side:
-            text = Message("{what} is not allowed while radius compensation is active.", what=what)
-            raise self._state.refuse(
-                column, COMPENSATION, text, "End the contour with R0 or DEP before this block."
-            )
+        text = "{what} is not allowed while radius compensation is active."
+        hint = "End the contour with R0 or DEP before this block."
+        self._state.check(not self._side, column, COMPENSATION, text, hint, what=what)
         yield from self._release()
 
     def end(self) -> Iterator[Block]:
@@ -193,11 +191,9 @@ class PathRunner:
         self._end, self._direction = element.end, element.end_direction
 
     def _approach(self, node: Move, element: PathElement) -> Iterator[Block]:
-        if self._side:
-            text = "APPR is not allowed while radius compensation is active."
-            raise self._state.refuse(
-                node.column, COMPENSATION, text, "End the contour with R0 or DEP before this block."
-            )
+        text = "APPR is not allowed while radius compensation is active."
+        hint = "End the contour with R0 or DEP before this block."
+        self._state.check(not self._side, node.column, COMPENSATION, text, hint)
         yield from self._release()
         self._begin(node, _Approach(node, element), element)
         self._side = node.compensation if node.compensation in {"L", "R"} else ""
@@ -207,10 +203,9 @@ class PathRunner:
             yield from self._close(node)
             return
         if self._direction is None:
-            text = Message(
-                "No move precedes {form}, so its starting direction is not defined.", form=node.form
-            )
-            raise self._state.refuse(node.column, PREVIOUS, text, "Program a move before this block.")
+            text = "No move precedes {form}, so its starting direction is not defined."
+            hint = "Program a move before this block."
+            raise self._state.refuse(node.column, PREVIOUS, text, hint, form=node.form)
         here, direction = self.here, self._direction
         yield from self._release()
         yield from self._emit_all(way_out(self._state, node, here, direction, "", 0.0, self._take_feed(node)))
@@ -403,8 +398,8 @@ class PathRunner:
     def _demand_axes(self, node: Move) -> None:
         for word in node.axes:
             if word.axis not in self._state.at:
-                text = Message("This machine has no {axis} axis.", axis=word.axis)
-                raise self._state.refuse(word.column, WRONG_AXIS, text, "Remove the word.")
+                text = "This machine has no {axis} axis."
+                raise self._state.refuse(word.column, WRONG_AXIS, text, "Remove the word.", axis=word.axis)
 
     def _take_feed(self, node: Move) -> float | None:
         """The feed of the block, None for rapid, which holds for this block alone."""
@@ -473,13 +468,9 @@ def _warn(state: State, node: Move) -> None:
     ]
     if off:
         state.reported.add(("table", plane.line))
-        text = Message(
-            "The position of {off} does not match the plane programmed on line {line}.",
-            off=" and ".join(off),
-            line=plane.line,
-        )
+        text = "The position of {off} does not match the plane programmed on line {line}."
         hint = (
-            "Position the rotary axes before the cut with L A+Q120 C+Q122 R0 FMAX, or write TURN "
-            "in the PLANE block."
+            "Position the rotary axes before the cut with L A+Q120 C+Q122 R0 FMAX, or write TURN in the "
+            "PLANE block."
         )
-        state.log.warn(state.line, 0, "table-elsewhere", text, hint)
+        state.log.warn(state.line, 0, "table-elsewhere", text, hint, off=" and ".join(off), line=plane.line)

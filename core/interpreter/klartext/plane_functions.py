@@ -66,10 +66,8 @@ def working_plane(state: State, node: Plane) -> WorkingPlane:
     found = choose(state.kinematics, frame, state.rotary, side, table_rot=table_rot)
     if found is None:
         asked = Message(" when {side} is programmed", side=side) if side else ""
-        text = Message(
-            "The rotary axes cannot reach this plane within their ranges{requested}.", requested=asked
-        )
-        raise state.refuse(node.column, ANGLE, text, "Check the points, angles and SYM.")
+        text = "The rotary axes cannot reach this plane within their ranges{requested}."
+        raise state.refuse(node.column, ANGLE, text, "Check the points, angles and SYM.", requested=asked)
     if side is None and not state.table_known:
         _tell_of_two_ways(state, node, frame)
     return WorkingPlane(frame, found.angles, state.line)
@@ -92,21 +90,19 @@ def _axial(state: State, node: Plane) -> WorkingPlane:
     for word in node.words:
         axis = state.kinematics.rotary(word.axis)
         if axis is None:
-            text = Message("This machine has no rotary axis {axis}.", axis=word.axis)
-            hint = Message("Remove the word, or select a machine with axis {axis}.", axis=word.axis)
-            raise state.refuse(word.column, WRONG_AXIS, text, hint)
+            text = "This machine has no rotary axis {axis}."
+            hint = "Remove the word, or select a machine with axis {axis}."
+            raise state.refuse(word.column, WRONG_AXIS, text, hint, axis=word.axis)
         value = word_values.number(state, word.value, word.axis, word_values.MOST_ANGLE)
         zero = state.kinematics.zero[axis.name]
         angle = angles[axis.name] + value if word.incremental else value + zero
         if not axis.inside(angle):
             ends = Message("{low} and {high}", low=f"{axis.low - zero:g}", high=f"{axis.high - zero:g}")
-            text = Message(
-                "{axis} {angle} is not between {ends}.",
-                axis=axis.name,
-                angle=f"{angle - zero:+.7g}",
-                ends=ends,
+            text = "{axis} {angle} is not between {ends}."
+            hint = "Correct the angle."
+            raise state.refuse(
+                word.column, ANGLE, text, hint, axis=axis.name, angle=f"{angle - zero:+.7g}", ends=ends
             )
-            raise state.refuse(word.column, ANGLE, text, "Correct the angle.")
         angles[axis.name] = axis.displayed(angle)
     return WorkingPlane(state.kinematics.frame(angles), angles, state.line)
 
@@ -130,9 +126,9 @@ def _made(state: State, node: Plane, frame: Callable[[], Matrix]) -> Matrix:
     try:
         return frame()
     except NoFrameError as problem:
-        text = Message("{what}.", what=str(problem).capitalize())
+        text = "Correct the points, vectors or angles."
         raise state.refuse(
-            node.column, PLANE_WRONG, text, "Correct the points, vectors or angles."
+            node.column, PLANE_WRONG, "{what}.", text, what=str(problem).capitalize()
         ) from problem
 
 
@@ -172,9 +168,9 @@ def _as_figured(state: State, node: Plane, frame: Matrix) -> Matrix:
     figure = state.figure
     if figure.plain:
         return frame
-    text = Message("MIRROR, ROTATION or SCALE is active and also applies to PLANE {form}.", form=node.form)
+    text = "MIRROR, ROTATION or SCALE is active and also applies to PLANE {form}."
     hint = "Check the axis angles, write PLANE before MIRROR, ROTATION and SCALE, or use PLANE AXIAL."
-    state.log.warn(state.line, node.column, "plane-figure", text, hint)
+    state.log.warn(state.line, node.column, "plane-figure", text, hint, form=node.form)
     columns = [figure.plane(applied(frame, figure.program(unit))) for unit in IDENTITY]
     return transposed((columns[0], columns[1], columns[2]))
 
@@ -243,16 +239,14 @@ def retract_way(state: State, asked: Retract | None) -> float:
         if abs(share) > SAME_POINT:
             ways.append(((slide.high if share > 0.0 else slide.low) - at) / share)
     up = min(ways, default=math.inf)
-    if math.isinf(up):
-        text = "MB MAX needs a software limit, but this machine does not have one along the tool axis."
-        raise state.refuse(asked.column, INPUT_VALUE, text, "Write MB with a length.")
+    text = "MB MAX needs a software limit, but this machine does not have one along the tool axis."
+    state.check(not math.isinf(up), asked.column, INPUT_VALUE, text, "Write MB with a length.")
     return max(up - SHORT_OF_LIMIT, 0.0)
 
 
 def _demand_possible(state: State, node: Plane) -> None:
-    if state.m128:
-        text = "M128 is active."
-        raise state.refuse(node.column, M128_ON, text, "Switch M128 off with M129 before this block.")
+    text = "M128 is active."
+    state.check(not state.m128, node.column, M128_ON, text, "Switch M128 off with M129 before this block.")
 
 
 def _demand_tool_axis(state: State, node: Plane) -> None:
@@ -296,12 +290,9 @@ def _warn_of_shift(state: State, made: WorkingPlane | None) -> None:
     """A datum that was shifted in a tilted system, and another plane straight behind it: the classic trap."""
     if made is None or state.plane is None or state.shift == ORIGIN:
         return
-    text = Message(
-        "The datum was shifted in the tilted coordinate system that is defined on line {line}.",
-        line=state.plane.line,
-    )
+    text = "The datum was shifted in the tilted coordinate system that is defined on line {line}."
     hint = (
-        "If the shift is meant for the workpiece coordinate system, write PLANE RESET STAY "
-        "before TRANS DATUM."
+        "If the shift is meant for the workpiece coordinate system, write PLANE RESET STAY before TRANS "
+        "DATUM."
     )
-    state.log.warn(state.line, 0, "datum-in-plane", text, hint)
+    state.log.warn(state.line, 0, "datum-in-plane", text, hint, line=state.plane.line)

@@ -1,4 +1,4 @@
-"""Cycles that mill pockets, slots and studs (251, 252, 253, 256, 257): level by level, walls and floor last.
+"""Cycles that mill pockets, slots and studs (210 to 215, 251 to 257): level by level, walls and floor last.
 
 Pockets are cleared from the inside out, studs from the blank inwards. The way is this control's own; what is
 left standing is what the parameters say. A ramp goes down by 3 degrees: the tool table tells no other angle.
@@ -9,16 +9,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 
-from core.geometry.lines_and_arcs import Arc
+from core.geometry.lines_and_arcs import Arc, Point
+from core.geometry.pocket_area import Loop
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.klartext.cycle_moves import CycleTool
-from core.interpreter.klartext.hole_cycles import SMALLEST, heights, infeeds, out
+from core.interpreter.klartext.contour_cycles import floor_finishing, rough_out, side_finishing
+from core.interpreter.klartext.cycle_moves import CycleTool, Parameters
+from core.interpreter.klartext.hole_cycles import SMALLEST, heights, infeeds, levels, out
 from core.interpreter.klartext.milled_rings import Ring, Seat
-from core.message import Message
+from core.language.klartext.q_parameters import MAX_FEED
 
 _RAMP = math.tan(math.radians(3.0))
 _MOST_OVERLAP = 1.9999
 _BOTH, _ROUGH, _FINISH = 0, 1, 2
+_MOST_SLOTS = 1_000
+_CENTRE, _LEFT_END, _MIDDLE, _RIGHT_END = range(4)
 
 
 class _Milling:
@@ -33,27 +37,19 @@ class _Milling:
         self.scope = int(tool.plain(215, float(_ROUGH)))
         overlap = tool.plain(370, 1.0)
         if not 0.0 < overlap <= _MOST_OVERLAP or tool.radius <= SMALLEST:
-            text = Message(
-                "With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot "
-                "clear the area.",
-                overlap=f"{overlap:g}",
-                radius=f"{tool.radius:g}",
+            text = (
+                "With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot clear the "
+                "area."
             )
-            raise tool.refuse(text, "Set Q370 between 0.1 and 1.9999, and enter the tool radius.")
+            hint = "Set Q370 between 0.1 and 1.9999, and enter the tool radius."
+            raise tool.refuse(text, hint, overlap=overlap, radius=tool.radius)
         self.step = overlap * tool.radius
         self.against = (tool.plain(351, 1.0) < 0.0) != (tool.rpm < 0.0)
 
-    @property
-    def rough_floor(self) -> float:
-        """The height that clearing goes down to."""
-        return self.bottom + (self.floor if self.scope != _FINISH else 0.0)
-
     def levels(self) -> list[float]:
         """Heights of clearing, the last one last."""
-        depth = self.surface - self.rough_floor
-        if depth < SMALLEST:
-            return []
-        return [self.surface - done for done in infeeds(self.tool, depth, self.tool.length(202))]
+        floor = self.bottom + (self.floor if self.scope != _FINISH else 0.0)
+        return levels(self.tool, self.surface, floor, lambda: self.tool.length(202))
 
     @property
     def finishes(self) -> bool:
@@ -67,10 +63,8 @@ class _Milling:
 
     def wall_levels(self) -> list[float]:
         """Heights of finishing: by Q338, where that is 0 at once."""
-        return [
-            self.surface - done
-            for done in infeeds(self.tool, self.surface - self.bottom, self.tool.length(338, 0.0))
-        ]
+        step = self.tool.length(338, 0.0)
+        return [self.surface - done for done in infeeds(self.tool, self.surface - self.bottom, step)]
 
 
 # --- pockets and slots: from the inside out
@@ -93,8 +87,7 @@ def circular_pocket(tool: CycleTool) -> Iterator[Block]:
 def slot(tool: CycleTool) -> Iterator[Block]:
     """253: Q218 long and Q219 wide, turned by Q374; the tool stands at Q367 of it."""
     a, b = tool.length(218) / 2.0, tool.length(219) / 2.0
-    if a < b - SMALLEST:
-        raise tool.refuse("The slot is wider than it is long.", "Correct Q218 and Q219.")
+    tool.check(a >= b - SMALLEST, "The slot is wider than it is long.", "Correct Q218 and Q219.")
     ends = {0: (0.0, 0.0), 1: (a, 0.0), 2: (a - b, 0.0), 3: (b - a, 0.0), 4: (-a, 0.0)}
     seat = Seat(tool.here, tool.plain(374, 0.0)).moved(*_placed(tool, ends))
     yield from _pocket(tool, seat, Ring(a, b, b))
@@ -151,9 +144,8 @@ def _down(told: _Milling, seat: Seat, ring: Ring, above: float, z: float) -> Ite
 
 def _helix(told: _Milling, seat: Seat, radius: float, above: float, z: float) -> Iterator[Block]:
     tool = told.tool
-    if radius < SMALLEST * 1000.0:
-        text = "There is not enough room to plunge along a ramp."
-        raise tool.refuse(text, "Set Q366=+0 for a center-cutting tool.")
+    text = "There is not enough room to plunge along a ramp."
+    tool.check(radius >= SMALLEST * 1000.0, text, "Set Q366=+0 for a center-cutting tool.")
     begin = seat.at(radius, 0.0)
     yield tool.across(begin)
     yield tool.to(above, told.plunge)
@@ -236,8 +228,7 @@ def circular_stud(tool: CycleTool) -> Iterator[Block]:
 def _stud(tool: CycleTool, seat: Seat, wall: Ring, more: float) -> Iterator[Block]:
     """Level by level in rings that come nearer; ``more`` is how far the blank stands out."""
     told = _Milling(tool)
-    if more < SMALLEST:
-        raise tool.refuse("The blank is not larger than the stud.", "Correct the blank dimensions.")
+    tool.check(more >= SMALLEST, "The blank is not larger than the stud.", "Correct the blank dimensions.")
     last = wall.wider(tool.radius)
     rough = last.wider(told.side if told.scope != _FINISH else 0.0)
     outside = last.a + more + tool.radius + tool.length(200)
@@ -263,9 +254,7 @@ def _approached(told: _Milling, seat: Seat, outside: float, z: float, down: bool
     tool = told.tool
     if not down:
         return
-    yield tool.to(max(told.clear, tool.height))
-    yield tool.across(seat.at(outside, 0.0))
-    yield tool.to(told.clear)
+    yield from tool.over(seat.at(outside, 0.0), told.clear)
     yield tool.to(z, told.plunge)
 
 
@@ -276,10 +265,128 @@ def _around(told: _Milling, seat: Seat, ring: Ring, feed: float) -> Iterator[Blo
     yield from _round_once(told, seat, ring, -tool.radius, feed)
 
 
-MILLED: dict[int, Callable[[CycleTool], Iterator[Block]]] = {
+# --- circular slots: areas with a boundary of their own, cleared by the rings of the SL cycles
+
+
+def circular_slot(tool: CycleTool) -> Iterator[Block]:
+    """254: Q219 wide on the circle Q375, from Q376 over Q248 degrees, Q377 times Q378 degrees on."""
+    surface, clear, _ = heights(tool)
+    safe = max(surface + tool.length(204, 0.0), clear) / tool.scale
+    centre, begin, sweep = _slot_place(tool)
+    count, step = int(tool.plain(377, 1.0)), tool.plain(378, 0.0)
+    text = "Q377={count} is not a valid number of slots."
+    tool.check(1 <= count <= _MOST_SLOTS, text, "Enter a valid number.", count=count)
+    scope = int(tool.plain(215, 0.0))
+    side, floor = tool.length(368, 0.0), tool.length(369, 0.0)
+    for at in range(count):
+        area = [slot_of(tool, centre, begin + at * step, sweep)]
+        asked = tool.seen({**_AS_CONTOUR, 7: safe, 19: 206 if tool.plain(366, 1.0) else 0.0})
+        if scope != _FINISH:
+            yield from rough_out(asked, area)
+        if scope == _FINISH or (scope == _BOTH and max(side, floor) > SMALLEST):
+            last = tool.seen({**_AS_CONTOUR, 3: 0.0, 4: 0.0, 7: safe, **_finishing(tool)})
+            if floor > SMALLEST:
+                yield from floor_finishing(last, area)
+            yield from side_finishing(last, area)
+
+
+def slot_of(tool: CycleTool, centre: Point, begin: float, sweep: float) -> Loop:
+    """The outline of one slot, counter-clockwise. Raises ProgramError for one that is none."""
+    radius, half = tool.length(375) / 2.0, tool.length(219) / 2.0
+    if not SMALLEST < half < radius or not 0.0 < abs(sweep) <= 360.0:
+        text = (
+            "A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible."
+        )
+        raise tool.refuse(text, "Correct Q219, Q248 and Q375.", half=2 * half, sweep=sweep, radius=2 * radius)
+    if radius * math.radians(360.0 - abs(sweep)) < 2.0 * half:
+        raise tool.refuse("The ends of the slot overlap.", "Reduce Q248.")
+    first, last = sorted((begin, begin + sweep))
+
+    def at(angle: float, away: float) -> Point:
+        turned = math.radians(angle)
+        return centre[0] + away * math.cos(turned), centre[1] + away * math.sin(turned)
+
+    wide, near = radius + half, radius - half
+    return [
+        Arc(at(first, wide), at(last, wide), centre, False),
+        Arc(at(last, wide), at(last, near), at(last, radius), False),
+        Arc(at(last, near), at(first, near), centre, True),
+        Arc(at(first, near), at(first, wide), at(first, radius), False),
+    ]
+
+
+def _slot_place(tool: CycleTool) -> tuple[Point, float, float]:
+    """Centre, begin and sweep: as told, or from the tool, which stands at an end or in the middle (Q367)."""
+    begin, sweep, radius = tool.plain(376), tool.plain(248), tool.length(375) / 2.0
+    place = int(tool.plain(367, 0.0))
+    share = {_LEFT_END: 0.0, _MIDDLE: 0.5, _RIGHT_END: 1.0}.get(place)
+    if share is None:
+        tool.check(place == _CENTRE, "Q367 must be 0, 1, 2 or 3.", "Correct Q367.")
+        return (tool.length(216), tool.length(217)), begin, sweep
+    turned = math.radians(begin)  # Q376 is the angle of the place where the tool stands
+    x, y = tool.here
+    return (x - radius * math.cos(turned), y - radius * math.sin(turned)), begin - share * sweep, sweep
+
+
+# A slot's parameters by the numbers of the SL cycles; what those have beyond is 0 or as they take it.
+_AS_CONTOUR: Parameters = {
+    1: 201, 2: 370, 3: 368, 4: 369, 5: 203, 6: 200, 9: 351, 10: 202, 11: 206, 12: 207, 14: 0.0,
+    18: 0.0, 208: MAX_FEED, 401: 100.0,
+}  # fmt: skip
+
+
+def _finishing(tool: CycleTool) -> Parameters:
+    """Finishing at Q385 in infeeds of Q338, at once where that is 0."""
+    feed: Parameters = {12: 385} if tool.plain(385, 0.0) else {}
+    return {**feed, 10: 338 if tool.plain(338, 0.0) else -1e9}
+
+
+# --- older cycles: round a centre of their own (Q216, Q217), as others with these parameters
+
+
+Milling = Callable[[CycleTool], Iterator[Block]]
+
+_HEIGHTS: Parameters = {200: 200, 201: 201, 203: 203, 204: 204}
+_SLOT: Parameters = {**_HEIGHTS, 202: 202, 206: 207, 207: 207, 215: 215, 219: 219, 338: 338, 366: 1.0}
+_WALLS: Parameters = {**_HEIGHTS, 202: 202, 206: 206, 207: 207, 215: 2.0, 338: 202}
+
+
+def _centred(milling: Milling, parameters: Parameters) -> Milling:
+    """A cycle round Q216 Q217, as another one with these parameters."""
+
+    def run(tool: CycleTool) -> Iterator[Block]:
+        surface, clear, _ = heights(tool)
+        yield tool.to(max(clear, surface + tool.length(204, 0.0), tool.height))
+        yield tool.across((tool.length(216), tool.length(217)))
+        yield from milling(tool.seen(parameters))
+
+    return run
+
+
+def _round_corners(tool: CycleTool) -> Iterator[Block]:
+    """212: corners of the tool's radius where Q220 tells none."""
+    radius = tool.length(220, 0.0) or tool.radius
+    yield from _centred(rectangular_pocket, {**_WALLS, 218: 218, 219: 219, 220: radius / tool.scale})(tool)
+
+
+def _older_stud(tool: CycleTool) -> Iterator[Block]:
+    """213: the blank stands out by Q221, or by as much as the tool is wide."""
+    more = 2.0 * (tool.plain(221, 0.0) or tool.radius / tool.scale)
+    sides = {424: tool.plain(218) + more, 425: tool.plain(219) + more}
+    yield from _centred(rectangular_stud, {**_WALLS, 218: 218, 219: 219, 220: 220, **sides})(tool)
+
+
+MILLED: dict[int, Milling] = {
+    210: _centred(slot, {**_SLOT, 218: 218, 374: 224}),
+    211: _centred(circular_slot, {**_SLOT, 216: 216, 217: 217, 375: 244, 376: 245, 248: 248}),
+    212: _round_corners,
+    213: _older_stud,
+    214: _centred(circular_pocket, {**_WALLS, 223: 223}),
+    215: _centred(circular_stud, {**_WALLS, 222: 222, 223: 223}),
     251: rectangular_pocket,
     252: circular_pocket,
     253: slot,
+    254: circular_slot,
     256: rectangular_stud,
     257: circular_stud,
 }

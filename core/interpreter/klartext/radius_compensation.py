@@ -161,26 +161,24 @@ def _radius(state: State, entry: Entry) -> tuple[float, float]:
     turn = -1.0 if (entry.side == "R") != (value < 0.0) else 1.0
     size = value - entry.radius if value > 0.0 else entry.radius - value
     if value == 0.0 or size < SAME_POINT:
-        text = Message(
+        raise state.refuse(
+            word.column,
+            RADIUS_TOO_LARGE,
             "R {value} mm of {form} must be larger than the tool radius of {radius} mm.",
+            "Increase R.",
             value=f"{value:.10g}",
             form=entry.node.form,
             radius=f"{entry.radius:.10g}",
         )
-        raise state.refuse(word.column, RADIUS_TOO_LARGE, text, "Increase R.")
     return size, turn
 
 
 def _touching(state: State, entry: Entry, centre: Point, size: float, *, clockwise: bool) -> Point:
     """Where a line from the start of the entry touches the circle, run in its sense."""
     if math.dist(entry.start[:2], centre) < size:
-        text = Message(
-            "No path is possible for {form} because the tool is inside the arc of this move.",
-            form=entry.node.form,
-        )
-        raise state.refuse(
-            entry.node.column, INPUT_VALUE, text, "Start farther from the contour, or reduce R."
-        )
+        text = "No path is possible for {form} because the tool is inside the arc of this move."
+        hint = "Start farther from the contour, or reduce R."
+        raise state.refuse(entry.node.column, INPUT_VALUE, text, hint, form=entry.node.form)
     return touching(entry.start[:2], centre, size, clockwise=clockwise)
 
 

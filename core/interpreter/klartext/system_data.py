@@ -93,19 +93,17 @@ def _cell(state: State, column: int, number: int, index: int) -> float:
         return state.tool_cells[tool, number]
     row = _row(state, tool)
     if row is None:
-        text = Message("Tool {tool} is not in the tool table.", tool=tool)
-        raise state.refuse(column, TOOL_UNKNOWN, text, "Add the tool to the tool table.")
+        text = "Tool {tool} is not in the tool table."
+        raise state.refuse(column, TOOL_UNKNOWN, text, "Add the tool to the tool table.", tool=tool)
     if number in _COLUMNS:
         return _COLUMNS[number][1](row) / (state.scale if number in _LENGTHS else 1.0)
     if number not in _EMPTY:
         raise _not_here(state, column, 18, _TOOL_TABLE, number, index)
     found = _AS_THE_RADIUS if number == _OFFSET_IN_PLANE else 0.0
-    text = Message(
-        "The tool table has no column {empty}, so FN 18 returns {value} as it does for an empty cell.",
-        empty=_EMPTY[number],
-        value=f"{found:.9g}",
+    text = "The tool table has no column {empty}, so FN 18 returns {value} as it does for an empty cell."
+    state.tell_once(
+        column, Severity.WARNING, "tool-table-column", text, empty=_EMPTY[number], value=f"{found:.9g}"
     )
-    state.tell_once(column, Severity.WARNING, "tool-table-column", text)
     return found
 
 

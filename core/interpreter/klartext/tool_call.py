@@ -25,8 +25,8 @@ def tool_call(state: State, node: ToolCall, use: ToolUse) -> Iterator[Block]:
     """
     changes = node.tool is not None or node.length is not None or node.radius is not None
     if state.m128 and changes:
-        why = "TOOL CALL with a tool or an oversize is not allowed while M128 is active."
-        raise state.refuse(1, NOT_WITH_M128, why, "Switch M128 off with M129 before this block.")
+        text = "TOOL CALL with a tool or an oversize is not allowed while M128 is active."
+        raise state.refuse(1, NOT_WITH_M128, text, "Switch M128 off with M129 before this block.")
     if node.tool_axis not in {"", "Z"}:
         raise unsupported(
             state.line, node.column, Message("The tool axis {tool_axis}", tool_axis=node.tool_axis)
@@ -71,9 +71,8 @@ def _number(state: State, tool: int | str | Value | None, column: int) -> int | 
         return NamedTool(NAMED_TOOLS + names.index(tool), tool)
     if (found := state.setup.tool_names.get(tool.upper())) is not None:
         return found
-    text = Message('No tool is named "{tool}".', tool=tool)
     hint = "Give this name to a tool in the tool table, or call the tool by its number."
-    raise state.refuse(column, TOOL_UNKNOWN, text, hint)
+    raise state.refuse(column, TOOL_UNKNOWN, 'No tool is named "{tool}".', hint, tool=tool)
 
 
 def _oversize(state: State, value: Value | None, what: str, most: float = 99.999) -> float:
@@ -104,10 +103,9 @@ def _measure(state: State, tool: int, longer: float, thicker: float, use: ToolUs
     if 0 < tool < NAMED_TOOLS:
         use.call(tool)
     if _defined(state, tool) is None and tool and use.offset(tool, state.setup.tools) is None:
-        text = Message(
-            "Tool {tool} has no offset, so 0 is used and the machine will not start.", tool=tool_text(tool)
-        )
-        state.log.warn(state.line, column, "tool-offset-missing", text, "Set the tool offset.")
+        text = "Tool {tool} has no offset, so 0 is used and the machine will not start."
+        hint = "Set the tool offset."
+        state.log.warn(state.line, column, "tool-offset-missing", text, hint, tool=tool_text(tool))
     measure_again(state)
 
 
@@ -149,14 +147,9 @@ def _by_cutting_speed(state: State, node: ToolCall, number: int | None) -> float
     assert node.cutting_speed is not None
     speed = word_values.number(state, node.cutting_speed, "VC", word_values.MOST_SPEED, 0.0)
     radius = radius_of(state, state.modal.tool if number is None else number) or 0.0
-    if radius <= 0.0:
-        text = "A cutting speed needs the tool radius, but the radius of the tool is not defined."
-        raise state.refuse(
-            node.cutting_speed.column,
-            WRONG_RPM,
-            text,
-            "Enter the tool radius R in the tool table, or program S.",
-        )
+    text = "A cutting speed needs the tool radius, but the radius of the tool is not defined."
+    hint = "Enter the tool radius R in the tool table, or program S."
+    state.check(radius > 0.0, node.cutting_speed.column, WRONG_RPM, text, hint)
     return speed * 1000.0 / (2.0 * math.pi * radius)
 
 
@@ -167,11 +160,8 @@ def _speed(state: State, node: ToolCall, number: int | None) -> float | None:
         return None
     rpm = word_values.number(state, node.speed, "S", word_values.MOST_SPEED, 0.0)
     highest = state.setup.limits.max_rpm
-    if rpm > highest:
-        text = Message(
-            "S{rpm} is above the spindle maximum of {highest} rpm.", rpm=f"{rpm:g}", highest=f"{highest:g}"
-        )
-        raise state.refuse(node.speed.column, WRONG_RPM, text, "Lower S.")
+    text = "S{rpm} is above the spindle maximum of {highest} rpm."
+    state.check(rpm <= highest, node.speed.column, WRONG_RPM, text, "Lower S.", rpm=rpm, highest=highest)
     return rpm
 
 

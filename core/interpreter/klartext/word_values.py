@@ -8,7 +8,6 @@ from core.interpreter.klartext.q_functions import content
 from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import FEED_MISSING, INPUT_VALUE
 from core.language.klartext.klartext_nodes import AxisWord, Feed, Value
-from core.message import Message
 
 # Input ranges of the control's manuals.
 MOST_ANGLE = 99_999_999.9999999  # of PLANE AXIAL
@@ -26,14 +25,16 @@ def number(state: State, value: Value, what: str, most: float, least: float | No
         found = -found if value.negative else found
     low = -most if least is None else least
     if not low <= found <= most:
-        text = Message(
+        raise state.refuse(
+            value.column,
+            INPUT_VALUE,
             "{what} {value} is not between {low} and {maximum}.",
+            "Correct the value.",
             what=what,
             value=f"{found:+.12g}",
             low=f"{low:.15g}",
             maximum=f"{most:.15g}",
         )
-        raise state.refuse(value.column, INPUT_VALUE, text, "Correct the value.")
     return found
 
 

@@ -47,9 +47,11 @@ def arc_move(state: State, statement: Statement) -> Block:
 def _warn_of_long_way(state: State, statement: Statement, sweep: float) -> None:
     """More than half a circle by I and K: an insert can hardly cut it; the code is that of the other way."""
     if pi + _ROUNDED < sweep < 2.0 * pi - _ROUNDED:
-        text = Message("The arc spans {sweep} degrees.", sweep=f"{degrees(sweep):.0f}")
+        text = "The arc spans {sweep} degrees."
         hint = "Check G02 and G03, and the signs of I and K."
-        state.log.warn(statement.line, statement.code_column, "arc-over-half", text, hint)
+        state.log.warn(
+            statement.line, statement.code_column, "arc-over-half", text, hint, sweep=f"{degrees(sweep):.0f}"
+        )
 
 
 def _centre_by_radius(state: State, statement: Statement, start: Point, *, clockwise: bool) -> Point:
@@ -81,11 +83,8 @@ def _centre_by_words(state: State, statement: Statement, start: Point) -> Point:
     if i is None or k is None:
         letter = "I" if i is None else "K"
         given = "K" if i is None else "I"
-        text = Message(
-            "{letter} is missing; with G90 and G73 active, I and K are the coordinates of the arc center.",
-            letter=letter,
-        )
-        raise statement.refuse(given, "arc-coordinate-missing", text, Message("Add {letter}.", letter=letter))
+        text = "{letter} is missing; with G90 and G73 active, I and K are the coordinates of the arc center."
+        raise statement.refuse(given, "arc-coordinate-missing", text, "Add {letter}.", letter=letter)
     return i + state.dx, k + state.dz
 
 

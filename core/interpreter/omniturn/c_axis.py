@@ -16,7 +16,6 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import check_tool, go, on_step, warn_of_title_rapid
 from core.language.omniturn import Word
-from core.message import Message
 
 C_WORDS = ("C", "CA", "CI")
 _TURN = 360.0
@@ -126,13 +125,16 @@ def _goal(state: State, statement: Statement, word: Word) -> float:
     step, value = state.setup.limits.c_step, word.value or 0.0
     count = round(value / step)
     if abs(value / step - count) > 1e-6:
-        text = Message(
+        state.log.warn(
+            statement.line,
+            word.column,
+            "finer-than-step",
             "{word} is finer than the resolution of {step} degrees; {count} is used.",
+            "Round the number.",
             word=word.text,
-            step=f"{step:g}",
-            count=f"{count * step:g}",
+            step=step,
+            count=count * step,
         )
-        state.log.warn(statement.line, word.column, "finer-than-step", text, "Round the number.")
         value = count * step
     absolute = word.letter == "CA" or (word.letter == "C" and state.absolute)
     return value if absolute else state.c + value
@@ -147,22 +149,16 @@ def _check_turns(state: State, statement: Statement, word: Word, way: float, tur
         raise statement.refuse(word, "speed-missing", text, "Write S on this line.")
     needed = way / feed * _TURN
     if turn < needed * (1.0 - 1e-9):
-        text = Message(
-            "C is programmed to turn {turn} degrees, but at this feed the move needs {needed} "
-            "degrees of C rotation.",
-            turn=f"{turn:g}",
-            needed=f"{round(needed, 4):g}",
+        text = (
+            "C is programmed to turn {turn} degrees, but at this feed the move needs {needed} degrees of C "
+            "rotation."
         )
         hint = "Turn C farther, or increase F; otherwise the axes stop before the end point."
-        raise statement.refuse(word, "c-too-little", text, hint)
+        raise statement.refuse(word, "c-too-little", text, hint, turn=turn, needed=round(needed, 4))
     speed = feed * modal.c_rpm / 60.0
     if speed > limits.max_feed * (1.0 + 1e-9):
         shown = modal.feed_text(speed, per_rev=False)
         most = modal.feed_text(limits.max_feed, per_rev=False)
-        text = Message(
-            "At a C speed of {c_rpm} rpm this feed is {value}; the maximum is {maximum}.",
-            c_rpm=f"{modal.c_rpm:g}",
-            value=shown,
-            maximum=most,
-        )
-        raise statement.refuse(0, "feed-over-speed", text, "Lower F or S.")
+        text = "At a C speed of {c_rpm} rpm this feed is {value}; the maximum is {maximum}."
+        hint = "Lower F or S."
+        raise statement.refuse(0, "feed-over-speed", text, hint, c_rpm=modal.c_rpm, value=shown, maximum=most)

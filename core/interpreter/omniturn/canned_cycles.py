@@ -15,7 +15,6 @@ from core.interpreter.omniturn.move_words import move_words
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
-from core.message import Message
 
 LIFT = 0.02 * units.MM_PER_INCH
 """How far a tool is drawn off the cut before it goes back, mm."""
@@ -42,18 +41,16 @@ def length(state: State, statement: Statement, letter: str) -> float:
 def check_count(statement: Statement, letter: str, count: int, what: str) -> None:
     """Refuse a cycle of more passes than anyone means."""
     if count > MOST_PASSES:
-        text = Message(
+        raise statement.refuse(
+            letter,
+            "cycle-passes",
             "{text} would make {count} {what}; the maximum is {most_passes}.",
+            "Look for a missing decimal point in {letter}.",
             text=name(statement),
             count=f"{count:,}",
             what=what,
             most_passes=f"{MOST_PASSES:,}",
-        )
-        raise statement.refuse(
-            letter,
-            "cycle-passes",
-            text,
-            Message("Look for a missing decimal point in {letter}.", letter=letter),
+            letter=letter,
         )
 
 

@@ -10,7 +10,6 @@ from core.interpreter.omniturn.code_rules import check_when, number
 from core.interpreter.omniturn.code_table import G_CODES, LETTERS
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import ReadyLine, Statement
-from core.message import Message
 
 COARSE = frozenset({35, 36})
 _SAME = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)  # mm; the coarsest step
@@ -60,12 +59,9 @@ def _check_place(state: State, statement: Statement, code: int) -> None:
             state.modal.length_text(z - state.offset_z),
         )
         state.adopt(state.modal._replace(coarse=0))  # so that the rest is judged as it was meant
-        text = Message(
-            "G36 is not at the same position as G35, which was at radius {place}, Z {place2}.",
-            place=place[0],
-            place2=place[1],
-        )
-        raise statement.refuse(1, "coarse-place", text, "Move back to the G35 position before G36.")
+        text = "G36 is not at the same position as G35, which was at radius {place}, Z {place2}."
+        hint = "Move back to the G35 position before G36."
+        raise statement.refuse(1, "coarse-place", text, hint, place=place[0], place2=place[1])
 
 
 def _check_preset(state: State, statement: Statement, code: int, ahead: Sequence[ReadyLine]) -> None:
@@ -73,16 +69,13 @@ def _check_preset(state: State, statement: Statement, code: int, ahead: Sequence
     line = next((step for step in ahead if step is not None), None)
     hint = "Write G92 with the current X and Z on the next line."
     if not isinstance(line, Statement) or line.one_shot != 92 or not {"X", "Z"}.issubset(line.words):
-        text = Message("G{code} is not followed by a G92 with X and Z.", code=code)
-        raise statement.refuse(1, "coarse-preset", text, hint)
+        text = "G{code} is not followed by a G92 with X and Z."
+        raise statement.refuse(1, "coarse-preset", text, hint, code=code)
     x, z = (line.value("X") or 0.0) * state.scale_x, (line.value("Z") or 0.0) * state.scale_z
     if max(abs(x - state.px), abs(z - state.pz)) > _SAME or line.modal:
         here = state.modal.length_text(state.px), state.modal.length_text(state.pz)
-        text = Message(
-            "The G92 after G{code} does not match the current position, which is radius "
-            "{position}, Z {position2}.",
-            code=code,
-            position=here[0],
-            position2=here[1],
+        text = (
+            "The G92 after G{code} does not match the current position, which is radius {position}, Z "
+            "{position2}."
         )
-        raise line.refuse("X", "coarse-preset", text, hint)
+        raise line.refuse("X", "coarse-preset", text, hint, code=code, position=here[0], position2=here[1])

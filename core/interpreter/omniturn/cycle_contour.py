@@ -21,7 +21,7 @@ from core.interpreter.omniturn.straight_moves import geometry_modes, go, on_step
 from core.interpreter.omniturn.tools_and_offsets import preset
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.omniturn import Word
-from core.message import Message
+from core.message import Message, worded
 
 _SAME = 1e-6  # mm
 _MODES = "absolute", "metric", "diameter", "preset_x", "preset_z"
@@ -40,11 +40,9 @@ def read_contour(state: State, statement: Statement, lines: Sequence[Statement])
         if not (each.block_delete and state.setup.block_delete):
             reader.take(each)
     elements = reader.finish()
-    if not elements:
-        text = Message(
-            "The contour of G{one_shot} does not contain a line or an arc.", one_shot=statement.one_shot
-        )
-        raise statement.refuse("", "cycle-contour-empty", text, "Write the points of the contour.")
+    text = "The contour of G{one_shot} does not contain a line or an arc."
+    hint = "Write the points of the contour."
+    statement.check(elements, "", "cycle-contour-empty", text, hint, one_shot=statement.one_shot)
     return elements
 
 
@@ -67,24 +65,15 @@ class _Reader:
             raise _refused(line, 1, "This line of the contour cannot be read", "Correct the line.")
         idle_corner = not line.moves and not _CORNERS.isdisjoint(line.words)
         if line.flow or idle_corner or not _TURNS.isdisjoint(line.words):
-            what: str = Message("{line} is not allowed in a contour", line=line.text)
-            raise _refused(
-                line,
-                1,
-                what,
-                "Write the contour block by block, with only straight moves, arcs, chamfers and roundings.",
-            )
+            hint = "Write the contour block by block, with only straight moves, arcs, chamfers and roundings."
+            raise _refused(line, 1, "{line} is not allowed in a contour", hint, line=line.text)
         if line.one_shot is not None and not line.entry.in_contour:
             column = line.code.column if line.code else 1
-            raise _refused(
-                line,
-                column,
-                Message("G{one_shot} is not allowed in a contour", one_shot=line.one_shot),
-                "Remove this text from the program.",
-            )
+            text = "G{one_shot} is not allowed in a contour"
+            raise _refused(line, column, text, "Remove this text from the program.", one_shot=line.one_shot)
         if not _NOSE.isdisjoint(line.modal):
-            what = "Nose compensation cannot be turned on or off in a contour"
-            raise _refused(line, 1, what, "Program a separate contour for finishing.", "cycle-nose-comp")
+            text = "Nose compensation cannot be turned on or off in a contour"
+            raise _refused(line, 1, text, "Program a separate contour for finishing.", "cycle-nose-comp")
         self._tell_ignored(line)
         geometry_modes(self._own, line)
         if line.one_shot == 92:
@@ -140,8 +129,8 @@ class _Reader:
         """The first line is the way from the start point to the first point of the contour."""
         if line.entry.acts is Acts.ARC or corner is not None:
             column = corner.column if corner else 1
-            what = "The first line of a contour defines its start point and cannot contain an arc or a corner"
-            raise _refused(line, column, what, "Write only X and Z of the first point.")
+            text = "The first line of a contour defines its start point and cannot contain an arc or a corner"
+            raise _refused(line, column, text, "Write only X and Z of the first point.")
         self._line(line)
         self._begun = True
 
@@ -156,6 +145,6 @@ class _Reader:
 
 
 def _refused(
-    line: Statement, column: int, what: str, hint: str, code: str = "cycle-contour-line"
+    line: Statement, column: int, what: str, hint: str, code: str = "cycle-contour-line", /, **values: object
 ) -> ProgramError:
-    return line.refuse(column, code, Message("{what}.", what=what), hint)
+    return line.refuse(column, code, "{what}.", hint, what=worded(what, values))

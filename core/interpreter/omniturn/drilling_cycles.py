@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from math import ceil
-
 from core.interpreter import units
 from core.interpreter.contour_passes import Move
+from core.interpreter.equal_passes import pass_count
 from core.interpreter.omniturn.canned_cycles import LIFT, check_count, length
 from core.interpreter.omniturn.code_rules import checked
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.straight_moves import on_step
-from core.message import Message
 
 _RETRACT_RATE = 200 * units.MM_PER_INCH / 60  # mm/s, without L
 _WHOLE = 1e-6  # of a peck: what a decimal fraction lacks in binary
@@ -36,15 +34,16 @@ def peck_moves(state: State, statement: Statement) -> list[Move]:
     peck = length(state, statement, "K")
     if peck > (start - depth) * (1.0 + _WHOLE):
         deep = state.modal.length_text(start - depth)
-        text = Message(
+        state.log.warn(
+            statement.line,
+            statement.words["K"].column,
+            "peck-depth",
             "{text}: the peck exceeds the hole depth of {depth}.",
+            "Correct K, or drill with G81.",
             text=statement.words["K"].text,
             depth=deep,
         )
-        state.log.warn(
-            statement.line, statement.words["K"].column, "peck-depth", text, "Correct K, or drill with G81."
-        )
-    count = ceil((start - depth) / peck - _WHOLE)
+    count = pass_count(start - depth, peck)
     check_count(statement, "K", count, "pecks")
     rate, clear = _rate(state, statement), LIFT
     if "C" in statement.words:
@@ -69,13 +68,13 @@ def _position(state: State, statement: Statement) -> list[Move]:
 def _depth(state: State, statement: Statement) -> float:
     depth = length(state, statement, "Z") + (state.dz if state.absolute else state.z)
     if depth >= state.z:
-        text = Message(
+        raise statement.refuse(
+            "Z",
+            "cycle-depth",
             "The bottom of the hole at {depth} is not deeper than the start point at {z}.",
+            "Correct Z, or move the start point farther away from the part.",
             depth=state.modal.length_text(depth),
             z=state.modal.length_text(state.z),
-        )
-        raise statement.refuse(
-            "Z", "cycle-depth", text, "Correct Z, or move the start point farther away from the part."
         )
     return depth
 
@@ -86,14 +85,9 @@ def _retract(state: State, statement: Statement, first: float) -> float:
     if r is None:
         return state.z
     out = r + (state.dz if state.absolute else state.z)
-    if out <= first:
-        text = Message(
-            "{text} is inside the hole, at or below the depth of the first peck.",
-            text=statement.words["R"].text,
-        )
-        raise statement.refuse(
-            "R", "cycle-retract", text, "R is the Z position to which the drill retracts from the hole."
-        )
+    text = "{text} is inside the hole, at or below the depth of the first peck."
+    hint = "R is the Z position to which the drill retracts from the hole."
+    statement.check(out > first, "R", "cycle-retract", text, hint, text=statement.words["R"].text)
     return out
 
 

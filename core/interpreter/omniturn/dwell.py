@@ -11,7 +11,6 @@ from core.interpreter.omniturn.code_rules import number
 from core.interpreter.omniturn.code_table import G_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.message import Message
 
 _SHORTEST = G_CODES[4].rules["F"].least  # s
 _LONG = 60.0  # s with a tool in force: warm-up programs have none
@@ -22,13 +21,13 @@ def dwell(state: State, statement: Statement) -> Iterator[Block]:
     """The block of G04. Raises ProgramError where F is missing or out of range."""
     seconds = number(state, statement, "F") or 0.0
     if seconds > _LONG and state.modal.tool:
-        text = Message("The dwell lasts {seconds} minutes.", seconds=f"{seconds / 60.0:.1f}")
         state.log.warn(
             statement.line,
             statement.words["F"].column,
             "dwell-long",
-            text,
+            "The dwell lasts {seconds} minutes.",
             "Check F; with G04, F is in seconds.",
+            seconds=f"{seconds / 60.0:.1f}",
         )
     _shorten_arrival(state, seconds)
     yield state.action(statement.line, statement.part("move"), Dwell(seconds))
@@ -52,18 +51,12 @@ def warn_of_short_dwell(state: State) -> None:
     (line, column, left), state.turning = state.turning, None
     if left > _DONE:
         needed = max(ceil(left * 100.0 - 1e-6) / 100.0, _SHORTEST)
-        text = Message(
-            "The C drive does not signal when C is in position; at this point, C needs "
-            "another {needed} s to finish its move.",
-            needed=f"{needed:.2f}",
+        text = (
+            "The C drive does not signal when C is in position; at this point, C needs another {needed} s to "
+            "finish its move."
         )
-        state.log.warn(
-            line,
-            column,
-            "dwell-too-short",
-            text,
-            Message("Program a dwell of at least G04F{needed} after this line.", needed=f"{needed:.2f}"),
-        )
+        hint = "Program a dwell of at least G04F{needed} after this line."
+        state.log.warn(line, column, "dwell-too-short", text, hint, needed=f"{needed:.2f}")
 
 
 def _shorten_arrival(state: State, seconds: float) -> None:

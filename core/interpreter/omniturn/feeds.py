@@ -129,14 +129,9 @@ def warn_of_crash_feed(state: State, statement: Statement, ahead: Sequence[Ready
     if modal.feed <= HIGH_FEED or _taps(modal.spindle, ahead):
         return
     shown = modal.feed_text(modal.feed, per_rev=True)
+    text = "Feed {value} is very high for cutting."
     hint = "Look for a missing decimal point."
-    state.log.warn(
-        statement.line,
-        word.column,
-        "feed-high",
-        Message("Feed {value} is very high for cutting.", value=shown),
-        hint,
-    )
+    state.log.warn(statement.line, word.column, "feed-high", text, hint, value=shown)
 
 
 def _taps(spindle: int, ahead: Sequence[ReadyLine]) -> bool:
@@ -217,5 +212,6 @@ def _warn_slow(state: State, line: int, length: float, speed: float) -> None:
         seconds = length / speed
         modal = state.modal
         shown = modal.feed_text(modal.feed or 0.0, per_rev=modal.per_rev)
-        text = Message("This move takes {seconds} s at {value}.", seconds=f"{seconds:.0f}", value=shown)
-        state.log.warn(line, 0, "feed-low", text, "Check F and G94/G95.")
+        text = "This move takes {seconds} s at {value}."
+        hint = "Check F and G94/G95."
+        state.log.warn(line, 0, "feed-low", text, hint, seconds=f"{seconds:.0f}", value=shown)

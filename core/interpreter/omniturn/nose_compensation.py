@@ -19,7 +19,7 @@ from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, Item, State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.language.diagnostics import ProgramError, program_error
-from core.message import Message
+from core.message import Message, worded
 
 # --- approach and departure: far enough from the part, and clear of it
 
@@ -38,9 +38,9 @@ class ApproachOrDeparture(NamedTuple):
         """What messages call it."""
         return "departure" if self.departs else "approach"
 
-    def refused(self, why: str, text: str, hint: str) -> ProgramError:
+    def refused(self, why: str, text: str, hint: str, /, **values: object) -> ProgramError:
         """The error to raise for this approach or departure; ``why`` ends the diagnostic's code."""
-        return _refused(self.block, f"comp-{self.name}{why}", text, hint)
+        return _refused(self.block, f"comp-{self.name}{why}", text, hint, **values)
 
     def check(self, way: Line, free: Point, corner: Point, log: Log) -> None:
         """Off the part it must begin or end R or more from it, better 2R: else a warning; and never cut it.
@@ -48,22 +48,19 @@ class ApproachOrDeparture(NamedTuple):
         ``free`` is that end as programmed, ``corner`` where the contour begins or ends. Raises ProgramError.
         """
         if dist(free, corner) < self.radius - SAME_POINT:
-            text = Message(
+            raise self.refused(
+                "-short",
                 "The {lead} move is {length} long, which is less than the nose radius of {nose}.",
+                "Move farther away from the part.",
                 lead=self.name,
                 length=self.block.modal.length_text(dist(free, corner)),
                 nose=self.block.modal.length_text(self.radius),
             )
-            raise self.refused("-short", text, "Move farther away from the part.")
         self._check_distance(min(distance(element, free) for element in self.contour), log)
         if cuts_in(way, self.contour, self.radius):
-            text = Message(
-                "With G{code}, the tool nose cuts into the part during the {lead}.",
-                code=self.code,
-                lead=self.name,
-            )
-            template = "Choose a different path for the {lead}, or switch between G41 and G42."
-            raise _refused(self.block, "comp-gouge", text, Message(template, lead=self.name))
+            text = "With G{code}, the tool nose cuts into the part during the {lead}."
+            hint = "Choose a different path for the {lead}, or switch between G41 and G42."
+            raise _refused(self.block, "comp-gouge", text, hint, code=self.code, lead=self.name)
 
     def _check_distance(self, off: float, log: Log) -> None:
         if off >= 2 * self.radius - SAME_POINT:
@@ -119,11 +116,9 @@ class _Contour(ContourStage):
     def close(self) -> Iterator[Block]:
         """G40: the last move departs. Raises ProgramError."""
         if not self.count:
-            text = Message(
-                "{name} has no contour move between its approach and its departure.", name=self._mark.name
-            )
+            text = "{name} has no contour move between its approach and its departure."
             hint = "Write the contour between the approach and the departure."
-            raise _refused(self.last.block, "comp-empty", text, hint)
+            raise _refused(self.last.block, "comp-empty", text, hint, name=self._mark.name)
         pieces = self._rest()
         way = Line(pieces[-1].element.end, (self.last.block.x, self.last.block.z))
         self._check_departure(way)  # before anything that was held comes out
@@ -196,8 +191,8 @@ class Compensation:
             else:
                 contour.last.after.append(item)
         elif item.kind not in FOLLOWED or item.c != item.c0:
-            text = Message("{name} cannot compensate this move.", name=mark.name)
-            raise _refused(item, "comp-with", text, "Write G40 before this line.")
+            text = "{name} cannot compensate this move."
+            raise _refused(item, "comp-with", text, "Write G40 before this line.", name=mark.name)
         elif contour is None:
             self._contour = _Contour(self._moves, self._log, mark, item, self.radius)
         else:
@@ -209,8 +204,8 @@ class Compensation:
         self.drop()
 
 
-def _refused(block: Block, code: str, text: str, hint: str) -> ProgramError:
-    return program_error(block.line, 0, code, text, hint)
+def _refused(block: Block, code: str, text: str, hint: str, /, **values: object) -> ProgramError:
+    return program_error(block.line, 0, code, worded(text, values), worded(hint, values))
 
 
 # --- words: where they may stand, and what may not stand under them
@@ -234,11 +229,9 @@ def switch(state: State, statement: Statement, code: int, *, called: bool) -> Co
     if code == 40 and on == 40:
         return None
     check_when(state, statement, G_CODES[code])
-    if called:
-        text = Message("G{code} is not allowed in a subroutine.", code=code)
-        raise statement.refuse(
-            1, "comp-subroutine", text, "Write the compensated contour in the main program."
-        )
+    text = "G{code} is not allowed in a subroutine."
+    hint = "Write the compensated contour in the main program."
+    statement.check(not called, 1, "comp-subroutine", text, hint, code=code)
     state.adopt(state.modal._replace(nose_comp=code))
     state.contour.approach = 0 if code == 40 else statement.line
     state.contour.active, state.fast = True, False
@@ -251,39 +244,24 @@ def check_under_nose(state: State, statement: Statement) -> None:
     if on == 40:
         return
     if statement.ends_program:
-        text = Message("The program ends while G{state} is active.", state=on)
-        raise statement.refuse(
-            1, "comp-open", text, "Move off the part, and write G40 before the end of the program."
-        )
+        hint = "Move off the part, and write G40 before the end of the program."
+        raise statement.refuse(1, "comp-open", "The program ends while G{state} is active.", hint, state=on)
     if statement.flow and statement.flow not in FLOW_CODES:
-        raise statement.refuse(
-            1,
-            "comp-with",
-            Message(
-                "The plane commands (~PLXC) and (~PLZC) are not allowed while G{state} is active.", state=on
-            ),
-            "Write G40 before this line.",
-        )
-    if statement.calls:
-        text = Message("A subroutine cannot be called while G{state} is active.", state=on)
-        raise statement.refuse(
-            1, "comp-subroutine", text, "Write the compensated contour in the main program."
-        )
+        text = "The plane commands (~PLXC) and (~PLZC) are not allowed while G{state} is active."
+        raise statement.refuse(1, "comp-with", text, "Write G40 before this line.", state=on)
+    text = "A subroutine cannot be called while G{state} is active."
+    hint = "Write the compensated contour in the main program."
+    statement.check(not statement.calls, 1, "comp-subroutine", text, hint, state=on)
     refused = statement.one_shot is not None and not statement.entry.under_nose
     if refused or statement.locks or _TURNS_C & statement.words.keys():
         word = statement.code or statement.m_word
         what = word.text if word is not None else "C"
-        raise statement.refuse(
-            1,
-            "comp-with",
-            Message("{what} is not allowed while G{state} is active.", what=what, state=on),
-            "Write G40 before this line.",
-        )
+        text = "{what} is not allowed while G{state} is active."
+        raise statement.refuse(1, "comp-with", text, "Write G40 before this line.", what=what, state=on)
     other = statement.value("D") not in {None, state.modal.secondary}
     if other and "T" not in statement.words and not state.contour.approach:
-        text = Message("D cannot change while G{state} is active.", state=on)
         hint = "Write D only on the first move after G41 or G42."
-        raise statement.refuse("D", "comp-d", text, hint)
+        raise statement.refuse("D", "comp-d", "D cannot change while G{state} is active.", hint, state=on)
 
 
 def check_approach(state: State, block: Block) -> None:
@@ -293,31 +271,25 @@ def check_approach(state: State, block: Block) -> None:
         return
     on = state.modal.nose_comp
     if block.kind not in STRAIGHT:
-        text = Message(
-            "The first move after G{state} on line {line} is not a straight line.", state=on, line=line
-        )
-        raise _refused(block, "comp-approach", text, "Program the approach as a straight line with D.")
+        text = "The first move after G{state} on line {line} is not a straight line."
+        hint = "Program the approach as a straight line with D."
+        raise _refused(block, "comp-approach", text, hint, state=on, line=line)
     if state.contour.d_line != block.line or not state.modal.secondary:
-        text = Message("The first move after G{state} on line {line} has no D.", state=on, line=line)
-        raise _refused(
-            block,
-            "comp-approach",
-            text,
-            "Write Dn on the first move after G41 or G42; R of Dn is the nose radius.",
-        )
+        text = "The first move after G{state} on line {line} has no D."
+        hint = "Write Dn on the first move after G41 or G42; R of Dn is the nose radius."
+        raise _refused(block, "comp-approach", text, hint, state=on, line=line)
     radius = state.setup.secondary[state.modal.secondary].r if _known(state) else 0.0
     if radius < 0:
-        text = Message("R of D{secondary} is negative.", secondary=state.modal.secondary)
-        raise _refused(
-            block, "comp-radius", text, "Enter the nose radius without a sign; G41 and G42 set the side."
-        )
+        text = "R of D{secondary} is negative."
+        hint = "Enter the nose radius without a sign; G41 and G42 set the side."
+        raise _refused(block, "comp-radius", text, hint, secondary=state.modal.secondary)
     if not radius:
-        text = Message(
-            "R of D{secondary} is 0, so G{state} does not compensate.",
-            secondary=state.modal.secondary,
-            state=on,
+        template = "R of D{secondary} is 0, so G{state} does not compensate."
+        hint, told = (
+            "Enter the nose radius in the offset table.",
+            {"secondary": state.modal.secondary, "state": on},
         )
-        state.log.warn(block.line, 0, "comp-no-radius", text, "Enter the nose radius in the offset table.")
+        state.log.warn(block.line, 0, "comp-no-radius", template, hint, **told)
 
 
 def nose_radius(state: State) -> float:

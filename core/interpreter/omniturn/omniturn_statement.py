@@ -9,7 +9,7 @@ from core.interpreter.omniturn.code_table import FLOW_CODES, G_CODES, M_CODES, P
 from core.language.diagnostics import ProgramError, program_error
 from core.language.omniturn import Line, Word, other_controls
 from core.language.omniturn.plane_switching_lines import PlaneLine
-from core.message import Message
+from core.message import Message, worded
 
 PlainMove = tuple[float | None, float | None, float | None, int, bool]
 """A line of G00 or G01, X, Z and F and no more: X, Z, F as written, 0 or 1 for the code (-1: none), and
@@ -75,14 +75,25 @@ class Statement:
         word = self.words.get(letter)
         return 0 if word is None else word.column
 
-    def refuse(self, at: Word | str | int, code: str, message: str, hint: str = "") -> ProgramError:
+    def refuse(
+        self, at: Word | str | int, code: str, text: str, hint: str = "", /, **values: object
+    ) -> ProgramError:
         """An error of this line, to be raised: at a word, at the word of a letter, or at a column.
 
         M stands for the M code; where the line has no such word the error is at its one-shot code.
+        ``values`` fill the holes of ``text`` and ``hint``.
         """
         if isinstance(at, str):
             at = (self.m_word if at == "M" else self.words.get(at)) or self.code or 0
-        return program_error(self.line, at if isinstance(at, int) else at.column, code, message, hint)
+        column = at if isinstance(at, int) else at.column
+        return program_error(self.line, column, code, worded(text, values), worded(hint, values))
+
+    def check(
+        self, ok: object, at: Word | str | int, code: str, text: str, hint: str = "", /, **values: object
+    ) -> None:
+        """Raise the error of ``refuse`` unless a condition holds."""
+        if not ok:
+            raise self.refuse(at, code, text, hint, **values)
 
     @property
     def code_column(self) -> int:
@@ -158,19 +169,13 @@ def _sort(statement: Statement, line: Line) -> None:
             _sort_g(statement, word, modal)
         elif letter == "M":
             if statement.m_word is not None:
-                raise _refused(
-                    line, word, "two-m-codes", "This line contains two M codes.", "Split the line."
-                )
+                text = "This line contains two M codes."
+                raise _refused(line, word, "two-m-codes", text, "Split the line.")
             statement.m, statement.m_word = int(word.value or 0), word
             statement.m_code = M_CODES.get(statement.m)
         elif letter in words:
-            raise _refused(
-                line,
-                word,
-                "word-twice",
-                Message("This line contains {letter} twice.", letter=letter),
-                "Remove one of the two.",
-            )
+            text = "This line contains {letter} twice."
+            raise _refused(line, word, "word-twice", text, "Remove one of the two.", letter=letter)
         else:
             words[letter] = word
     if modal:
@@ -182,10 +187,9 @@ def _check_groups(statement: Statement, line: Line, modal: list[Word]) -> None:
     groups: dict[str, int] = {}
     for word, code in zip(modal, statement.modal, strict=True):
         if groups.setdefault(G_CODES[code].group, code) != code:
-            what = Message(
-                "This line contains two codes of the same group ({group}).", group=G_CODES[code].group
-            )
-            raise _refused(line, word, "modal-conflict", what, "Keep only one of the conflicting words.")
+            text = "This line contains two codes of the same group ({group})."
+            hint = "Keep only one of the conflicting words."
+            raise _refused(line, word, "modal-conflict", text, hint, group=G_CODES[code].group)
 
 
 def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
@@ -247,36 +251,30 @@ def _check_words(statement: Statement, line: Line) -> None:
                     "{word} has no meaning on this line. {habit}", word=word.text, habit=habit[0]
                 )
                 raise statement.refuse(word, "word-unused", message, habit[1])
-            what = Message("This line contains {word}, which no code on the line uses.", word=word.text)
-            raise _refused(line, word, "word-unused", what, "Remove the word, or add the code that uses it.")
+            text = "This line contains {word}, which no code on the line uses."
+            hint = "Remove the word, or add the code that uses it."
+            raise _refused(line, word, "word-unused", text, hint, word=word.text)
 
 
 def _check_flow(statement: Statement, line: Line) -> None:
     allowed = FLOW_CODES[statement.flow].words
     for word in line.words:
         if word.letter not in allowed:
-            what = Message(
-                "This line contains {word}, but {flow} must be alone on a line.",
-                word=word.text,
-                flow=statement.flow,
-            )
-            raise _refused(line, word, "not-alone", what, "Put each command on a separate line.")
+            text = "This line contains {word}, but {flow} must be alone on a line."
+            hint = "Put each command on a separate line."
+            raise _refused(line, word, "not-alone", text, hint, word=word.text, flow=statement.flow)
     if line.block_delete and not FLOW_CODES[statement.flow].deletable:
-        what = Message(
-            "This line has '/' before {flow}, which cannot be skipped because the rest of the program "
-            "needs it.",
-            flow=statement.flow,
+        text = (
+            "This line has '/' before {flow}, which cannot be skipped because the rest of the program needs "
+            "it."
         )
-        raise _refused(line, line.words[0], "block-delete-flow", what, "Remove '/'.")
+        raise _refused(line, line.words[0], "block-delete-flow", text, "Remove '/'.", flow=statement.flow)
     for letter in sorted(allowed - {"M", "LF", "RF"}):
         if statement.value(letter) is None:
-            what = Message("This line contains {flow} without {letter}.", flow=statement.flow, letter=letter)
+            text = "This line contains {flow} without {letter}."
+            hint = "Add {letter} with its number."
             raise _refused(
-                line,
-                line.words[0],
-                "word-missing",
-                what,
-                Message("Add {letter} with its number.", letter=letter),
+                line, line.words[0], "word-missing", text, hint, flow=statement.flow, letter=letter
             )
     for letter, rule in FLOW_CODES[statement.flow].rules.items():
         word = statement.words[letter]
@@ -314,5 +312,5 @@ def _group(statement: Statement, word: Word) -> str:
     return "move"
 
 
-def _refused(line: Line, word: Word, code: str, text: str, hint: str) -> ProgramError:
-    return program_error(line.number, word.column, code, text, hint)
+def _refused(line: Line, word: Word, code: str, text: str, hint: str, /, **values: object) -> ProgramError:
+    return program_error(line.number, word.column, code, worded(text, values), worded(hint, values))

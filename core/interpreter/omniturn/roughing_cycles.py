@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import ceil
 
 from core.geometry.contour_offset import Area, TrimError
 from core.geometry.lines_and_arcs import Element
-from core.interpreter.contour_passes import ContourView, Move, Rougher, StartNearError, view_from
+from core.interpreter.contour_passes import (
+    MOST_ELEMENTS,
+    MOST_LOOKS,
+    ContourView,
+    Move,
+    Rougher,
+    StartNearError,
+    view_from,
+)
+from core.interpreter.equal_passes import equal_depths, pass_count
 from core.interpreter.omniturn.canned_cycles import LIFT, check_count, length, name
 from core.interpreter.omniturn.code_rules import number
 from core.interpreter.omniturn.cycle_contour import read_contour
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.message import Message
 
-_WHOLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
 _SAME = 1e-6  # mm
-_MOST_ELEMENTS = 2_000
-_MOST_LOOKS = 200_000  # elements times passes: a few seconds
 
 
 def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]) -> list[Move]:
@@ -30,26 +34,22 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
     cut = length(state, statement, "I") if statement.one_shot == 75 else None
     left = length(state, statement, "U")
     contour = read_contour(state, statement, lines)
-    if len(contour) > _MOST_ELEMENTS:
-        text: str = Message(
-            "The contour has {contour_count} lines and arcs; the maximum is {most_elements}.",
-            contour_count=f"{len(contour):,}",
-            most_elements=f"{_MOST_ELEMENTS:,}",
-        )
+    if len(contour) > MOST_ELEMENTS:
         raise statement.refuse(
-            "G", "cycle-contour-long", text, "Program the contour with fewer, longer moves."
+            "G",
+            "cycle-contour-long",
+            "The contour has {contour_count} lines and arcs; the maximum is {most_elements}.",
+            "Program the contour with fewer, longer moves.",
+            contour_count=f"{len(contour):,}",
+            most_elements=f"{MOST_ELEMENTS:,}",
         )
     view = _view(state, statement, contour)
     try:
         area = Area(view.from_start(contour), left)
     except TrimError:
-        text = Message(
-            "{text} cannot find a continuous path along the contour at distance U.",
-            text=name(statement),
-        )
-        raise statement.refuse(
-            "U", "cycle-no-way", text, "Reduce U, or widen the narrow part of the contour."
-        ) from None
+        text = "{text} cannot find a continuous path along the contour at distance U."
+        hint = "Reduce U, or widen the narrow part of the contour."
+        raise statement.refuse("U", "cycle-no-way", text, hint, text=name(statement)) from None
     rougher = Rougher(area, state.modal.rapid_rate, LIFT)
     if cut is not None:
         _passes(state, statement, rougher, area, cut, len(contour))
@@ -69,16 +69,11 @@ def contour_moves(state: State, statement: Statement, lines: Sequence[Statement]
         raise statement.refuse("G", "cycle-start-near", text, hint) from None
     if area.turns_back:
         text = (
-            "The contour reverses along Z. The roughing passes do not reach this undercut, "
-            "so the pass along the contour cuts all of its material."
+            "The contour reverses along Z. The roughing passes do not reach this undercut, so the pass along "
+            "the contour cuts all of its material."
         )
-        state.log.warn(
-            statement.line,
-            statement.code_column,
-            "cycle-undercut",
-            text,
-            "Check whether the tool fits into the undercut.",
-        )
+        hint = "Check whether the tool fits into the undercut."
+        state.log.warn(statement.line, statement.code_column, "cycle-undercut", text, hint)
     return [view.placed(move) for move in rougher.moves]
 
 
@@ -91,31 +86,19 @@ def _falls_at_once(first: Element) -> bool:
 def _passes(
     state: State, statement: Statement, rougher: Rougher, area: Area, cut: float, elements: int
 ) -> None:
-    if area.deepest <= 0:
-        text = "No material remains to be cut between the contour and the start point."
-        raise statement.refuse("G", "cycle-nothing", text, "Start farther from the contour in X.")
-    count = ceil(area.deepest / cut - _WHOLE)
+    text = "No material remains to be cut between the contour and the start point."
+    statement.check(area.deepest > 0, "G", "cycle-nothing", text, "Start farther from the contour in X.")
+    count = pass_count(area.deepest, cut)
     check_count(statement, "I", count, "passes")
-    if count * elements > _MOST_LOOKS:
-        text = Message(
-            "{count} passes along a contour of {elements} lines and arcs are too many to calculate.",
-            count=f"{count:,}",
-            elements=f"{elements:,}",
-        )
-        raise statement.refuse(
-            "I", "cycle-passes", text, "Increase I, or program the contour with fewer moves."
-        )
-    for k in range(1, count + 1):
-        rougher.cut(area.deepest * k / count)
+    if count * elements > MOST_LOOKS:
+        text = "{count} passes along a contour of {elements} lines and arcs are too many to calculate."
+        hint = "Increase I, or program the contour with fewer moves."
+        raise statement.refuse("I", "cycle-passes", text, hint, count=f"{count:,}", elements=f"{elements:,}")
+    rougher.rough(count)
     if rougher.plunged:
         text = "The contour rises and falls again, so the tool plunges into the material after the rise."
-        state.log.warn(
-            statement.line,
-            statement.code_column,
-            "cycle-plunge",
-            text,
-            "Check whether the tool can plunge into the material.",
-        )
+        hint = "Check whether the tool can plunge into the material."
+        state.log.warn(statement.line, statement.code_column, "cycle-plunge", text, hint)
 
 
 def _view(state: State, statement: Statement, contour: list[Element]) -> ContourView:
@@ -123,26 +106,20 @@ def _view(state: State, statement: Statement, contour: list[Element]) -> Contour
     start, first, last = (state.x, state.z), contour[0].start, contour[-1].end
     for axis, letter in ((0, "X"), (1, "Z")):
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
-        if to_first * to_last < 0:
-            text = Message(
-                "In {letter}, the start point is between the two ends of the contour, but it must be "
-                "outside them.",
-                letter=letter,
-            )
-            raise statement.refuse(
-                "G",
-                "cycle-quadrant",
-                text,
-                "Move the start point so that both ends of the contour are on the same side of it, "
-                "in X and in Z.",
-            )
-        if to_first == to_last == 0:
-            text = Message(
-                "Both ends of the contour have the same {letter} as the start point, so the contour "
-                "does not enclose an area to cut.",
-                letter=letter,
-            )
-            raise statement.refuse("G", "cycle-nothing", text, "Move the start point away from the contour.")
+        text = (
+            "In {letter}, the start point is between the two ends of the contour, but it must be outside "
+            "them."
+        )
+        hint = (
+            "Move the start point so that both ends of the contour are on the same side of it, in X and in Z."
+        )
+        statement.check(to_first * to_last >= 0, "G", "cycle-quadrant", text, hint, letter=letter)
+        text = (
+            "Both ends of the contour have the same {letter} as the start point, so the contour does not "
+            "enclose an area to cut."
+        )
+        hint = "Move the start point away from the contour."
+        statement.check(not to_first == to_last == 0, "G", "cycle-nothing", text, hint, letter=letter)
     return view_from(start, first, last)
 
 
@@ -157,22 +134,15 @@ def box_moves(state: State, statement: Statement) -> list[Move]:
     towards = 1.0 if x > state.x else -1.0
     depth = abs(x - state.x) - left
     if depth <= 0:
-        text = Message(
-            "The allowance {text} leaves no material for the box cycle to cut.",
-            text=statement.words["U"].text,
-        )
-        raise statement.refuse(
-            "U",
-            "cycle-nothing",
-            text,
-            "U must be less than the distance in X from the start point to the programmed X.",
-        )
-    count = ceil(depth / cut - _WHOLE)
+        text = "The allowance {text} leaves no material for the box cycle to cut."
+        hint = "U must be less than the distance in X from the start point to the programmed X."
+        raise statement.refuse("U", "cycle-nothing", text, hint, text=statement.words["U"].text)
+    count = pass_count(depth, cut)
     check_count(statement, "I", count, "passes")
     rapid = state.modal.rapid_rate
     moves: list[Move] = []
-    for k in range(1, count + 1):
-        level = state.x + towards * depth * k / count
+    for below in equal_depths(depth, count):
+        level = state.x + towards * below
         off = level - towards * LIFT
         moves += [Move(level, state.z), Move(level, z), Move(off, z, rapid), Move(off, state.z, rapid)]
     return [*moves, Move(state.x, state.z, rapid)]
@@ -181,11 +151,7 @@ def box_moves(state: State, statement: Statement) -> list[Move]:
 def _corner(state: State, statement: Statement, letter: str, start: float, offset: float) -> float:
     """X or Z of the corner opposite to the start."""
     end = length(state, statement, letter) + (offset if state.absolute else start)
-    if end == start:
-        text = Message(
-            "The box has zero size along {letter} because its corner is at the start point.", letter=letter
-        )
-        raise statement.refuse(
-            letter, "cycle-nothing", text, Message("Correct {letter} or the start point.", letter=letter)
-        )
+    text = "The box has zero size along {letter} because its corner is at the start point."
+    hint = "Correct {letter} or the start point."
+    statement.check(end != start, letter, "cycle-nothing", text, hint, letter=letter)
     return end

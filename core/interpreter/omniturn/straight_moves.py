@@ -115,11 +115,9 @@ def check_tool(state: State, line: int, x: float | None, z: float | None) -> Non
 def warn_of_title_rapid(state: State, line: int) -> None:
     """``G00 (TITLE)`` switched the rapid on, and here a move follows that would have cut."""
     if state.title_rapid and state.modal.rapid:
-        text = Message(
-            "This move is a rapid because of the G00 next to the comment on line {title_rapid}.",
-            title_rapid=state.title_rapid,
-        )
-        state.log.warn(line, 0, "title-rapid", text, "Write G01 if the move is meant to cut.")
+        text = "This move is a rapid because of the G00 next to the comment on line {title_rapid}."
+        hint = "Write G01 if the move is meant to cut."
+        state.log.warn(line, 0, "title-rapid", text, hint, title_rapid=state.title_rapid)
     state.title_rapid = 0
 
 
@@ -139,10 +137,9 @@ def mill_step(state: State, line: int, word: Word) -> float:
     step = units.METRIC_STEP if state.modal.metric else _COARSE[state.modal.coarse]
     value, finer = _nearest(step, word.value or 0.0)
     if finer:
-        text = Message(
-            "{word} is finer than the resolution; {value} is used.", word=word.text, value=f"{value:.5f}"
-        )
-        state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
+        text = "{word} is finer than the resolution; {value} is used."
+        hint = "Round the number."
+        state.log.warn(line, word.column, "finer-than-step", text, hint, word=word.text, value=f"{value:.5f}")
     return value * state.scale_z
 
 
@@ -186,14 +183,17 @@ def _nearest(step: float, value: float) -> tuple[float, bool]:
 def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
     name = "mm" if state.modal.metric else "in"
     step = f"{step_of(state, word.letter):.5f}".rstrip("0")
-    text = Message(
+    state.log.warn(
+        line,
+        word.column,
+        "finer-than-step",
         "{word} is finer than the resolution of {step} {name}; {value} is used.",
+        "Round the number.",
         word=word.text,
         step=step,
         name=name,
         value=f"{value:.5f}",
     )
-    state.log.warn(line, word.column, "finer-than-step", text, "Round the number.")
 
 
 def geometry_modes(state: State, statement: Statement) -> None:

@@ -89,18 +89,21 @@ def read_thread(state: State, statement: Statement) -> Thread:
 def _lead(state: State, statement: Statement) -> float:
     lead, feed = statement.value("K"), statement.words.get("F")
     if lead is None and feed is not None:
-        text = Message("The lead K is missing, but the line contains {feed}.", feed=feed.text)
         raise statement.refuse(
-            "F", "thread-lead-missing", text, Message("Did you mean K{feed}?", feed=feed.text[1:])
+            "F",
+            "thread-lead-missing",
+            "The lead K is missing, but the line contains {feed}.",
+            Message("Did you mean K{feed}?", feed=feed.text[1:]),
+            feed=feed.text,
         )
     coarser = ("Use G35 for a larger lead.", "Use G35F2 for a larger lead.", "Correct K.")[state.modal.coarse]
     value = checked(state, statement, "K", lead and lead * state.scale_z, more=coarser) or 0.0
     if value < _LEAST_LEAD:
         least = state.modal.feed_text(_LEAST_LEAD, per_rev=True)
-        text = Message(
-            "{text}: the minimum lead is {minimum}.", text=statement.words["K"].text, minimum=least
+        text = "{text}: the minimum lead is {minimum}."
+        raise statement.refuse(
+            "K", "thread-lead-range", text, "Correct K.", text=statement.words["K"].text, minimum=least
         )
-        raise statement.refuse("K", "thread-lead-range", text, "Correct K.")
     return value
 
 
@@ -111,13 +114,9 @@ def _check_spindle(state: State, statement: Statement, lead: float) -> None:
     if speed > most * _ROUNDING:
         shown = modal.feed_text(speed, per_rev=False)
         limit = modal.feed_text(most, per_rev=False)
-        text = Message(
-            "At {rpm} rpm this lead needs a feed of {value}; the maximum is {limit}.",
-            rpm=f"{rpm:.0f}",
-            value=shown,
-            limit=limit,
-        )
-        raise statement.refuse("K", "feed-over-speed", text, "Lower S.")
+        text = "At {rpm} rpm this lead needs a feed of {value}; the maximum is {limit}."
+        hint = "Lower S."
+        raise statement.refuse("K", "feed-over-speed", text, hint, rpm=f"{rpm:.0f}", value=shown, limit=limit)
 
 
 def _way(state: State, statement: Statement) -> tuple[float, float]:
@@ -136,41 +135,27 @@ def _depth(state: State, statement: Statement) -> tuple[float, float]:
     x1 = (x if state.absolute else state.px + x) + state.dx
     here = Message("the tool is at radius {x}", x=state.modal.length_text(state.x))
     if abs(x1 - state.x) <= _NEAR:
-        text = Message(
-            "{text} leaves no material to cut because {position}.",
-            text=statement.words["X"].text,
-            position=here,
-        )
-        raise statement.refuse(
-            "X", "thread-side", text, "Position the tool at the depth of the first pass before this line."
-        )
+        text = "{text} leaves no material to cut because {position}."
+        hint = "Position the tool at the depth of the first pass before this line."
+        raise statement.refuse("X", "thread-side", text, hint, text=statement.words["X"].text, position=here)
     if x1 * state.x < 0:
-        text = Message(
-            "{text} is on the other side of the spindle centerline: {position}.",
-            text=statement.words["X"].text,
-            position=here,
-        )
-        raise statement.refuse(
-            "X", "thread-side", text, "Check the sign of X and the start position of the tool."
-        )
+        text = "{text} is on the other side of the spindle centerline: {position}."
+        hint = "Check the sign of X and the start position of the tool."
+        raise statement.refuse("X", "thread-side", text, hint, text=statement.words["X"].text, position=here)
     return abs(x1 - state.x), copysign(1.0, state.x - x1)
 
 
 def _count(statement: Statement, depth: float, first: float, lead: float) -> int:
     """Return the number of passes. Raises ProgramError for an I that does not fit the lead."""
-    if first > lead:
-        text = Message(
-            "{text}: the first pass would be deeper than the lead.", text=statement.words["I"].text
-        )
-        raise statement.refuse("I", "thread-depth", text, "Correct I (the depth of the first pass) or K.")
+    text = "{text}: the first pass would be deeper than the lead."
+    hint = "Correct I (the depth of the first pass) or K."
+    statement.check(first <= lead, "I", "thread-depth", text, hint, text=statement.words["I"].text)
     count = max(ceil((depth / first + 1.0) ** 2 - _CLICK), 1)
     if count > MOST_PASSES:
-        text = Message(
-            "The thread would take {count} passes; the maximum is {most_passes}.",
-            count=f"{count:,}",
-            most_passes=f"{MOST_PASSES:,}",
+        text = "The thread would take {count} passes; the maximum is {most_passes}."
+        raise statement.refuse(
+            "I", "thread-passes", text, "Correct I.", count=f"{count:,}", most_passes=f"{MOST_PASSES:,}"
         )
-        raise statement.refuse("I", "thread-passes", text, "Correct I.")
     return count
 
 
@@ -256,25 +241,24 @@ class _Cutter:
 
 def _warn(state: State, statement: Statement, thread: Thread) -> None:
     if thread.passes > MANY_PASSES:
-        text = Message("The thread takes {passes} passes.", passes=thread.passes)
+        text = "The thread takes {passes} passes."
         hint = "Check I (a larger I gives fewer passes) and the X start position of the tool."
-        state.log.warn(statement.line, statement.code_column, "thread-passes", text, hint)
+        state.log.warn(
+            statement.line, statement.code_column, "thread-passes", text, hint, passes=thread.passes
+        )
     speed = thread.lead * abs(state.rpm_at(state.x)) / 60
     needed = speed**2 / (2 * state.setup.limits.slide_accel)
     run_up = _run_up(thread)
     if run_up < needed:
-        text = Message(
-            "The acceleration distance is {run_up}, but the Z axis needs {needed} to reach "
-            "the threading feed rate.",
-            run_up=state.modal.length_text(max(run_up, 0.0)),
-            needed=state.modal.length_text(needed),
-        )
         state.log.warn(
             statement.line,
             statement.code_column,
             "thread-run-up",
-            text,
+            "The acceleration distance is {run_up}, but the Z axis needs {needed} to reach the threading "
+            "feed rate.",
             "Start farther from the thread, or reduce S.",
+            run_up=state.modal.length_text(max(run_up, 0.0)),
+            needed=state.modal.length_text(needed),
         )
 
 

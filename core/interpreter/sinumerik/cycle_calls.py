@@ -7,18 +7,16 @@ from dataclasses import replace
 
 from core.geometry.lines_and_arcs import Element
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.sinumerik.boring_cycles import lift_off, stop
 from core.interpreter.sinumerik.cycle_contour import WRONG_CONTOUR, contour_lines, read_contour
 from core.interpreter.sinumerik.cycle_parameters import Cycle
-from core.interpreter.sinumerik.drilling_cycles import bore, drill, peck
+from core.interpreter.sinumerik.drilling_cycles import bore, drill, lift_off, peck, stop
 from core.interpreter.sinumerik.groove_cycle import groove
 from core.interpreter.sinumerik.parting_cycle import part_off
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.stock_removal import stock_removal
 from core.interpreter.sinumerik.subprogram_flow import Flow
 from core.interpreter.sinumerik.tapping_cycles import compensating, rigid
-from core.interpreter.sinumerik.thread_chain_cycle import thread_chain
-from core.interpreter.sinumerik.thread_cycle import thread_cycle
+from core.interpreter.sinumerik.thread_cycle import thread_chain, thread_cycle
 from core.interpreter.sinumerik.undercut_cycles import shoulder_undercut, thread_undercut, undercut
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.sinumerik_words import Line
@@ -56,31 +54,20 @@ def cycle_blocks(state: State, line: Line, flow: Flow) -> Iterator[Block]:
 
 def _contour(cycle: Cycle, flow: Flow) -> list[Element]:
     named = cycle.text("NPP")
-    if not named:
-        hint = 'Write "NAME" for a subprogram, or "START:END" for two labels.'
-        raise cycle.wrong("NPP", "{name} does not contain the name of a contour", hint, WRONG_CONTOUR)
+    hint = 'Write "NAME" for a subprogram, or "START:END" for two labels.'
+    cycle.check(named, "NPP", "{name} does not contain the name of a contour", hint, WRONG_CONTOUR)
     known = flow.routine(named)
     lines = contour_lines(named, flow.running, known)
     if lines is None:
         if ":" in named:
-            raise cycle.wrong(
-                "NPP",
-                Message("{name} refers to labels that do not exist: {named}", named=named, name="NPP"),
-                "Correct the entries named in the message.",
-                14080,
-            )
-        hint = Message(
-            "Put {named}.spf in the main program's folder, or add %_N_{named2}_SPF to the main "
-            "program's file.",
-            named=named,
-            named2=named,
+            text = "{name} refers to labels that do not exist: {named}"
+            raise cycle.wrong("NPP", text, "Correct the entries named in the message.", 14080, named=named)
+        text = "{name} refers to subprogram {named}, which does not exist"
+        hint = (
+            "Put {named}.spf in the main program's folder, or add %_N_{named2}_SPF to the main program's "
+            "file."
         )
-        raise cycle.wrong(
-            "NPP",
-            Message("{name} refers to subprogram {named}, which does not exist", named=named, name="NPP"),
-            hint,
-            "subprogram-missing",
-        )
+        raise cycle.wrong("NPP", text, hint, "subprogram-missing", named=named, named2=named)
     try:
         return read_contour(cycle.state, lines)
     except ProgramError as problem:

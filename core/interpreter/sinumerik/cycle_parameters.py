@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import hypot
 from typing import NamedTuple
 
 from core.geometry.lines_and_arcs import Point
 from core.interpreter.actions import Action, Dwell, SpindleLock, SpindleOrient, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block, Kind
+from core.interpreter.equal_passes import pass_count
 from core.interpreter.sinumerik.linear_moves import AxisTravel, block_of
 from core.interpreter.sinumerik.sinumerik_feeds import check_feed
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import ProgramError, Severity
 from core.language.sinumerik.call_arguments import Argument
 from core.language.sinumerik.cycle_names import CYCLES
 from core.language.sinumerik.sinumerik_alarms import fault
 from core.language.sinumerik.sinumerik_words import Line
-from core.message import Message
+from core.message import Message, worded
 
 TOO_MANY = 12330
-NO_FEED = 61003
+NO_FEED, NO_F = 61003, 10860
+NO_DIRECTION = 61102
+_CORRECT, _POINT = "Correct the value.", "Look for a missing decimal point."
+_OWN = "cycle-parameter"
+_Alarm = int | str
 MACHINING_TYPE = 61002
 MOST_PASSES = 10_000
 RETRACT = 1.0  # mm by which a cycle stays off the part where _VRT says nothing
@@ -68,27 +74,17 @@ class Cycle:
     def _by_name(self) -> dict[str, Argument]:
         names, arguments = CYCLES[self.line.call], self.line.arguments or ()
         if len(arguments) > len(names):
-            text = Message(
-                "{call} accepts {names_count} parameters, but the call passes {arguments_count}.",
-                call=self.line.call,
-                names_count=len(names),
-                arguments_count=len(arguments),
-            )
-            raise self._fault(
-                arguments[len(names)].column,
-                TOO_MANY,
-                text,
-                Message("Use only these parameters: {names}.", names=", ".join(names)),
-            )
+            text = "{call} accepts {names_count} parameters, but the call passes {arguments_count}."
+            told = {"call": self.line.call, "names_count": len(names), "arguments_count": len(arguments)}
+            hint = Message("Use only these parameters: {names}.", names=", ".join(names))
+            raise self._fault(arguments[len(names)].column, TOO_MANY, Message(text, **told), hint)
         return {name: each for name, each in zip(names, arguments, strict=False) if each.given}
 
     def _check(self) -> None:
         """Raises ProgramError where no cycle can run: the frame is turned, or compensation is on."""
-        if not self.state.programmed.plain:
-            text = Message(
-                "{call} cannot run in a frame that is rotated, scaled or mirrored.", call=self.line.call
-            )
-            raise self.refused("cycle-frame", text, "Write TRANS without axes before this block.")
+        text = "{call} cannot run in a frame that is rotated, scaled or mirrored."
+        hint = "Write TRANS without axes before this block."
+        self.require(self.state.programmed.plain, "cycle-frame", text, hint)
         plane = self.state.transformation
         if plane is not None and (self.line.call not in _LIVE or not plane.along_z):
             template = (
@@ -96,15 +92,11 @@ class Cycle:
                 if plane.along_z
                 else "{call} moves along Z, but {plane} is active."
             )
-            text = Message(template, call=self.line.call, plane=plane.name)
-            raise self.refused("transformation", text, "Write TRAFOOF before this block.")
-        if self.state.modal.nose_comp != 40:
-            text = Message(
-                "{what} is not allowed while G{state} is active.",
-                what=self.line.call,
-                state=self.state.modal.nose_comp,
-            )
-            raise self.refused("comp-with", text, "Write G40 and a move before this block.")
+            hint = "Write TRAFOOF before this block."
+            raise self.refused("transformation", template, hint, plane=plane.name)
+        text, on = "{what} is not allowed while G{state} is active.", self.state.modal.nose_comp
+        hint = "Write G40 and a move before this block."
+        self.require(on == 40, "comp-with", text, hint, what=self.line.call, state=on)
 
     def given(self, name: str) -> bool:
         """Whether the call hands this parameter over."""
@@ -136,68 +128,44 @@ class Cycle:
     def size(self, name: str, default: float = 0.0) -> float:
         """A length without a sign. Raises ProgramError under 0."""
         value = self.length(name, default)
-        if value < 0.0:
-            raise self.wrong(name, "{name} is a size and cannot be negative", "Remove the sign.")
+        self.check(value >= 0.0, name, "{name} is a size and cannot be negative", "Remove the sign.")
         return value
 
     def needed(self, name: str) -> float:
         """A length that must be there. Raises ProgramError."""
         if not self.given(name):
-            raise self.wrong(
-                name, "{name} is missing", Message("Add this parameter to {call}.", call=self.line.call)
-            )
+            raise self.wrong(name, "{name} is missing", "Add this parameter to {call}.", call=self.line.call)
         return self.length(name)
 
-    def over_zero(self, name: str, alarm: int | str = "cycle-parameter") -> float:
+    def over_zero(self, name: str, alarm: _Alarm = _OWN) -> float:
         """A length that must be there and over 0. Raises ProgramError."""
         value = self.needed(name)
-        if value <= 0.0:
-            raise self.wrong(name, "{name} must be greater than 0", "Correct the value.", alarm)
+        self.check(value > 0.0, name, "{name} must be greater than 0", "Correct the value.", alarm)
         return value
 
     def whole(self, name: str, default: int, low: int, high: int) -> int:
         """A whole number between two. Raises ProgramError."""
         value = self.number(name, float(default))
         self._demand_whole(name, value)
-        if not low <= value <= high:
-            raise self.wrong(
-                name,
-                Message(
-                    "{name} is {value} but must be between {low} and {high}",
-                    value=f"{value:g}",
-                    low=low,
-                    high=high,
-                    name=name,
-                ),
-                "Correct the value.",
-            )
+        text = "{name} is {value} but must be between {low} and {high}"
+        self.check(low <= value <= high, name, text, "Correct the value.", value=value, low=low, high=high)
         return round(value)
 
     def _demand_whole(self, name: str, value: float) -> None:
-        if value != round(value):
-            raise self.wrong(
-                name,
-                Message("{name} is {value} but must be a whole number", value=f"{value:g}", name=name),
-                "Enter a whole number.",
-            )
+        text = "{name} is {value} but must be a whole number"
+        self.check(value == round(value), name, text, "Enter a whole number.", value=value)
 
     def zero_only(self, name: str, why: str) -> None:
         """Raises ProgramError where a parameter asks for what is not built."""
         if self.number(name):
-            raise self.wrong(
-                name,
-                Message("{name} is not supported; {why}", why=why, name=name),
-                Message("Omit {name}.", name=name),
-                "not-in-subset",
-            )
+            raise self.wrong(name, "{name} is not supported; {why}", "Omit {name}.", "not-in-subset", why=why)
 
     def feed(self, name: str) -> float | None:
         """A feed as modal.feed has it; that in force without the parameter."""
         if not self.given(name) or not self.number(name):
             return self.state.modal.feed
         value = self.number(name)
-        if value < 0.0:
-            raise self.wrong(name, "{name} must be a feed rate above 0", "Correct the value.")
+        self.check(value >= 0.0, name, "{name} must be a feed rate above 0", "Correct the value.")
         value *= 25.4 if self.state.feed_in_inches else 1.0
         return value if self.state.modal.per_rev else value / 60.0
 
@@ -207,40 +175,76 @@ class Cycle:
         self._demand_whole(name, value)
         if round(value) not in known:
             low, high = known[0], known[-1]
-            raise self.wrong(
-                name,
-                Message(
-                    "{name} is {value}; valid types are {low} to {high}",
-                    value=f"{value:g}",
-                    low=low,
-                    high=high,
-                    name=name,
-                ),
-                "Correct the value.",
-                MACHINING_TYPE,
-            )
+            text = "{name} is {value}; valid types are {low} to {high}"
+            hint = "Correct the value."
+            raise self.wrong(name, text, hint, MACHINING_TYPE, value=value, low=low, high=high)
         return round(value)
 
-    def wrong(self, name: str, what: str, hint: str, code: int | str = "cycle-parameter") -> ProgramError:
-        """Return an error about one parameter; ``what`` has the hole ``{name}``."""
+    def angle(self, name: str, text: str) -> float:
+        """An angle from 0 to less than 360 degrees. Raises ProgramError."""
+        value = self.number(name)
+        self.check(0.0 <= value < 360.0, name, text)
+        return value
+
+    def pass_count(
+        self, whole: float, each: float, name: str, text: str, hint: str = _POINT, most: int = MOST_PASSES
+    ) -> int:
+        """How many passes of ``each`` a depth takes. Raises ProgramError for more than anyone means."""
+        count = pass_count(whole, each)
+        self.check(count <= min(most, MOST_PASSES), name, text, hint, count=f"{count:,}")
+        return count
+
+    def known_feed(
+        self, feed: float | None, alarm: int = NO_F, hint: str = "Program F before this block."
+    ) -> float:
+        """The feed. Raises ProgramError where there is none."""
+        if feed is None:
+            raise self.refused(alarm, "no feedrate is programmed.", hint)
+        return feed
+
+    def off_part(self, clear: float, out: float = 1.0) -> list[Step]:
+        """To X ``clear`` where the tool is nearer to the part; ``out``: the sign of X away from it."""
+        return [] if out * self.x >= out * clear else [Step(clear, self.z)]
+
+    def demand_tool(self) -> None:
+        """Raises ProgramError unless a tool with an offset is active."""
+        modal, text = self.state.modal, "{call} needs an active tool with an offset."
+        self.require(modal.tool and modal.edge, 61000, text, "Write T and D before this block.")
+
+    def wrong(
+        self, name: str, what: str, hint: str = _CORRECT, code: _Alarm = _OWN, /, **values: object
+    ) -> ProgramError:
+        """Return an error about one parameter; ``what`` and ``hint`` have holes for values."""
         argument = self._arguments.get(name)
         column = self.line.call_column if argument is None else argument.column
-        text = what if isinstance(what, Message) else Message(what, name=name)
-        return self._fault(column, code, Message("{call}: {what}.", call=self.line.call, what=text), hint)
+        values = {"name": name, "call": self.line.call, **values}
+        text = Message("{call}: {what}.", call=self.line.call, what=worded(what, values))
+        return self._fault(column, code, text, worded(hint, values))
 
-    def refused(self, code: int | str, text: str, hint: str) -> ProgramError:
-        """An error about the whole call."""
-        return self._fault(self.line.call_column, code, text, hint)
+    def check(
+        self, ok: object, name: str, what: str, hint: str = _CORRECT, code: _Alarm = _OWN, /, **values: object
+    ) -> None:
+        """Raise ``wrong`` unless a condition holds."""
+        if not ok:
+            raise self.wrong(name, what, hint, code, **values)
 
-    def _fault(self, column: int, code: int | str, text: str, hint: str) -> ProgramError:
+    def refused(self, code: _Alarm, text: str, hint: str, /, **values: object) -> ProgramError:
+        """Return an error about the whole call; ``text`` and ``hint`` have holes for values."""
+        values = {"call": self.line.call, **values}
+        return self._fault(self.line.call_column, code, worded(text, values), worded(hint, values))
+
+    def require(self, ok: object, code: _Alarm, text: str, hint: str, /, **values: object) -> None:
+        """Raise ``refused`` unless a condition holds."""
+        if not ok:
+            raise self.refused(code, text, hint, **values)
+
+    def _fault(self, column: int, code: _Alarm, text: str, hint: str) -> ProgramError:
         return ProgramError(fault(self.line.number, column, code, self.line.block, text, hint))
 
-    def warn(self, code: str, text: str, hint: str) -> None:
-        """A warning about the call."""
-        found = fault(self.line.number, self.line.call_column, code, self.line.block, text, hint)
-        self.state.log.add(
-            Diagnostic(found.line, found.column, Severity.WARNING, found.code, found.message, found.hint)
-        )
+    def warn(self, code: str, text: str, hint: str, /, **values: object) -> None:
+        """Warn about the call."""
+        found = self.refused(code, text, hint, **values).diagnostic
+        self.state.log.add(replace(found, severity=Severity.WARNING))
 
     def blocks(self, steps: Sequence[Step]) -> Iterator[Block]:
         """The motions as blocks. All feeds are checked before the first comes. Raises ProgramError."""
@@ -302,9 +306,14 @@ class Cycle:
         return made
 
 
+def acting(action: Action, spindle: int | None = None) -> Step:
+    """Something that is done where the tool stands; ``spindle`` as in ``Step``."""
+    return Step(0.0, 0.0, action=action, spindle=spindle)
+
+
 def dwell(seconds: float) -> list[Step]:
     """Time at rest, where there is any."""
-    return [Step(0.0, 0.0, action=Dwell(seconds))] if seconds > 0.0 else []
+    return [acting(Dwell(seconds))] if seconds > 0.0 else []
 
 
 def _words(step: Step, diameter: bool) -> str:

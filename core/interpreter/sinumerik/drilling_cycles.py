@@ -1,13 +1,17 @@
-"""CYCLE81, 82, 83, 85 and 89: a hole along Z under G17, in one go or in pecks, with dwells and feeds."""
+"""CYCLE81 to 83 and 85 to 89: a hole along Z under G17, in one go or in pecks, with dwells and feeds.
+
+CYCLE86, 87 and 88 bore, and end with the spindle held, or stopped for the operator.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from core.interpreter.actions import ProgramStop, SpindleLock, SpindleOrient, SpindleRun, SpindleStop
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, Cycle, Step, dwell
-from core.message import Message
+from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, NO_DIRECTION, Cycle, Step, acting, dwell
+from core.interpreter.sinumerik.spindle_and_dwell import demand_position, oriented_by_drive, shortest_turn
 
 REFERENCE_PLANE = 61101
 FIRST_DEPTH = 61107
@@ -15,37 +19,35 @@ _SAME = 1e-6  # mm
 
 
 class Hole(NamedTuple):
-    """Z of retraction plane, reference plane, safety distance before it, bottom; ``down`` is -1 or +1."""
+    """Z of retraction plane, reference plane, safety distance before it, bottom; ``down`` is -1 or +1.
 
+    ``x`` is where the tool stands, and where all of the hole lies.
+    """
+
+    x: float
     retract: float
     reference: float
     clear: float
     bottom: float
     down: float
 
+    def to(self, z: float, feed: float | None = None) -> Step:
+        """Down or up to ``z``; without a feed in rapid."""
+        return Step(self.x, z, feed)
+
 
 def hole_of(cycle: Cycle) -> Hole:
     """The hole that a call asks for. Raises ProgramError by the parameter's name."""
     if cycle.state.plane != 17:
-        text = Message(
-            "{call} drills perpendicular to plane G{plane}; drilling along Z needs G17.",
-            call=cycle.line.call,
-            plane=cycle.state.plane,
-        )
-        raise cycle.refused("cycle-plane", text, "Write G17 before this block and G18 after it.")
-    if cycle.number("_AXN", 3.0) not in {0.0, 3.0}:
-        raise cycle.wrong(
-            "_AXN",
-            "{name} selects an axis other than Z, which is not supported",
-            "Omit _AXN.",
-            "not-in-subset",
-        )
+        text = "{call} drills perpendicular to plane G{plane}; drilling along Z needs G17."
+        hint = "Write G17 before this block and G18 after it."
+        raise cycle.refused("cycle-plane", text, hint, plane=cycle.state.plane)
+    text = "{name} selects an axis other than Z, which is not supported"
+    cycle.check(cycle.number("_AXN", 3.0) in {0.0, 3.0}, "_AXN", text, "Omit _AXN.", "not-in-subset")
     retract, reference = cycle.needed("RTP"), cycle.needed("RFP")
     if cycle.given("DP") == cycle.given("DPR"):
-        if not cycle.given("DP"):
-            raise cycle.wrong(
-                "DP", "{name} is missing", "Enter DP, or DPR measured from the reference plane."
-            )
+        text = "{name} is missing"
+        cycle.check(cycle.given("DP"), "DP", text, "Enter DP, or DPR measured from the reference plane.")
         bottom = cycle.length("DP")
         if cycle.length("DPR") and abs(abs(bottom - reference) - cycle.length("DPR")) > _SAME:
             cycle.warn("cycle-depth-both", "DP and DPR differ, so DP is used.", "Omit DP or DPR.")
@@ -56,20 +58,14 @@ def hole_of(cycle: Cycle) -> Hole:
     down = 1.0 if bottom > reference else -1.0
     if abs(bottom - reference) < _SAME or (retract - reference) * down > _SAME:
         name = "DP" if cycle.given("DP") else "DPR"
-        text = Message(
-            "{name} is not beyond RFP as seen from RTP (RTP {retract}, RFP {reference}, depth {bottom})",
-            retract=f"{retract:g}",
-            reference=f"{reference:g}",
-            bottom=f"{bottom:g}",
-            name=name,
+        text = "{name} is not beyond RFP as seen from RTP (RTP {retract}, RFP {reference}, depth {bottom})"
+        hint = (
+            "Correct RTP, RFP and the depth so that they follow in this order along the drilling direction."
         )
         raise cycle.wrong(
-            name,
-            text,
-            "Correct RTP, RFP and the depth so that they follow in this order along the drilling direction.",
-            REFERENCE_PLANE,
+            name, text, hint, REFERENCE_PLANE, retract=retract, reference=reference, bottom=bottom
         )
-    return Hole(retract, reference, reference - down * cycle.size("SDIS"), bottom, down)
+    return Hole(cycle.x, retract, reference, reference - down * cycle.size("SDIS"), bottom, down)
 
 
 def seconds(cycle: Cycle, name: str) -> float:
@@ -78,67 +74,53 @@ def seconds(cycle: Cycle, name: str) -> float:
     if value >= 0.0:
         return value
     rpm = abs(cycle.state.rpm)
-    if not rpm:
-        raise cycle.wrong(
-            name, "{name} is in revolutions, but the spindle is stopped", "Enter the dwell in seconds."
-        )
+    text = "{name} is in revolutions, but the spindle is stopped"
+    cycle.check(rpm, name, text, "Enter the dwell in seconds.")
     return -value / rpm * 60.0
 
 
-def needed_feed(cycle: Cycle, name: str = "") -> float:
-    feed = cycle.feed(name) if name else cycle.state.modal.feed
-    if feed is None:
-        raise cycle.refused(10860, "no feedrate is programmed.", "Program F before this block.")
-    return feed
-
-
-def approach(cycle: Cycle, hole: Hole) -> list[Step]:
-    return [Step(cycle.x, hole.clear)]
+def _feed(cycle: Cycle) -> float:
+    return cycle.known_feed(cycle.state.modal.feed)
 
 
 def drill(cycle: Cycle) -> Iterator[Block]:
     """CYCLE81, CYCLE82: feed to the depth, dwell, rapid out."""
-    hole, feed = hole_of(cycle), needed_feed(cycle)
-    bottom = Step(cycle.x, hole.bottom, feed)
-    steps = [*approach(cycle, hole), bottom, *dwell(seconds(cycle, "DTB")), Step(cycle.x, hole.retract)]
-    return cycle.blocks(steps)
+    hole, feed = hole_of(cycle), _feed(cycle)
+    dwells = dwell(seconds(cycle, "DTB"))
+    return cycle.blocks([hole.to(hole.clear), hole.to(hole.bottom, feed), *dwells, hole.to(hole.retract)])
 
 
 def bore(cycle: Cycle) -> Iterator[Block]:
     """CYCLE85, CYCLE89: out at a feed, too."""
     hole = hole_of(cycle)
-    into, out = needed_feed(cycle, "FFR"), needed_feed(cycle, "RFF")
-    steps = [
-        *approach(cycle, hole), Step(cycle.x, hole.bottom, into), *dwell(seconds(cycle, "DTB")),
-        Step(cycle.x, hole.clear, out), Step(cycle.x, hole.retract),
-    ]  # fmt: skip
-    return cycle.blocks(steps)
+    into, out = cycle.known_feed(cycle.feed("FFR")), cycle.known_feed(cycle.feed("RFF"))
+    steps = [hole.to(hole.clear), hole.to(hole.bottom, into), *dwell(seconds(cycle, "DTB"))]
+    return cycle.blocks([*steps, hole.to(hole.clear, out), hole.to(hole.retract)])
 
 
 def peck(cycle: Cycle) -> Iterator[Block]:
     """CYCLE83: pecks that grow smaller by DAM, with a way out (VARI 1) or a short one back (VARI 0)."""
-    hole, feed = hole_of(cycle), needed_feed(cycle)
+    hole, feed = hole_of(cycle), _feed(cycle)
     factor = cycle.number("FRF", 1.0) or 1.0
     if not 0.001 <= factor <= 1.0:
-        raise cycle.wrong("FRF", "{name} must be a factor from 0.001 to 1", "Correct the value.")
+        raise cycle.wrong("FRF", "{name} must be a factor from 0.001 to 1")
     clears = cycle.machining("VARI", range(2)) == 1
     at_start, at_bottom = seconds(cycle, "DTS"), seconds(cycle, "DTB")
-    back = cycle.size("_VRT") or 1.0
-    ahead = cycle.size("_DIS1")
-    steps, reached, first = approach(cycle, hole), hole.reference, True
+    back, ahead = cycle.size("_VRT") or 1.0, cycle.size("_DIS1")
+    steps, reached, first = [hole.to(hole.clear)], hole.reference, True
     for depth in depths(cycle, hole):
         if clears and not first:
             short = reached - hole.down * (ahead or min(back, abs(depth - reached)))
-            steps += [Step(cycle.x, short)]
-        steps += [Step(cycle.x, depth, feed * (factor if first else 1.0)), *dwell(at_bottom)]
+            steps.append(hole.to(short))
+        steps += [hole.to(depth, feed * (factor if first else 1.0)), *dwell(at_bottom)]
         first, reached = False, depth
         if abs(depth - hole.bottom) < _SAME:
             break
         if clears:
-            steps += [Step(cycle.x, hole.clear), *dwell(at_start)]
+            steps += [hole.to(hole.clear), *dwell(at_start)]
         else:
-            steps += [Step(cycle.x, depth - hole.down * back, feed)]
-    return cycle.blocks([*steps, Step(cycle.x, hole.retract)])
+            steps.append(hole.to(depth - hole.down * back, feed))
+    return cycle.blocks([*steps, hole.to(hole.retract)])
 
 
 def depths(cycle: Cycle, hole: Hole) -> list[float]:
@@ -146,25 +128,18 @@ def depths(cycle: Cycle, hole: Hole) -> list[float]:
     whole = abs(hole.bottom - hole.reference)
     first = abs(cycle.length("FDEP") - hole.reference) if cycle.given("FDEP") else cycle.size("FDPR")
     if cycle.given("FDEP") and (cycle.length("FDEP") - hole.reference) * hole.down < -_SAME:
-        raise cycle.wrong(
-            "FDEP", "{name} is before RFP in the drilling direction", "Correct the value.", FIRST_DEPTH
-        )
-    if first > whole + _SAME:
-        name = "FDEP" if cycle.given("FDEP") else "FDPR"
-        raise cycle.wrong(name, "{name} is deeper than the hole", "Correct the value.", FIRST_DEPTH)
-    step, less, least = first or whole, cycle.number("DAM"), cycle.size("_MDEP")
-    if less <= -1.0:
-        raise cycle.wrong(
-            "DAM",
-            "{name} must be an amount, or a factor greater than -1 and not greater than 0",
-            "Correct the value.",
-        )
-    smallest = max(least, 0.0)
+        text = "{name} is before RFP in the drilling direction"
+        raise cycle.wrong("FDEP", text, "Correct the value.", FIRST_DEPTH)
+    name = "FDEP" if cycle.given("FDEP") else "FDPR"
+    deeper = "{name} is deeper than the hole"
+    cycle.check(first <= whole + _SAME, name, deeper, "Correct the value.", FIRST_DEPTH)
+    step, less, smallest = first or whole, cycle.number("DAM"), cycle.size("_MDEP")
+    text = "{name} must be an amount, or a factor greater than -1 and not greater than 0"
+    cycle.check(less > -1.0, "DAM", text)
     found, reached, halved = [step], step, False
     while reached < whole - _SAME:
         shorter = step * -less if less < 0.0 else step - less
-        floor = smallest or (max(0.0, less))
-        step = max(shorter, floor) if not halved else whole - reached
+        step = max(shorter, smallest or max(0.0, less)) if not halved else whole - reached
         if step < 1e-3 or len(found) > MOST_PASSES:
             raise cycle.wrong("DAM", "{name} makes the pecks too small", "Enter _MDEP, or reduce DAM.")
         left = whole - reached
@@ -173,3 +148,56 @@ def depths(cycle: Cycle, hole: Hole) -> list[float]:
         reached = min(reached + step, whole)
         found.append(reached)
     return [hole.reference + hole.down * depth for depth in found]
+
+
+def _turning(cycle: Cycle) -> list[Step]:
+    """The spindle in the direction SDIR. Raises ProgramError."""
+    direction = cycle.number("SDIR")
+    if direction not in {3.0, 4.0}:
+        raise cycle.wrong("SDIR", "{name} must be 3 or 4", "Enter the spindle direction.", NO_DIRECTION)
+    modal, sign = cycle.state.modal, 1 if direction == 3.0 else -1
+    hint = "Write G97 with S before this block."
+    cycle.require(modal.rpm and not modal.css, "speed-missing", "{call} needs S in rpm.", hint)
+    return [] if modal.spindle == sign else [acting(SpindleRun(sign * modal.rpm), sign)]
+
+
+def lift_off(cycle: Cycle) -> Iterator[Block]:
+    """CYCLE86: at the bottom the spindle is held at POSS, the edge lifted by RPA and RPAP, and rapid out."""
+    hole, state = hole_of(cycle), cycle.state
+    demand_position(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
+    cycle.zero_only("RPO", "this lathe has no Y axis")
+    angle = cycle.angle("POSS", "{name} must be an angle from 0 to less than 360 degrees")
+    aside, up = cycle.length("RPA"), cycle.length("RPAP")
+    text = "{name} would move the tool deeper into the hole"
+    cycle.check(up * hole.down <= 0.0, "RPAP", text, "Correct the sign of RPAP.")
+    steps = [*_bored(cycle, hole), *_held_at(cycle, hole, angle)]
+    lifted = hole._replace(x=cycle.x + aside)
+    steps += [lifted.to(hole.bottom + up), lifted.to(hole.retract), hole.to(hole.retract)]
+    return cycle.blocks(steps)
+
+
+def _bored(cycle: Cycle, hole: Hole) -> list[Step]:
+    """To the bottom with the spindle turning as SDIR says, and the dwell there."""
+    steps = [hole.to(hole.clear), *_turning(cycle), hole.to(hole.bottom, _feed(cycle))]
+    return [*steps, *dwell(seconds(cycle, "DTB"))]
+
+
+def _held_at(cycle: Cycle, hole: Hole, angle: float) -> list[Step]:
+    """The spindle at an angle: by its drive, or held as C and turned there."""
+    if oriented_by_drive(cycle.state):
+        return [acting(SpindleOrient(angle), 0)]
+    return locked(cycle, hole.to(hole.bottom), angle)
+
+
+def locked(cycle: Cycle, at: Step, angle: float) -> list[Step]:
+    """The spindle held as C where the tool stands, and turned to an angle."""
+    turn, speed = shortest_turn(cycle.state, angle), cycle.state.setup.limits.speeds[2]
+    turned = [at._replace(feed=speed, turn=turn)] if turn else []
+    return [acting(SpindleLock(orient=False), 0), *turned]
+
+
+def stop(cycle: Cycle) -> Iterator[Block]:
+    """CYCLE87, CYCLE88: at the bottom the spindle comes to rest, M0 waits for the operator, and rapid out."""
+    hole = hole_of(cycle)
+    rest = [acting(SpindleStop(stands=True), 0), acting(ProgramStop(optional=False))]
+    return cycle.blocks([*_bored(cycle, hole), *rest, hole.to(hole.retract)])

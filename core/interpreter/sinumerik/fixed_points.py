@@ -19,8 +19,10 @@ def home(state: State, statement: Statement) -> Block:
     named = _named(state, statement, _AXES)
     for word in named:
         if state.number(statement, word) != 0.0:
-            text = Message("{word}: G74 always moves to machine home.", word=word.text)
-            raise statement.refuse(word, "word-unused", text, Message("Write {word}=0.", word=word.name))
+            text = "{word}: G74 always moves to machine home."
+            raise statement.refuse(
+                word, "word-unused", text, Message("Write {word}=0.", word=word.name), word=word.text
+            )
     return _to(state, statement, dict.fromkeys((word.name[0] for word in named), 0.0))
 
 
@@ -49,18 +51,12 @@ def _named(state: State, statement: Statement, words: frozenset[str]) -> list[Wo
     named = [each for name, each in statement.words.items() if name in _AXES]
     others = statement.words.keys() - words or statement.m or statement.sets
     if not named or others or statement.g.keys() - {BLOCKWISE, MOTION}:
-        text = Message(
-            "{word} must be in a block that contains only the axes to move, each programmed as 0.",
-            word=word.text,
-        )
-        raise statement.refuse(word, "own-block", text, Message("Write {word} X1=0 Z1=0.", word=word.text))
+        text = "{word} must be in a block that contains only the axes to move, each programmed as 0."
+        raise statement.refuse(word, "own-block", text, "Write {word} X1=0 Z1=0.", word=word.text)
     if (code := state.modal.nose_comp) != 40:
-        text = Message(
-            "{word} moves the tool off the contour and cannot be used while G{code} is active.",
-            word=word.text,
-            code=code,
-        )
-        raise statement.refuse(word, "comp-with", text, "Write G40 and a move before this block.")
+        text = "{word} moves the tool off the contour and cannot be used while G{code} is active."
+        hint = "Write G40 and a move before this block."
+        raise statement.refuse(word, "comp-with", text, hint, word=word.text, code=code)
     return named
 
 
@@ -71,8 +67,8 @@ def _number(state: State, statement: Statement) -> int:
         return 1
     number = state.number(statement, word)
     if number not in {1, 2, 3, 4}:
-        text = Message("{word} is not a valid fixed point.", word=word.text)
-        raise statement.refuse(word, "fixed-point", text, "Write a value from FP=1 to FP=4.")
+        text = "{word} is not a valid fixed point."
+        raise statement.refuse(word, "fixed-point", text, "Write a value from FP=1 to FP=4.", word=word.text)
     return int(number)
 
 

@@ -8,21 +8,20 @@ D+1, as on the control.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, radians, tan
+from math import radians, tan
 from typing import NamedTuple
 
 from core.interpreter.elementary_blocks import Block
-from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, RETRACT, Cycle, Step, dwell
-from core.message import Message
+from core.interpreter.equal_passes import equal_depths
+from core.interpreter.sinumerik.cycle_parameters import RETRACT, Cycle, Step, dwell
 from core.tool_edges import edge_key, edge_name, edge_of, tool_of
 
 WRONG_WIDTH = 61602
 WRONG_FORM = 61603
-NO_TOOL = 61000
 _SAME = 1e-6  # mm
-_WHOLE = 1e-6
 _STEEPEST = 89.999  # degrees
 _USUAL_WIDTH = 3.0  # mm, of a tool that the table does not have
+_CUTS = "{name} would need {count} cuts, which is too many"
 _OVERLAP = 0.95  # of the tool's width: what a cut beside another takes at most
 
 
@@ -43,23 +42,13 @@ class Groove(NamedTuple):
 def groove_of(cycle: Cycle) -> Groove:
     """The groove that a call asks for. Raises ProgramError by the parameter's name."""
     kind = (cycle.machining("VARI", range(1, 19)) - 1) % 10 + 1
-    if kind > 8:
-        raise cycle.wrong("VARI", "{name} must be 1 to 8 or 11 to 18", "Correct the value.", 61002)
+    cycle.check(kind <= 8, "VARI", "{name} must be 1 to 8 or 11 to 18", "Correct the value.", 61002)
     cycle.zero_only("STA1", "program a groove on a taper as a CYCLE95 contour")
     for name in ("RCO1", "RCO2", "RCI1", "RCI2"):
         cycle.zero_only(name, "program the corners as a CYCLE95 contour, or chamfer them with G1")
-    if kind % 2 == 0:
-        hint = "Program a face groove as a CYCLE95 contour or in G1 blocks."
-        raise cycle.wrong(
-            "VARI",
-            Message(
-                "{name} is {kind}, which specifies a face groove and is not supported",
-                kind=kind,
-                name="VARI",
-            ),
-            hint,
-            "not-in-subset",
-        )
+    text = "{name} is {kind}, which specifies a face groove and is not supported"
+    hint = "Program a face groove as a CYCLE95 contour or in G1 blocks."
+    cycle.check(kind % 2 != 0, "VARI", text, hint, "not-in-subset", kind=kind)
     inside, right = kind in {3, 7}, kind > 4
     x, z = cycle.over_zero("SPD") / 2.0, cycle.needed("SPL")
     width, depth = cycle.over_zero("WIDG"), cycle.over_zero("DIAG", WRONG_FORM)
@@ -67,23 +56,16 @@ def groove_of(cycle: Cycle) -> Groove:
     here, there = _run(cycle, "ANG1", depth), _run(cycle, "ANG2", depth)
     low, high = (z - here - width, z - here) if right else (z + here, z + here + width)
     runs = (there, here) if right else (here, there)
-    if x - out * depth < 0.0:
-        raise cycle.wrong(
-            "DIAG",
-            "{name} makes the groove reach past the spindle centerline",
-            "Correct SPD or DIAG.",
-            WRONG_FORM,
-        )
+    text = "{name} makes the groove reach past the spindle centerline"
+    cycle.check(x - out * depth >= 0.0, "DIAG", text, "Correct SPD or DIAG.", WRONG_FORM)
     return Groove(out, x, x - out * depth, low, high, *runs)
 
 
 def _run(cycle: Cycle, name: str, depth: float) -> float:
     """How far a flank goes along Z from the bottom to the surface, mm. Raises ProgramError."""
     angle = cycle.number(name)
-    if not 0.0 <= angle <= _STEEPEST:
-        raise cycle.wrong(
-            name, "{name} must be a flank angle from 0 to less than 90 degrees", "Correct the value."
-        )
+    text = "{name} must be a flank angle from 0 to less than 90 degrees"
+    cycle.check(0.0 <= angle <= _STEEPEST, name, text)
     return depth * tan(radians(angle))
 
 
@@ -95,41 +77,26 @@ def tool_width(cycle: Cycle, widest: float) -> tuple[float, bool]:
     """
     state = cycle.state
     key, tools = state.modal.tool, state.setup.tools
-    if not key or state.modal.edge == 0:
-        text = Message("{call} needs an active tool with an offset.", call=cycle.line.call)
-        raise cycle.refused(NO_TOOL, text, "Write T and D before this block.")
+    cycle.demand_tool()
     number = cycle.whole("_DN", 0, 0, 9) or edge_of(key) + 1
     other = edge_key(tool_of(key), number)
     if key not in tools and other not in tools:
         width = min(_USUAL_WIDTH, widest)
-        text = Message(
-            "{call} assumes a tool {width} mm wide because {key} is not set.",
-            call=cycle.line.call,
-            width=f"{width:g}",
-            key=edge_name(key),
-        )
-        cycle.warn("tool-width", text, "Set both tool corners on the TOOL OFFSETS page (F8).")
+        text = "{call} assumes a tool {width} mm wide because {key} is not set."
+        hint = "Set both tool corners on the TOOL OFFSETS page (F8)."
+        cycle.warn("tool-width", text, hint, width=width, key=edge_name(key))
         return width, False
     if key not in tools or other not in tools:
         name = edge_name(other)
-        text = Message(
-            "{call} needs the tool width, but the other tool corner ({name}) is not set.",
-            call=cycle.line.call,
-            name=name,
-        )
-        raise cycle.refused(
-            WRONG_WIDTH, text, Message("Set {other} on the TOOL OFFSETS page (F8).", other=edge_name(other))
-        )
+        text = "{call} needs the tool width, but the other tool corner ({name}) is not set."
+        hint = "Set {other} on the TOOL OFFSETS page (F8)."
+        raise cycle.refused(WRONG_WIDTH, text, hint, name=name, other=edge_name(other))
     here, there = tools[key], tools[other]
     # A corner further to plus has the smaller machine position at part zero.
     way = here.z - there.z
-    if abs(way) < _SAME:
-        text = Message(
-            "{key} and {other} are at the same position, so the tool has no width.",
-            key=edge_name(key),
-            other=edge_name(other),
-        )
-        raise cycle.refused(WRONG_WIDTH, text, "Correct the offsets of the two tool corners.")
+    text = "{key} and {other} are at the same position, so the tool has no width."
+    hint = "Correct the offsets of the two tool corners."
+    cycle.require(abs(way) >= _SAME, WRONG_WIDTH, text, hint, key=edge_name(key), other=edge_name(other))
     return abs(way), way > 0.0
 
 
@@ -139,28 +106,15 @@ def groove(cycle: Cycle) -> Iterator[Block]:
     bottom_left, flank_left = cycle.size("FAL1"), cycle.size("FAL2")
     width, at_low = tool_width(cycle, shape.high - shape.low - 2.0 * flank_left)
     room = shape.high - shape.low - 2.0 * flank_left - width
-    if room < -_SAME:
-        text = Message(
-            "{name} is {high} including FAL2 on both flanks, but the tool is {width} wide",
-            high=f"{shape.high - shape.low:g}",
-            width=f"{width:g}",
-            name="WIDG",
-        )
-        raise cycle.wrong("WIDG", text, "Use a narrower tool.", WRONG_WIDTH)
-    feed = cycle.state.modal.feed
-    if feed is None:
-        raise cycle.refused(10860, "no feedrate is programmed.", "Program F before this block.")
+    text = "{name} is {high} including FAL2 on both flanks, but the tool is {width} wide"
+    hint = "Use a narrower tool."
+    cycle.check(room >= -_SAME, "WIDG", text, hint, WRONG_WIDTH, high=shape.high - shape.low, width=width)
+    feed = cycle.known_feed(cycle.state.modal.feed)
     off = cycle.size("_VRT") or RETRACT
     plan = _Plan(cycle, shape, feed, shape.top + shape.out * off, 0.0 if at_low else width)
-    steps = plan.begin()
+    steps = cycle.off_part(shape.top + shape.out * off, shape.out)
     bottom = shape.bottom + shape.out * bottom_left
-    count = ceil(max(room, 0.0) / (width * _OVERLAP) - _WHOLE)
-    if count > MOST_PASSES:
-        raise cycle.wrong(
-            "WIDG",
-            Message("{name} would need {count} cuts, which is too many", count=f"{count:,}", name="WIDG"),
-            "Look for a missing decimal point.",
-        )
+    count = cycle.pass_count(max(room, 0.0), width * _OVERLAP, "WIDG", _CUTS)
     for k in range(count + 1):
         place = shape.high - flank_left - width - (room * k / count if count else 0.0)
         steps += plan.plunge(place, bottom)
@@ -178,30 +132,17 @@ class _Plan:
         self._cycle, self._shape, self._feed = cycle, shape, feed
         self._clear, self._corner = clear, corner
         self._infeed, self._dwell = cycle.size("IDEP"), cycle.number("DTB")
-        if self._dwell < 0.0:
-            raise cycle.wrong("DTB", "{name} must be a time of 0 s or more", "Correct the value.")
-
-    def begin(self) -> list[Step]:
-        """Off the part in depth first, from where the tool stands."""
-        cycle, out = self._cycle, self._shape.out
-        return [] if out * cycle.x >= out * self._clear else [Step(self._clear, cycle.z)]
+        cycle.check(self._dwell >= 0.0, "DTB", "{name} must be a time of 0 s or more")
 
     def plunge(self, place: float, bottom: float) -> list[Step]:
         """Down in steps of IDEP, each with a short way back to break the chip; dwell; out."""
         shape = self._shape
         whole = abs(bottom - shape.top)
-        count = max(ceil(whole / self._infeed - _WHOLE), 1) if self._infeed else 1
-        if count > MOST_PASSES:
-            raise self._cycle.wrong(
-                "IDEP",
-                Message(
-                    "{name} would need {count} steps, which is too many", count=f"{count:,}", name="IDEP"
-                ),
-                "Look for a missing decimal point.",
-            )
+        text = "{name} would need {count} steps, which is too many"
+        count = max(self._cycle.pass_count(whole, self._infeed, "IDEP", text), 1) if self._infeed else 1
         steps = [self._to(self._clear, place)]
-        for k in range(1, count + 1):
-            depth = shape.top - shape.out * whole * k / count
+        for k, below in enumerate(equal_depths(whole, count), 1):
+            depth = shape.top - shape.out * below
             steps.append(self._to(depth, place, self._feed))
             if k < count:
                 steps.append(self._to(depth + shape.out * RETRACT, place))
@@ -209,13 +150,7 @@ class _Plan:
 
     def beside(self, place: float, run: float, width: float, bottom: float) -> list[Step]:
         """Plunges outwards from ``place`` under a flank that rises by ``run``, each less deep."""
-        count = ceil(abs(run) / (width * _OVERLAP) - _WHOLE)
-        if count > MOST_PASSES:
-            raise self._cycle.wrong(
-                "ANG1",
-                Message("{name} would need {count} cuts, which is too many", count=f"{count:,}", name="ANG1"),
-                "Check the angles.",
-            )
+        count = self._cycle.pass_count(abs(run), width * _OVERLAP, "ANG1", _CUTS, "Check the angles.")
         steps: list[Step] = []
         for share in (k / (count + 1) for k in range(1, count + 1)):
             depth = bottom + (self._shape.top - bottom) * share

@@ -16,7 +16,6 @@ from core.interpreter.sinumerik.sinumerik_state import NO_FRAME, Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import ARC, Form, Word
 from core.language.sinumerik.word_table import SUPPRESSION
-from core.message import Message
 
 # --- where the words lead, in machine coordinates
 
@@ -110,12 +109,15 @@ def _slide(state: State, statement: Statement, name: str, begun: float) -> float
     if word is None:
         return None
     if word.form in third_axis.NO_ROTARY:
-        text = Message("{word}: {form} needs a rotary axis.", word=word.text, form=word.form)
         raise statement.refuse(
             word,
             third_axis.NO_ROTARY[word.form],
-            text,
-            Message("Write {name}=AC( ) or {name2}=IC( ).", name=name, name2=name),
+            "{word}: {form} needs a rotary axis.",
+            "Write {name}=AC( ) or {name2}=IC( ).",
+            word=word.text,
+            form=word.form,
+            name=name,
+            name2=name,
         )
     relative = _form(state, word) is Form.IC
     halved = name == "X" and state.modal.diameter and not (relative and state.distance_is_radius)
@@ -124,17 +126,9 @@ def _slide(state: State, statement: Statement, name: str, begun: float) -> float
         state.moved_by_tool.discard(name)
         return value
     if name in state.moved_by_tool:
-        text = Message(
-            "{word} is incremental, but T or D has just changed the position of {name}.",
-            word=word.text,
-            name=name,
-        )
-        raise statement.refuse(
-            word,
-            "distance-behind-tool",
-            text,
-            Message("Program a position of {name} before this block.", name=name),
-        )
+        text = "{word} is incremental, but T or D has just changed the position of {name}."
+        hint = "Program a position of {name} before this block."
+        raise statement.refuse(word, "distance-behind-tool", text, hint, word=word.text, name=name)
     return begun + value
 
 
@@ -144,9 +138,10 @@ def _polar(state: State, statement: Statement) -> tuple[float, float]:
     radius, angle = statement.words.get("RP"), statement.words.get("AP")
     for name in ("X", "Z", "ANG"):
         if name in statement.words:
-            text: str = Message("{text} cannot be combined with RP and AP.", text=statement.words[name].text)
+            text = "{text} cannot be combined with RP and AP."
+            hint = "Remove this word, or remove RP and AP."
             raise statement.refuse(
-                statement.words[name], "polar-both", text, "Remove this word, or remove RP and AP."
+                statement.words[name], "polar-both", text, hint, text=statement.words[name].text
             )
     if (radius is None or angle is None) and state.polar is None:
         text = "the first polar move needs RP and AP."
@@ -155,10 +150,8 @@ def _polar(state: State, statement: Statement) -> tuple[float, float]:
     turn = last[1] if angle is None else state.number(statement, angle)
     far += last[0] if radius is not None and radius.form is Form.IC else 0.0
     turn += last[1] if angle is not None and angle.form is Form.IC else 0.0
-    if far < 0.0:
-        raise statement.refuse(
-            radius, "not-positive", "The resulting RP is less than 0.", "Correct the value."
-        )
+    text = "The resulting RP is less than 0."
+    statement.check(far >= 0.0, radius, "not-positive", text, "Correct the value.")
     state.polar = far, turn
     state.moved_by_tool.clear()
     return state.pole[0] + far * sin(radians(turn)), state.pole[1] + far * cos(radians(turn))
@@ -173,41 +166,25 @@ def _inclined(
     """The end of a line by its angle and one coordinate."""
     word = statement.words["ANG"]
     if state.motion is not Motion.LINE and state.motion is not Motion.RAPID:
-        raise statement.refuse(
-            word,
-            "word-unused",
-            Message("{word} can be used only in a straight move.", word=word.text),
-            "Write G1.",
-        )
+        text = "{word} can be used only in a straight move."
+        raise statement.refuse(word, "word-unused", text, "Write G1.", word=word.text)
     if x is None and z is None:
-        text = Message(
-            "{word} without X or Z begins a contour of two straight lines, which TurnDesk does not support.",
-            word=word.text,
+        text = (
+            "{word} without X or Z begins a contour of two straight lines, which TurnDesk does not support."
         )
-        raise statement.refuse(word, "not-in-subset", text, "Add X or Z of the end point to the block.")
+        hint = "Add X or Z of the end point to the block."
+        raise statement.refuse(word, "not-in-subset", text, hint, word=word.text)
     if x is not None and z is not None:
-        text = Message(
-            "{word} cannot be combined with both X and Z, which define the end point.", word=word.text
-        )
-        raise statement.refuse(word, "angle-both", text, "Program only X or only Z with ANG.")
+        text = "{word} cannot be combined with both X and Z, which define the end point."
+        raise statement.refuse(word, "angle-both", text, "Program only X or only Z with ANG.", word=word.text)
     angle = radians(state.number(statement, word))
     if x is None and z is not None:
-        if abs(cos(angle)) < _STEEP:
-            raise statement.refuse(
-                word,
-                "angle-none",
-                "this straight line never reaches the programmed Z.",
-                "Write X together with ANG.",
-            )
+        text = "this straight line never reaches the programmed Z."
+        statement.check(abs(cos(angle)) >= _STEEP, word, "angle-none", text, "Write X together with ANG.")
         return begun[0] + (z - begun[1]) * tan(angle), z
     assert x is not None
-    if abs(sin(angle)) < _STEEP:
-        raise statement.refuse(
-            word,
-            "angle-none",
-            "this straight line never reaches the programmed X.",
-            "Write Z together with ANG.",
-        )
+    text = "this straight line never reaches the programmed X."
+    statement.check(abs(sin(angle)) >= _STEEP, word, "angle-none", text, "Write Z together with ANG.")
     return x, begun[1] + (x - begun[0]) / tan(angle)
 
 
@@ -232,8 +209,10 @@ def turn_of_c(state: State, statement: Statement, word: Word, form: Form, at: fl
         raise statement.refuse(
             word,
             problem.number,
-            Message("{word}: {problem}.", word=word.text, problem=problem),
+            "{word}: {problem}.",
             _hint(problem.number, linear=limits.c_linear),
+            word=word.text,
+            problem=problem,
         ) from None
     return travel
 
@@ -263,13 +242,13 @@ _HINTS = {
 def straight(state: State, statement: Statement) -> Block:
     """G0 or G1 to where the words lead. Raises ProgramError."""
     for name in sorted(ARC & statement.words.keys()):
-        text = Message(
+        raise statement.refuse(
+            statement.words[name],
+            "word-unused",
             "{text} can be used only in an arc, but G{motion} is active.",
+            "Write G2 or G3, or remove the word.",
             text=statement.words[name].text,
             motion=f"{state.motion:d}",
-        )
-        raise statement.refuse(
-            statement.words[name], "word-unused", text, "Write G2 or G3, or remove the word."
         )
     travel = travel_of(state, statement)
     if state.motion is Motion.RAPID:

@@ -35,10 +35,9 @@ def live_words(state: State, statement: Statement) -> None:
 
 
 def _demand(state: State, statement: Statement, word: Word) -> None:
-    if not state.setup.limits.live_output:
-        text = Message("{word}: this machine has one spindle and no output for a live tool.", word=word.text)
-        hint = "Remove this word, or define an output named live under [io.out] in the machine file."
-        raise statement.refuse(word, "one-spindle", text, hint)
+    text = "{word}: this machine has one spindle and no output for a live tool."
+    hint = "Remove this word, or define an output named live under [io.out] in the machine file."
+    statement.check(state.setup.limits.live_output, word, "one-spindle", text, hint, word=word.text)
 
 
 def live_tool(state: State, statement: Statement) -> Iterator[Block]:
@@ -53,9 +52,8 @@ def live_tool(state: State, statement: Statement) -> Iterator[Block]:
 
 def _speed(state: State, statement: Statement, word: Word) -> None:
     value = state.number(statement, word)
-    if value < 0.0:
-        text = Message("{word}: the speed cannot be negative; M3 and M4 set the direction.", word=word.text)
-        raise statement.refuse(word, "speed-sign", text, "Remove the sign.")
+    text = "{word}: the speed cannot be negative; M3 and M4 set the direction."
+    statement.check(value >= 0.0, word, "speed-sign", text, "Remove the sign.", word=word.text)
     state.live_speed = value
     if state.live_rpm:
         state.live_rpm = value
@@ -78,15 +76,13 @@ def _speed(state: State, statement: Statement, word: Word) -> None:
 
 def _turn(state: State, statement: Statement, word: Word) -> Iterator[Block]:
     code = int(word.value or 0)
-    if code == 4:
-        text = Message("{word}: the live tool turns in only one direction.", word=word.text)
-        raise statement.refuse(
-            word, "live-direction", text, "Write M3, and use a tool that cuts in that direction."
-        )
+    text = "{word}: the live tool turns in only one direction."
+    hint = "Write M3, and use a tool that cuts in that direction."
+    statement.check(code != 4, word, "live-direction", text, hint, word=word.text)
     on = code == 3
     if on and not state.live_speed:
-        text = Message("{word} starts the live tool, but its speed is not programmed with S.", word=word.text)
-        raise statement.refuse(word, "speed-missing", text, "Write S2= in the block.")
+        text = "{word} starts the live tool, but its speed is not programmed with S."
+        raise statement.refuse(word, "speed-missing", text, "Write S2= in the block.", word=word.text)
     state.live_rpm = state.live_speed if on else 0.0
     name = state.setup.limits.live_output
     outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}

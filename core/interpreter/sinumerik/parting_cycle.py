@@ -12,12 +12,11 @@ from collections.abc import Iterator
 from core.interpreter.actions import SpindleRun
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.modal_state import Modal
-from core.interpreter.sinumerik.boring_cycles import NO_DIRECTION
-from core.interpreter.sinumerik.cycle_parameters import NO_FEED, RETRACT, Cycle, Step
+from core.interpreter.sinumerik.cycle_parameters import NO_DIRECTION, NO_FEED, RETRACT, Cycle, Step
 from core.interpreter.units import FEET_PER_MINUTE, METRES_PER_MINUTE
-from core.message import Message
 
 WRONG_DEPTH = 61604
+_SPEED = "{name} is {value}, which is not a valid speed for this spindle"
 _DIRECTION = {3: 1, 4: -1}  # of _SDAC
 
 
@@ -29,34 +28,20 @@ def part_off(cycle: Cycle) -> Iterator[Block]:
     """
     cycle.zero_only("_RC", "cut the chamfer or the radius with G1 before the cycle")
     cycle.zero_only("_VARI", "the tool only retracts, because this machine has no parts catcher")
-    if cycle.whole("_AMODE", 0, 0, 10**8) % 100:
-        hint = "Enter _DIAG1 and _DIAG2 as diameters, and omit _AMODE."
-        raise cycle.wrong(
-            "_AMODE",
-            "{name} specifies depths measured from SPD, which is not supported",
-            hint,
-            "not-in-subset",
-        )
+    text = "{name} specifies depths measured from SPD, which is not supported"
+    hint = "Enter _DIAG1 and _DIAG2 as diameters, and omit _AMODE."
+    cycle.check(not cycle.whole("_AMODE", 0, 0, 10**8) % 100, "_AMODE", text, hint, "not-in-subset")
     slow, last = _depths(cycle)
     first, second = _feeds(cycle)
     before = cycle.state.modal
     fast = _speed(cycle, before)
     rpm = cycle.number("_SS2")
-    if rpm < 0.0 or rpm > cycle.state.setup.limits.max_rpm:
-        raise cycle.wrong(
-            "_SS2",
-            Message(
-                "{name} is {value}, which is not a valid speed for this spindle",
-                value=f"{rpm:g}",
-                name="_SS2",
-            ),
-            "Correct the value.",
-        )
+    cycle.check(0.0 <= rpm <= cycle.state.setup.limits.max_rpm, "_SS2", _SPEED, value=rpm)
     place, surface = cycle.needed("SPL"), cycle.needed("SPD") / 2.0
     clear = surface + (cycle.size("_SDIS") or RETRACT)
-    out = [Step(clear, cycle.z)] if cycle.x < clear else []
-    down = [*out, Step(max(clear, cycle.x), place), Step(clear, place), Step(slow, place, first)]
-    return _blocks(cycle, (fast, before, rpm), down, [Step(last, place, second), Step(clear, place)])
+    down = [*cycle.off_part(clear), Step(max(clear, cycle.x), place), Step(clear, place)]
+    through = [Step(last, place, second), Step(clear, place)]
+    return _blocks(cycle, (fast, before, rpm), [*down, Step(slow, place, first)], through)
 
 
 def _depths(cycle: Cycle) -> tuple[float, float]:
@@ -64,21 +49,14 @@ def _depths(cycle: Cycle) -> tuple[float, float]:
     surface, last = cycle.over_zero("SPD"), cycle.needed("_DIAG2")
     slow = cycle.length("_DIAG1", last) if cycle.given("_DIAG1") else last
     if not last <= slow <= surface:
-        text = Message(
-            "{name} is {slow} but must be between SPD {surface} and _DIAG2 {last}",
-            slow=f"{slow:g}",
-            surface=f"{surface:g}",
-            last=f"{last:g}",
-            name="_DIAG1",
-        )
-        raise cycle.wrong("_DIAG1", text, "Enter diameters, with SPD as the largest.", WRONG_DEPTH)
+        text = "{name} is {slow} but must be between SPD {surface} and _DIAG2 {last}"
+        hint = "Enter diameters, with SPD as the largest."
+        raise cycle.wrong("_DIAG1", text, hint, WRONG_DEPTH, slow=slow, surface=surface, last=last)
     return slow / 2.0, last / 2.0
 
 
 def _feeds(cycle: Cycle) -> tuple[float, float]:
-    first = cycle.feed("_FF1")
-    if first is None:
-        raise cycle.refused(NO_FEED, "no feedrate is programmed.", "Write _FF1.")
+    first = cycle.known_feed(cycle.feed("_FF1"), NO_FEED, "Write _FF1.")
     second = cycle.feed("_FF2") if cycle.number("_FF2") else first
     return first, second or first
 
@@ -88,24 +66,12 @@ def _speed(cycle: Cycle, before: Modal) -> Modal:
     value, most = cycle.number("_SV1"), cycle.number("_SV2")
     direction = cycle.whole("_SDAC", 0, 0, 4)
     if direction and direction not in _DIRECTION:
-        raise cycle.wrong(
-            "_SDAC",
-            Message("{name} cannot be {value}", value=direction, name="_SDAC"),
-            "Enter 3 for M3 or 4 for M4.",
-            NO_DIRECTION,
-        )
+        text = "{name} cannot be {value}"
+        raise cycle.wrong("_SDAC", text, "Enter 3 for M3 or 4 for M4.", NO_DIRECTION, value=direction)
     modal = before._replace(spindle=_DIRECTION.get(direction, before.spindle))
     highest = cycle.state.setup.limits.max_rpm
-    if value < 0.0 or most < 0.0 or (value > highest and not most):
-        raise cycle.wrong(
-            "_SV1",
-            Message(
-                "{name} is {value}, which is not a valid speed for this spindle",
-                value=f"{value:g}",
-                name="_SV1",
-            ),
-            "Correct the value.",
-        )
+    fine = value >= 0.0 and most >= 0.0 and (value <= highest or most)
+    cycle.check(fine, "_SV1", _SPEED, value=value)
     if value and most:
         unit = METRES_PER_MINUTE if before.metric else FEET_PER_MINUTE
         modal = modal._replace(css=True, surface_speed=value * unit, css_max=most)

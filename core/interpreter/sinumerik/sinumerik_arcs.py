@@ -22,19 +22,14 @@ _TOLERANCE = 0.01  # mm by which the radii at both ends may differ
 def arc(state: State, statement: Statement) -> Block:
     """The arc of a block. Raises ProgramError where its words give none."""
     if state.plane != 18:
-        raise statement.refuse(
-            statement.g.get("motion"),
-            "arc-plane",
-            "arcs in X and Z need G18.",
-            "Write G18 before this block.",
-        )
+        text = "arcs in X and Z need G18."
+        raise statement.refuse(statement.g.get("motion"), "arc-plane", text, "Write G18 before this block.")
     _check_words(state, statement)
     travel = travel_of(state, statement)
     if not travel.frame.uniform:
         text = "SCALE uses different factors for X and Z, so an arc is not possible."
-        raise statement.refuse(
-            statement.g.get("motion"), "arc-scaled", text, "Use the same factor for both axes."
-        )
+        hint = "Use the same factor for both axes."
+        raise statement.refuse(statement.g.get("motion"), "arc-scaled", text, hint)
     clockwise, (centre, travel) = _found(state, statement, travel)
     offset = travel.offset_x
     feed = check_feed(state, statement, travel.x0 - offset, travel.x - offset)
@@ -54,12 +49,9 @@ def _check_words(state: State, statement: Statement) -> None:
     for name in sorted((ARC - own) & statement.words.keys()):
         word = statement.words[name]
         kind = {Motion.THROUGH: "CIP", Motion.TANGENT: "CT"}.get(state.motion, f"G{state.motion:d}")
-        raise statement.refuse(
-            word,
-            "word-unused",
-            Message("{word} cannot be used with {kind}.", word=word.text, kind=kind),
-            "Remove this word, or program the type of arc that uses it.",
-        )
+        text = "{word} cannot be used with {kind}."
+        hint = "Remove this word, or program the type of arc that uses it."
+        raise statement.refuse(word, "word-unused", text, hint, word=word.text, kind=kind)
 
 
 def _found(state: State, statement: Statement, travel: AxisTravel) -> tuple[bool, tuple[Point, AxisTravel]]:
@@ -146,9 +138,8 @@ def _centre(
         return _turned(state, statement, travel, clockwise)
     if not by_centre:
         text = "the arc needs CR, AR, or I and K."
-        raise statement.refuse(
-            statement.g.get("motion"), "arc-centre-missing", text, "Add one of the missing values."
-        )
+        hint = "Add one of the missing values."
+        raise statement.refuse(statement.g.get("motion"), "arc-centre-missing", text, hint)
     centre = _by_words(state, statement, travel)
     _check_radii(statement, travel, centre)
     return centre, travel
@@ -178,13 +169,12 @@ def _by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise
     radius, chord = state.length(statement, word) * travel.frame.factor, travel.length
     _demand_ends(statement, word, chord)
     if chord > 2 * abs(radius) + _TOLERANCE:
-        text = Message(
-            "{word} is too small: it must be at least half the distance between the arc ends, "
-            "which is {chord} mm.",
-            word=word.text,
-            chord=f"{chord:.4f}",
+        text = (
+            "{word} is too small: it must be at least half the distance between the arc ends, which is "
+            "{chord} mm."
         )
-        raise statement.refuse(word, "arc-radius", text, "Correct CR or the end point.")
+        hint = "Correct CR or the end point."
+        raise statement.refuse(word, "arc-radius", text, hint, word=word.text, chord=f"{chord:.4f}")
     side = clockwise if radius > 0 else not clockwise
     return centre_from_radius((travel.x0, travel.z0), (travel.x, travel.z), abs(radius), clockwise=side)
 
@@ -195,12 +185,9 @@ def _by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise:
     _demand_ends(statement, word, chord)
     half = radians(_angle(state, statement, word)) / 2
     if {"I", "K"} & statement.words.keys():
-        raise statement.refuse(
-            word,
-            "arc-both",
-            "the arc has AR, an end point and a center, but only two of them are allowed.",
-            "Keep only two of the three: AR, the end point and the center.",
-        )
+        text = "the arc has AR, an end point and a center, but only two of them are allowed."
+        hint = "Keep only two of the three: AR, the end point and the center."
+        raise statement.refuse(word, "arc-both", text, hint)
     # To the right of the chord for a clockwise arc; for more than half a turn the cotangent changes side.
     aside = (0.5 if clockwise else -0.5) / tan(half)
     dx, dz = travel.x - travel.x0, travel.z - travel.z0
@@ -218,9 +205,8 @@ def _turned(
     centre = _by_words(state, statement, travel)
     x, z = travel.x0 - centre[0], travel.z0 - centre[1]
     if hypot(x, z) < NO_WAY:
-        raise statement.refuse(
-            word, "arc-radius", "the center of the arc is its start point.", "Correct I and K."
-        )
+        text = "the center of the arc is its start point."
+        raise statement.refuse(word, "arc-radius", text, "Correct I and K.")
     angle = radians(_angle(state, statement, word))
     turned = atan2(x, z) + (angle if clockwise else -angle)  # from Z+ towards X+ is clockwise with X down
     radius = hypot(x, z)
@@ -231,27 +217,24 @@ def _turned(
 def _angle(state: State, statement: Statement, word: Word) -> float:
     angle = state.number(statement, word)
     if not 0.0 < angle < 360.0:
-        text = Message(
-            "{word}: an opening angle must be greater than 0 and less than 360 degrees.", word=word.text
-        )
-        raise statement.refuse(word, "arc-angle", text, "Program a full circle with I and K.")
+        text = "{word}: an opening angle must be greater than 0 and less than 360 degrees."
+        raise statement.refuse(word, "arc-angle", text, "Program a full circle with I and K.", word=word.text)
     return angle
 
 
 def _demand_ends(statement: Statement, word: Word | None, chord: float) -> None:
     if chord < NO_WAY:
         by = f" by {word.name}" if word else ""
-        text = Message("the arc{name} ends where it starts.", name=by)
-        raise statement.refuse(word, "arc-no-chord", text, "Program a full circle with I and K.")
+        text = "the arc{name} ends where it starts."
+        raise statement.refuse(word, "arc-no-chord", text, "Program a full circle with I and K.", name=by)
 
 
 def _check_radii(statement: Statement, travel: AxisTravel, centre: Point) -> None:
     word = statement.words.get("I") or statement.words.get("K")
     first, last = dist((travel.x0, travel.z0), centre), dist((travel.x, travel.z), centre)
     if first < NO_WAY:
-        raise statement.refuse(
-            word, "arc-radius", "the center of the arc is its start point.", "Correct I and K."
-        )
+        text = "the center of the arc is its start point."
+        raise statement.refuse(word, "arc-radius", text, "Correct I and K.")
     if abs(first - last) > _TOLERANCE:
         text = Message(
             "the arc's radius is {first} mm at its start and {last} mm at its end.",

@@ -7,7 +7,6 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.interpreter.units import MM_PER_INCH
 from core.language.sinumerik.sinumerik_words import Word
 from core.language.sinumerik.word_table import DWELL, FEED_AND_SPEED, MOTION
-from core.message import Message
 
 NO_FEED = 10860
 
@@ -28,12 +27,8 @@ def feed_words(state: State, statement: Statement) -> None:
     if word := statement.words.get("OVR"):
         state.override = state.number(statement, word) / 100.0
         if not 0.01 <= state.override <= 2.0:
-            raise statement.refuse(
-                word,
-                "not-positive",
-                Message("{word} is not between 1 and 200.", word=word.text),
-                "Correct the value.",
-            )
+            text = "{word} is not between 1 and 200."
+            raise statement.refuse(word, "not-positive", text, "Correct the value.", word=word.text)
     if word := statement.words.get("FRCM"):
         value = state.number(statement, word)
         state.corner_feed = feed_of(state, statement, word) if value else None
@@ -70,23 +65,17 @@ def check_feed(
         raise statement.refuse(_mover(statement), NO_FEED, "no feedrate is programmed.", hint)
     if modal.css and modal.spindle and not modal.surface_speed:
         text = "G96 is active, but no surface speed is programmed with S."
-        raise statement.refuse(
-            statement.words.get("S"), "surface-speed-missing", text, "Program S together with G96."
-        )
+        hint = "Program S together with G96."
+        raise statement.refuse(statement.words.get("S"), "surface-speed-missing", text, hint)
     by_tool = modal.per_rev and state.master != 1
     if by_tool and not state.live_rpm:
         text = "G95 needs the live tool speed because SETMS(2) is active, but the live tool is stopped."
-        raise statement.refuse(
-            _mover(statement), "g95-spindle-stopped", text, "Start the live tool with S and M3."
-        )
+        hint = "Start the live tool with S and M3."
+        raise statement.refuse(_mover(statement), "g95-spindle-stopped", text, hint)
     if modal.per_rev and not by_tool and not (state.rpm_at(x0) and state.rpm_at(x1)):
         text = "G95 needs a spindle speed, but the spindle is stopped."
-        raise statement.refuse(
-            _mover(statement),
-            "g95-spindle-stopped",
-            text,
-            "Start the spindle with S and M3 or M4, or use G94.",
-        )
+        hint = "Start the spindle with S and M3 or M4, or use G94."
+        raise statement.refuse(_mover(statement), "g95-spindle-stopped", text, hint)
     feed *= abs(state.live_rpm) / 60.0 if by_tool else 1.0
     return feed * state.override / (MM_PER_INCH if in_degrees and state.feed_in_inches else 1.0)
 

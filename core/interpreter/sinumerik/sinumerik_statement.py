@@ -11,7 +11,7 @@ from core.language.sinumerik.iso_words import iso_habit
 from core.language.sinumerik.sinumerik_alarms import ONE_GROUP, TWICE, UNKNOWN_G, fault
 from core.language.sinumerik.sinumerik_words import Line, Word
 from core.language.sinumerik.word_values import variable
-from core.message import Message
+from core.message import Message, worded
 
 _DWELL_WORDS = frozenset({"F", "S"})
 _ENDS = frozenset({2, 17, 30})
@@ -67,11 +67,24 @@ class Statement:
         """Whether the block holds M2, M17 or M30."""
         return bool(_ENDS & self.m.keys())
 
-    def refuse(self, word: Word | None, code: int | str, text: str, hint: str) -> ProgramError:
-        """An error at this word, to be raised: an alarm of the control by its number, or one of ours."""
+    def refuse(
+        self, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
+    ) -> ProgramError:
+        """An error at this word, to be raised: an alarm of the control by its number, or one of ours.
+
+        ``values`` fill the holes of ``text`` and ``hint``.
+        """
+        text, hint = worded(text, values), worded(hint, values)
         line, column = self.line, word.column if word else 1
         axis = _axis(word) if word and word.name in known.AXES else ""
         return ProgramError(fault(line.number, column, code, line.block, text, hint, axis=axis))
+
+    def check(
+        self, ok: object, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
+    ) -> None:
+        """Raise the error of ``refuse`` unless a condition holds."""
+        if not ok:
+            raise self.refuse(word, code, text, hint, **values)
 
     def warning(self, word: Word | None, code: str, text: str, hint: str) -> Diagnostic:
         """The same that is no error."""

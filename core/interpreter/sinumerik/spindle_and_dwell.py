@@ -138,11 +138,11 @@ def demand_spindle_as_c(state: State, refuse: Callable[[str, str], ProgramError]
         else "the spindle of this machine cannot be oriented because the machine has no C axis and the "
         "machine file does not enable orientation by the spindle drive."
     )
-    hint = (
-        "Set oriented = true under [spindle] in the machine file if the drive can stop the "
-        "spindle at an angle, or write M5 and index the part with C."
+    raise refuse(
+        text,
+        "Set oriented = true under [spindle] in the machine file if the drive can stop the spindle at an "
+        "angle, or write M5 and index the part with C.",
     )
-    raise refuse(text, hint)
 
 
 def _orient(state: State, statement: Statement, word: Word) -> SpindleOrient:
@@ -153,23 +153,18 @@ def _orient(state: State, statement: Statement, word: Word) -> SpindleOrient:
     value = state.number(statement, word)
     if form is Form.IC:
         if at is None:
-            text = Message(
-                "{word} is relative to a spindle angle, but the spindle has not been positioned at an angle.",
-                word=word.text,
+            text = (
+                "{word} is relative to a spindle angle, but the spindle has not been positioned at an angle."
             )
-            raise statement.refuse(
-                word, "spindle-position", text, "Write SPOS with an angle before this block."
-            )
-        if abs(value) >= _TURN:
-            text = Message(
-                "{word}: on this drive, a spindle positioning move must be less than one revolution.",
-                word=word.text,
-            )
-            raise statement.refuse(word, "spindle-position", text, "Enter an angle of less than 360 degrees.")
+            hint = "Write SPOS with an angle before this block."
+            raise statement.refuse(word, "spindle-position", text, hint, word=word.text)
+        text = "{word}: on this drive, a spindle positioning move must be less than one revolution."
+        hint = "Enter an angle of less than 360 degrees."
+        statement.check(abs(value) < _TURN, word, "spindle-position", text, hint, word=word.text)
         return SpindleOrient((at + value) % _TURN, int(copysign(1, value)) if value else 0)
-    if not 0.0 <= value < _TURN:
-        text = Message("{word}: {value} is not a valid spindle angle.", word=word.text, value=f"{value:g}")
-        raise statement.refuse(word, WRONG_MODULO, text, "Enter an angle from 0 to less than 360 degrees.")
+    text = "{word}: {value} is not a valid spindle angle."
+    hint = "Enter an angle from 0 to less than 360 degrees."
+    statement.check(0.0 <= value < _TURN, word, WRONG_MODULO, text, hint, word=word.text, value=value)
     sense = {Form.ACP: 1, Form.ACN: -1}.get(form, 0)
     if form is Form.AC and at is not None:  # never across 0
         sense = int(copysign(1, value - at)) if value != at else 0
@@ -224,22 +219,15 @@ def _limit(state: State, statement: Statement) -> None:
     _demand_controlled(state, statement, word)
     value = state.number(statement, word)
     if value < 0 or (code == 26 and not value):
-        raise statement.refuse(
-            word,
-            "not-positive",
-            Message("{word} is not a valid speed limit.", word=word.text),
-            "Correct the value.",
-        )
+        text = "{word} is not a valid speed limit."
+        raise statement.refuse(word, "not-positive", text, "Correct the value.", word=word.text)
     lowest, highest = (value, state.highest) if code == 25 else (state.lowest, value)
     highest = min(highest, state.setup.limits.max_rpm)
     if lowest > highest:
-        text = Message(
-            "{word}: the minimum speed {lowest} is above the maximum speed {highest}.",
-            word=word.text,
-            lowest=f"{lowest:g}",
-            highest=f"{highest:g}",
+        text = "{word}: the minimum speed {lowest} is above the maximum speed {highest}."
+        raise statement.refuse(
+            word, "speed-limits", text, "Correct G25 or G26.", word=word.text, lowest=lowest, highest=highest
         )
-        raise statement.refuse(word, "speed-limits", text, "Correct G25 or G26.")
     state.lowest, state.highest = lowest, highest
     state.adopt(state.modal._replace(css_min=lowest))
 
@@ -251,35 +239,26 @@ def _speed(state: State, statement: Statement) -> None:
         return
     _demand_controlled(state, statement, word)
     value = state.number(statement, word)
-    if value < 0:
-        text = Message("{word}: the speed cannot be negative; M3 and M4 set the direction.", word=word.text)
-        raise statement.refuse(word, "speed-sign", text, "Remove the sign.")
+    text = "{word}: the speed cannot be negative; M3 and M4 set the direction."
+    statement.check(value >= 0, word, "speed-sign", text, "Remove the sign.", word=word.text)
     if state.modal.css:
         speed = value * (METRES_PER_MINUTE if state.modal.metric else _FEET)
         if speed > _FASTEST_SURFACE:
-            text = Message("a surface speed of {word} m/min is too high for any tool.", word=word.text)
-            raise statement.refuse(word, "speed-range", text, "Write G97 if S is in rpm.")
+            text = "a surface speed of {word} m/min is too high for any tool."
+            raise statement.refuse(word, "speed-range", text, "Write G97 if S is in rpm.", word=word.text)
         state.adopt(state.modal._replace(surface_speed=speed))
         return
     highest = state.setup.limits.max_rpm
     state.adopt(state.modal._replace(rpm=min(value, highest)))
-    if value > highest:
-        raise statement.refuse(
-            word,
-            "speed-range",
-            Message(
-                "{word} is above the spindle maximum of {highest} rpm.",
-                word=word.text,
-                highest=f"{highest:g}",
-            ),
-            "Lower S.",
-        )
+    text = "{word} is above the spindle maximum of {highest} rpm."
+    statement.check(value <= highest, word, "speed-range", text, "Lower S.", word=word.text, highest=highest)
 
 
 def _demand_controlled(state: State, statement: Statement, word: Word | None) -> None:
     if word is not None and not state.setup.limits.spindle_controlled:
-        text = Message("{word} needs a controlled spindle, which this machine does not have.", word=word.text)
-        raise statement.refuse(word, "no-controlled-spindle", text, "Remove this text from the program.")
+        text = "{word} needs a controlled spindle, which this machine does not have."
+        hint = "Remove this text from the program."
+        raise statement.refuse(word, "no-controlled-spindle", text, hint, word=word.text)
 
 
 def _check_start(state: State, statement: Statement, word: Word) -> None:
@@ -287,37 +266,30 @@ def _check_start(state: State, statement: Statement, word: Word) -> None:
     if not limits.spindle_controlled:
         state.adopt(state.modal._replace(rpm=limits.max_rpm))  # it has one speed
     if not (state.modal.surface_speed if state.modal.css else state.modal.rpm):
-        text = Message("{word} starts the spindle, but S is 0 or not programmed.", word=word.text)
-        raise statement.refuse(word, "speed-missing", text, "Write S in the block.")
+        text = "{word} starts the spindle, but S is 0 or not programmed."
+        raise statement.refuse(word, "speed-missing", text, "Write S in the block.", word=word.text)
     if not state.modal.collet_closed and not limits.start_with_collet_open:
-        raise statement.refuse(
-            word,
-            "collet-open",
-            Message("{word} starts the spindle with the collet open.", word=word.text),
-            "Close the collet first.",
-        )
+        text = "{word} starts the spindle with the collet open."
+        raise statement.refuse(word, "collet-open", text, "Close the collet first.", word=word.text)
 
 
 def dwell(state: State, statement: Statement) -> Block:
     """G4 F in seconds, G4 S in revolutions of the spindle; the F and S in force stay. Raises ProgramError."""
     word = statement.words.get("F") or statement.words["S"]
     value = state.number(statement, word)
-    if value < 0:
+    text = "{word}: a dwell cannot be negative."
+    statement.check(value >= 0, word, "dwell-range", text, "Correct the value.", word=word.text)
+    seconds = value if word.name == "F" else value / _turning(state, statement, word) * 60.0
+    if seconds > _LONGEST_DWELL:
         raise statement.refuse(
             word,
             "dwell-range",
-            Message("{word}: a dwell cannot be negative.", word=word.text),
-            "Correct the value.",
-        )
-    seconds = value if word.name == "F" else value / _turning(state, statement, word) * 60.0
-    if seconds > _LONGEST_DWELL:
-        text = Message(
             "{word} is a dwell of {seconds} s; the maximum is {longest_dwell} s.",
+            "Enter F in seconds or S in revolutions.",
             word=word.text,
             seconds=f"{seconds:.0f}",
-            longest_dwell=f"{_LONGEST_DWELL:g}",
+            longest_dwell=_LONGEST_DWELL,
         )
-        raise statement.refuse(word, "dwell-range", text, "Enter F in seconds or S in revolutions.")
     return state.action(statement.line.number, statement.line.text, Dwell(seconds))
 
 
@@ -325,9 +297,7 @@ def _turning(state: State, statement: Statement, word: Word) -> float:
     """The speed by which revolutions become seconds, rpm."""
     _demand_controlled(state, statement, word)
     rpm = abs(state.rpm)
-    if not rpm:
-        text = Message("G4 {word} waits for spindle revolutions, but the spindle is stopped.", word=word.text)
-        raise statement.refuse(
-            word, "dwell-spindle-stopped", text, "Start the spindle with M3 or M4, or write G4 F."
-        )
+    text = "G4 {word} waits for spindle revolutions, but the spindle is stopped."
+    hint = "Start the spindle with M3 or M4, or write G4 F."
+    statement.check(rpm, word, "dwell-spindle-stopped", text, hint, word=word.text)
     return rpm

@@ -9,23 +9,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from math import ceil
 from typing import NamedTuple
 
 from core.geometry.contour_offset import Area, TrimError
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, shifted
-from core.interpreter.actions import Dwell
-from core.interpreter.contour_passes import ContourView, Move, Rougher, StartNearError, view_from
+from core.interpreter.contour_passes import (
+    MOST_ELEMENTS,
+    MOST_LOOKS,
+    ContourView,
+    Move,
+    Rougher,
+    StartNearError,
+    view_from,
+)
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_contour import WRONG_CONTOUR
-from core.interpreter.sinumerik.cycle_parameters import MACHINING_TYPE, MOST_PASSES, RETRACT, Cycle, Step
-from core.message import Message
+from core.interpreter.sinumerik.cycle_parameters import MACHINING_TYPE, RETRACT, Cycle, Step, dwell
 from core.tool_edges import TIP_DIRECTIONS
 
 NO_INFEED = 61610
-_MOST_ELEMENTS = 2_000
-_MOST_LOOKS = 200_000  # elements times passes: a few seconds
-_WHOLE = 1e-6  # of a pass: what a decimal fraction lacks in binary
 _SAME = 1e-6  # mm
 _ROUNDING = 200  # VARI from here on leaves the steps; the run along the contour takes them here
 
@@ -44,17 +46,11 @@ def kind_of(cycle: Cycle) -> Kind:
     value = cycle.number("VARI", -1.0)
     number = round(value) % _ROUNDING
     if value != round(value) or value < 1 or number not in range(1, 13) or value > _ROUNDING + 12:
-        told = (
-            Message("{name} is {value}; valid types are 1 to 12", value=f"{value:g}", name="VARI")
-            if cycle.given("VARI")
-            else ("{name} is missing; valid types are 1 to 12")
-        )
-        raise cycle.wrong(
-            "VARI",
-            told,
-            "Enter 1 for roughing, 5 for finishing or 9 for both, for external machining along Z.",
-            MACHINING_TYPE,
-        )
+        wrong = "{name} is {value}; valid types are 1 to 12"
+        missing = "{name} is missing; valid types are 1 to 12"
+        hint = "Enter 1 for roughing, 5 for finishing or 9 for both, for external machining along Z."
+        text = wrong if cycle.given("VARI") else missing
+        raise cycle.wrong("VARI", text, hint, MACHINING_TYPE, value=value)
     rest = (number - 1) % 4
     return Kind(rest % 2 == 1, rest >= 2, number <= 4 or number >= 9, number >= 5)
 
@@ -62,23 +58,13 @@ def kind_of(cycle: Cycle) -> Kind:
 def stock_removal(cycle: Cycle, contour: list[Element]) -> Iterator[Block]:
     """The whole cycle. Raises ProgramError before the first block."""
     kind = kind_of(cycle)
-    if not contour:
+    text = "{name} refers to a contour without lines or arcs"
+    cycle.check(contour, "NPP", text, "Write the points of the contour.", WRONG_CONTOUR)
+    if len(contour) > MOST_ELEMENTS:
+        text = "{name} has {contour_count} elements; the maximum is {most_elements}"
+        hint = "Split the contour into smaller parts."
         raise cycle.wrong(
-            "NPP",
-            "{name} refers to a contour without lines or arcs",
-            "Write the points of the contour.",
-            WRONG_CONTOUR,
-        )
-    if len(contour) > _MOST_ELEMENTS:
-        raise cycle.wrong(
-            "NPP",
-            Message(
-                "{name} has {contour_count} elements; the maximum is {most_elements}",
-                contour_count=f"{len(contour):,}",
-                most_elements=f"{_MOST_ELEMENTS:,}",
-                name="NPP",
-            ),
-            "Split the contour into smaller parts.",
+            "NPP", text, hint, contour_count=f"{len(contour):,}", most_elements=f"{MOST_ELEMENTS:,}"
         )
     plan = _Plan(cycle, kind, contour)
     steps = plan.approach()
@@ -143,13 +129,9 @@ class _Plan:
         try:
             return Area(view.from_start(contour), left + self._nose), view
         except TrimError:
+            text = "with allowance {name}, no continuous path along the contour is possible"
             hint = "Reduce FAL, or widen the narrow part of the contour."
-            raise self._cycle.wrong(
-                "FAL",
-                "with allowance {name}, no continuous path along the contour is possible",
-                hint,
-                61606,
-            ) from None
+            raise self._cycle.wrong("FAL", text, hint, 61606) from None
 
     def approach(self) -> list[Step]:
         """To the start point: first off the part in depth, then beside it."""
@@ -167,35 +149,19 @@ class _Plan:
         """Equal passes of MID at most, and the run along the contour at its allowance."""
         cycle = self._cycle
         infeed = cycle.size("MID")
-        if not infeed:
-            raise cycle.wrong(
-                "MID", "{name} is missing, so the depth of a pass is not defined", "Write MID.", NO_INFEED
-            )
+        text = "{name} is missing, so the depth of a pass is not defined"
+        cycle.check(infeed, "MID", text, "Write MID.", NO_INFEED)
         contour, left = self._with_allowance()
         area, view = self._area(contour, left)
-        if area.deepest <= 0:
-            raise cycle.wrong(
-                "NPP",
-                "{name} specifies a contour with no material to cut",
-                "Check the direction of the contour.",
-                WRONG_CONTOUR,
-            )
-        count = ceil(area.deepest / infeed - _WHOLE)
-        if count > MOST_PASSES or count * len(contour) > _MOST_LOOKS:
-            raise cycle.wrong(
-                "MID",
-                Message(
-                    "{name} would need {count} passes, which is too many", count=f"{count:,}", name="MID"
-                ),
-                "Look for a missing decimal point.",
-            )
+        text = "{name} specifies a contour with no material to cut"
+        cycle.check(area.deepest > 0, "NPP", text, "Check the direction of the contour.", WRONG_CONTOUR)
+        text = "{name} would need {count} passes, which is too many"
+        count = cycle.pass_count(area.deepest, infeed, "MID", text, most=MOST_LOOKS // len(contour))
         rougher = Rougher(area, 1.0, self._off)
-        for k in range(1, count + 1):
-            rougher.cut(area.deepest * k / count)
+        rougher.rough(count)
         if rougher.plunged and not cycle.number("FF2") and cycle.state.modal.feed is None:
-            raise cycle.wrong(
-                "FF2", "{name} is missing, but the contour has a relief cut", "Write FF2.", 61003
-            )
+            text = "{name} is missing, but the contour has a relief cut"
+            raise cycle.wrong("FF2", text, "Write FF2.", 61003)
         moves = self._run(rougher, view)
         return self._fed(moves, cycle.feed("FF1"), cycle.feed("FF2"), breaks=True)
 
@@ -208,13 +174,9 @@ class _Plan:
         try:
             rougher.finish(backwards=view.backwards)
         except StartNearError:
+            text = "{name} specifies a contour that the tool cannot approach or leave with enough clearance"
             hint = "End the contour at a point where the tool can leave it."
-            raise self._cycle.wrong(
-                "NPP",
-                "{name} specifies a contour that the tool cannot approach or leave with enough clearance",
-                hint,
-                61607,
-            ) from None
+            raise self._cycle.wrong("NPP", text, hint, 61607) from None
         return [view.placed(move) for move in rougher.moves]
 
     def _with_allowance(self) -> tuple[list[Element], float]:
@@ -238,9 +200,7 @@ class _Plan:
         cycle = self._cycle
         if feed is None:
             name = "FF1" if breaks else "FF3"
-            raise cycle.wrong(
-                name, "{name} is missing, and no F is active", Message("Write {name}.", name=name), 61003
-            )
+            raise cycle.wrong(name, "{name} is missing, and no F is active", "Write {name}.", 61003)
         steps: list[Step] = []
         at = self._start
         for move in moves:
@@ -259,23 +219,14 @@ class _Plan:
         if not length or move.rapid is not None or move.centre is not None or abs(way) <= length + _SAME:
             return [self._step(move, feed)]
         steps: list[Step] = []
-        count = ceil(abs(way) / length - _WHOLE)
-        if count > MOST_PASSES:
-            raise self._cycle.wrong(
-                "DAM",
-                Message(
-                    "{name} would interrupt a pass {count} times, which is too many",
-                    count=f"{count:,}",
-                    name="DAM",
-                ),
-                "Correct the value.",
-            )
+        text = "{name} would interrupt a pass {count} times, which is too many"
+        count = self._cycle.pass_count(abs(way), length, "DAM", text, "Correct the value.")
         for k in range(1, count + 1):
             share = min(k * length / abs(way), 1.0)
             between = Move(at[0] + (move.x - at[0]) * share, at[1] + way * share)
             steps.append(self._step(between, feed))
-            if k < count and seconds > 0:
-                steps.append(Step(steps[-1].x, steps[-1].z, action=Dwell(seconds)))
+            if k < count:
+                steps += dwell(seconds)
         return steps
 
     def _step(self, move: Move, feed: float | None = None) -> Step:
@@ -298,11 +249,9 @@ def _nose_of(cycle: Cycle) -> tuple[float, Point]:
     if not cycle.state.modal.edge or not edge.nose_radius:
         return 0.0, (0.0, 0.0)
     if not edge.quadrant:
-        text = Message(
-            "the tool has no tip quadrant, so {call} ignores the nose radius on tapers and arcs.",
-            call=cycle.line.call,
-        )
-        cycle.warn("comp-no-quadrant", text, "Enter the tip quadrant on the TOOL OFFSETS page (F8).")
+        text = "the tool has no tip quadrant, so {call} ignores the nose radius on tapers and arcs."
+        hint = "Enter the tip quadrant on the TOOL OFFSETS page (F8)."
+        cycle.warn("comp-no-quadrant", text, hint)
         return 0.0, (0.0, 0.0)
     z, x = TIP_DIRECTIONS[edge.quadrant]
     return edge.nose_radius, (x * edge.nose_radius, z * edge.nose_radius)

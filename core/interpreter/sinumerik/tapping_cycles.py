@@ -7,46 +7,35 @@ chuck the slide is fed by the revolution, and the spindle turned back at the bot
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, copysign
+from math import copysign
 
-from core.interpreter.actions import SpindleLock, SpindleRun
+from core.interpreter.actions import SpindleRun
 from core.interpreter.elementary_blocks import Block, Kind
-from core.interpreter.sinumerik.cycle_parameters import MOST_PASSES, Cycle, Step, dwell
-from core.interpreter.sinumerik.drilling_cycles import Hole, approach, hole_of, needed_feed, seconds
+from core.interpreter.sinumerik.cycle_parameters import NO_DIRECTION, Cycle, Step, acting, dwell
+from core.interpreter.sinumerik.drilling_cycles import Hole, hole_of, locked, seconds
 from core.interpreter.sinumerik.linear_moves import block_of, travel_of
 from core.interpreter.sinumerik.sinumerik_state import Motion, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.interpreter.sinumerik.spindle_and_dwell import demand_spindle_as_c, shortest_turn
-from core.interpreter.sinumerik.thread_cycle import COARSE_LEADS, WRONG_LEAD
-from core.message import Message
+from core.interpreter.sinumerik.spindle_and_dwell import demand_spindle_as_c
+from core.interpreter.sinumerik.thread_cycle import WRONG_LEAD, check_lead, coarse_lead
 
-NO_DIRECTION = 61102
 _SAME = 1e-6  # mm
-_WHOLE = 1e-6
 _INCH = 25.4
 
 
 def lead_of_tap(cycle: Cycle) -> float:
     """PIT or MPIT, under 0 for a left-hand thread: mm a revolution; 0 where neither is written."""
     unit = cycle.whole("_PITA", 0, 0, 4)
-    if unit == 4:
-        raise cycle.wrong(
-            "_PITA", "{name} is 4, which specifies the lead as a module", "Enter PIT in mm.", WRONG_LEAD
-        )
+    text = "{name} is 4, which specifies the lead as a module"
+    cycle.check(unit != 4, "_PITA", text, "Enter PIT in mm.", WRONG_LEAD)
     pit, size = cycle.number("PIT"), cycle.number("MPIT")
     if pit:
         in_inches = unit == 3 or (unit == 0 and not cycle.state.modal.metric)
         return _INCH / pit if unit == 2 else pit * (_INCH if in_inches else 1.0)
     if not size:
         return 0.0
-    lead = COARSE_LEADS.get(round(abs(size)), 0.0) if size == round(size) else 0.0
-    if not lead:
-        raise cycle.wrong(
-            "MPIT",
-            "{name} does not define a lead",
-            "Enter PIT, or MPIT from 3 to 68 for M3 to M68.",
-            WRONG_LEAD,
-        )
+    lead = coarse_lead(size)
+    check_lead(cycle, lead, "MPIT")
     return copysign(lead, size)
 
 
@@ -58,55 +47,37 @@ def rigid(cycle: Cycle) -> Iterator[Block]:
     hole, state = hole_of(cycle), cycle.state
     demand_spindle_as_c(state, lambda text, hint: cycle.refused("spindle-position", text, hint))
     lead = lead_of_tap(cycle)
-    if not lead:
-        raise cycle.wrong(
-            "PIT",
-            "{name} does not define a lead",
-            "Enter PIT, or MPIT from 3 to 68 for M3 to M68.",
-            WRONG_LEAD,
-        )
+    check_lead(cycle, lead, "PIT")
     into = _speed(cycle, "SST", state.modal.rpm)
     out = _speed(cycle, "SST1", into)
     rest = cycle.whole("SDAC", 5, 3, 5)
-    if rest != 5 and not state.modal.rpm:
-        raise cycle.wrong(
-            "SDAC", "{name} starts the spindle, but no S is programmed", "Write S before this block."
-        )
-    wanted = cycle.number("POSS")
-    if not 0.0 <= wanted < 360.0:
-        raise cycle.wrong(
-            "POSS", "{name} must be an angle from 0 to less than 360 degrees", "Correct the value."
-        )
-    lock = [Step(0.0, 0.0, action=SpindleLock(orient=False), spindle=0)]
-    steps = [*approach(cycle, hole), *lock]
-    if turn := shortest_turn(state, wanted):
-        steps.append(Step(cycle.x, hole.clear, state.setup.limits.speeds[2], turn=turn))
-    steps += _ways(cycle, hole, lead, (into, out))
-    steps.append(Step(cycle.x, hole.retract))
-    if rest != 5:
-        sign = 1 if rest == 3 else -1
-        steps.append(Step(0.0, 0.0, action=SpindleRun(sign * state.modal.rpm), spindle=sign))
+    text = "{name} starts the spindle, but no S is programmed"
+    cycle.check(rest == 5 or state.modal.rpm, "SDAC", text, "Write S before this block.")
+    wanted = cycle.angle("POSS", "{name} must be an angle from 0 to less than 360 degrees")
+    steps = [hole.to(hole.clear), *locked(cycle, hole.to(hole.clear), wanted)]
+    steps += [*_ways(cycle, hole, lead, (into, out)), hole.to(hole.retract), *_after(cycle, rest)]
     return cycle.blocks(steps)
+
+
+def _after(cycle: Cycle, rest: int) -> list[Step]:
+    """What the spindle does behind the cycle: 3 and 4 as M3 and M4, 5 nothing."""
+    sign = 1 if rest == 3 else -1
+    return [] if rest == 5 else [acting(SpindleRun(sign * cycle.state.modal.rpm), sign)]
 
 
 def _speed(cycle: Cycle, name: str, default: float) -> float:
     """A speed for tapping, rpm, no faster than C turns."""
     value = cycle.number(name, default) or default
     most = cycle.state.setup.limits.c_max_rpm
-    if value <= 0.0:
-        raise cycle.wrong(
-            name, "{name} does not define a speed", "Enter a speed, or program S before the cycle."
-        )
+    text = "{name} does not define a speed"
+    cycle.check(value > 0.0, name, text, "Enter a speed, or program S before the cycle.")
     if value > most:
-        text = Message(
-            "{call}: {name} is {value} rpm, but tapping with the C axis is limited to the C-axis "
-            "maximum of {maximum} rpm.",
-            call=cycle.line.call,
-            name=name,
-            value=f"{value:g}",
-            maximum=f"{most:g}",
+        text = (
+            "{call}: {name} is {value} rpm, but tapping with the C axis is limited to the C-axis maximum of "
+            "{maximum} rpm."
         )
-        cycle.warn("tap-speed", text, "Lower the speed.")
+        hint = "Lower the speed."
+        cycle.warn("tap-speed", text, hint, name=name, value=value, maximum=most)
     return min(value, most)
 
 
@@ -114,13 +85,8 @@ def _ways(cycle: Cycle, hole: Hole, lead: float, speeds: tuple[float, float]) ->
     """In one go, or by _DAM with a way back each time: _VRT (_VARI 1), or out of the hole (_VARI 2)."""
     kind, each = cycle.whole("_VARI", 0, 0, 2), cycle.size("_DAM")
     whole = abs(hole.bottom - hole.clear)
-    count = max(ceil(whole / each - _WHOLE), 1) if kind and each else 1
-    if count > MOST_PASSES:
-        raise cycle.wrong(
-            "_DAM",
-            Message("{name} would need {count} steps, which is too many", count=f"{count:,}", name="_DAM"),
-            "Look for a missing decimal point.",
-        )
+    text = "{name} would need {count} steps, which is too many"
+    count = max(cycle.pass_count(whole, each, "_DAM", text), 1) if kind and each else 1
     back, at, steps = cycle.size("_VRT") or 1.0, hole.clear, list[Step]()
 
     def turned(to: float, rpm: float) -> Step:
@@ -148,47 +114,29 @@ def compensating(cycle: Cycle) -> Iterator[Block]:
     """CYCLE840: fed in by the lead, the spindle turned back, fed out, turned as SDAC. Raises ProgramError."""
     hole, state = hole_of(cycle), cycle.state
     modal, sign = state.modal, state.modal.spindle
-    if not sign or not modal.rpm or modal.css:
-        text = Message("{call} needs the spindle to turn at a speed in rpm.", call=cycle.line.call)
-        raise cycle.refused(NO_DIRECTION, text, "Write G97 with S and M3 or M4 before this block.")
+    text = "{call} needs the spindle to turn at a speed in rpm."
+    hint = "Write G97 with S and M3 or M4 before this block."
+    cycle.require(sign and modal.rpm and not modal.css, NO_DIRECTION, text, hint)
     by_feed = _by_feed(cycle)
     back, rest = cycle.whole("SDR", 0, 0, 5), cycle.whole("SDAC", 3 if sign > 0 else 4, 3, 5)
     if back not in {0, 3, 4} or (back and (back == 3) is (sign > 0)):
-        raise cycle.wrong(
-            "SDR",
-            "{name} does not reverse the spindle for the tap",
-            "Enter 0, or the reverse direction: 4 after M3, or 3 after M4.",
-        )
+        text = "{name} does not reverse the spindle for the tap"
+        raise cycle.wrong("SDR", text, "Enter 0, or the reverse direction: 4 after M3, or 3 after M4.")
     lead = abs(lead_of_tap(cycle))
-    if not lead and not by_feed:
-        raise cycle.wrong(
-            "PIT",
-            "{name} does not define a lead",
-            "Enter PIT or MPIT, or ENC 1 to use the active feed rate.",
-            WRONG_LEAD,
-        )
-    feed = needed_feed(cycle) if by_feed else lead if modal.per_rev else lead * modal.rpm / 60.0
-    deep = [
-        Step(cycle.x, hole.bottom, feed, tap=True), *dwell(seconds(cycle, "DTB")),
-        Step(0.0, 0.0, action=SpindleRun(-sign * modal.rpm), spindle=-sign),
-    ]  # fmt: skip
-    steps = [*approach(cycle, hole), *(step._replace(in_hole=True) for step in deep)]
-    steps += [Step(cycle.x, hole.clear, feed, tap=True), Step(cycle.x, hole.retract)]
-    if rest != 5:
-        after = 1 if rest == 3 else -1
-        steps.append(Step(0.0, 0.0, action=SpindleRun(after * modal.rpm), spindle=after))
-    return cycle.blocks(steps)
+    hint = "Enter PIT or MPIT, or ENC 1 to use the active feed rate."
+    cycle.check(lead or by_feed, "PIT", "{name} does not define a lead", hint, WRONG_LEAD)
+    feed = cycle.known_feed(modal.feed) if by_feed else lead if modal.per_rev else lead * modal.rpm / 60.0
+    into, out = (hole.to(z, feed)._replace(tap=True) for z in (hole.bottom, hole.clear))
+    deep = [into, *dwell(seconds(cycle, "DTB")), acting(SpindleRun(-sign * modal.rpm), -sign)]
+    steps = [hole.to(hole.clear), *(step._replace(in_hole=True) for step in deep), out, hole.to(hole.retract)]
+    return cycle.blocks([*steps, *_after(cycle, rest)])
 
 
 def _by_feed(cycle: Cycle) -> bool:
     """ENC: 0, 11 and 20 take the lead from PIT or MPIT, 1 from the feed in force. Raises ProgramError."""
     value = cycle.whole("ENC", 0, 0, 20)
-    if value not in {0, 1, 11, 20}:
-        raise cycle.wrong(
-            "ENC",
-            Message("{name} is {value} but must be 0, 1, 11 or 20", value=value, name="ENC"),
-            "Correct the value.",
-        )
+    text = "{name} is {value} but must be 0, 1, 11 or 20"
+    cycle.check(value in {0, 1, 11, 20}, "ENC", text, "Correct the value.", value=value)
     return value == 1
 
 
@@ -201,38 +149,25 @@ def tap(state: State, statement: Statement) -> Block:
     code = f"G{int(state.motion)}"
     demand_spindle_as_c(state, lambda text, hint: statement.refuse(word, "spindle-position", text, hint))
     if not state.modal.c_locked:
-        text = Message(
-            "{code} turns the spindle as the C axis, but the spindle is not locked as C.", code=code
-        )
-        raise statement.refuse(word, "spindle-position", text, "Write SPOS=0 before this block.")
+        text = "{code} turns the spindle as the C axis, but the spindle is not locked as C."
+        raise statement.refuse(word, "spindle-position", text, "Write SPOS=0 before this block.", code=code)
     for name in ("X", "C", "I", "CR", "AR"):
         if other := statement.words.get(name):
-            text = Message("{other}: {code} can tap only along Z.", other=other.text, code=code)
-            raise statement.refuse(other, "word-unused", text, "Remove this text from the program.")
+            text = "{other}: {code} can tap only along Z."
+            hint = "Remove this text from the program."
+            raise statement.refuse(other, "word-unused", text, hint, other=other.text, code=code)
     lead = statement.words.get("K")
     pitch = state.length(statement, lead) if lead is not None else state.tap_lead
-    if not pitch:
-        raise statement.refuse(
-            lead or word, "thread-lead-missing", Message("{code} needs the lead K.", code=code), "Write K."
-        )
+    text = "{code} needs the lead K."
+    statement.check(pitch, lead or word, "thread-lead-missing", text, "Write K.", code=code)
     state.tap_lead = pitch
     travel = travel_of(state, statement)
     way = travel.z - travel.z0
-    if abs(way) < _SAME:
-        raise statement.refuse(
-            word,
-            "thread-length",
-            Message("{code} does not move along Z.", code=code),
-            "Enter Z of the end point.",
-        )
+    text = "{code} does not move along Z."
+    statement.check(abs(way) >= _SAME, word, "thread-length", text, "Enter Z of the end point.", code=code)
     rpm = state.modal.rpm
-    if not rpm:
-        raise statement.refuse(
-            word,
-            "speed-missing",
-            Message("No spindle speed is programmed for {code}.", code=code),
-            "Write S in the block.",
-        )
+    text = "No spindle speed is programmed for {code}."
+    statement.check(rpm, word, "speed-missing", text, "Write S in the block.", code=code)
     rpm = min(rpm, state.setup.limits.c_max_rpm)
     # Into the hole, G331, a lead over 0 turns as M3 does; G332 is the same the other way round.
     sense = 1.0 if state.motion is Motion.TAP else -1.0

@@ -16,7 +16,6 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
 from core.language.sinumerik.word_table import FEED_AND_SPEED, MOTION
-from core.message import Message
 
 _ROUNDING = 1 + 1e-9
 _STEEP = 0.5  # of X to Z: what leads out of a thread, and does not go on cutting it
@@ -28,10 +27,9 @@ def thread(state: State, statement: Statement) -> Iterator[Block]:
     """The block of G33, G34 or G35, behind the way back that SF asks for. Raises ProgramError."""
     for name in ("CR", "AR", "I1", "K1"):
         if word := statement.words.get(name):
-            text: str = Message(
-                "{word} cannot be used with G{motion}.", word=word.text, motion=int(state.motion)
-            )
-            raise statement.refuse(word, "word-unused", text, "Remove this text from the program.")
+            text = "{word} cannot be used with G{motion}."
+            hint = "Remove this text from the program."
+            raise statement.refuse(word, "word-unused", text, hint, word=word.text, motion=int(state.motion))
     travel = travel_of(state, statement)
     if abs(travel.z - travel.z0) < NO_WAY or travel.turn:
         text = "a thread is cut along Z in sync with the spindle, but this block does not move along Z."
@@ -59,17 +57,14 @@ def _growth(state: State, statement: Statement) -> float:
         return 0.0
     if word := statement.words.get("F"):
         value = state.length(statement, word)
-        if value <= 0.0:
-            text = Message("{word}: the lead change must be greater than 0.", word=word.text)
-            raise statement.refuse(
-                word, "not-positive", text, "Use G34 to increase the lead and G35 to decrease it."
-            )
+        text = "{word}: the lead change must be greater than 0."
+        hint = "Use G34 to increase the lead and G35 to decrease it."
+        statement.check(value > 0.0, word, "not-positive", text, hint, word=word.text)
         state.lead_change = value
     if not state.lead_change:
-        text = Message("G{motion} needs F, the lead change per revolution.", motion=int(state.motion))
-        raise _refused(
-            statement, "thread-lead-missing", text, "Enter F as the lead change per revolution, in mm/rev."
-        )
+        text = "G{motion} needs F, the lead change per revolution."
+        hint = "Enter F as the lead change per revolution, in mm/rev."
+        raise _refused(statement, "thread-lead-missing", text, hint, motion=int(state.motion))
     return state.lead_change if state.motion is Motion.GROWING else -state.lead_change
 
 
@@ -81,15 +76,16 @@ def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: fl
     square = lead * lead + 2.0 * growth * way
     end = sqrt(square) if square > 0.0 else 0.0
     if end < _LEAST_LEAD:
-        text = "the lead decreases to 0 before the end of the thread."
-        hint = Message(
-            "The lead of {lead} mm decreases by {growth} mm per revolution, so the thread can be "
-            "only {lead2} mm long.",
-            lead=f"{lead:g}",
-            growth=f"{-growth:g}",
+        raise _refused(
+            statement,
+            "thread-lead-missing",
+            "the lead decreases to 0 before the end of the thread.",
+            "The lead of {lead} mm decreases by {growth} mm per revolution, so the thread can be only "
+            "{lead2} mm long.",
+            lead=lead,
+            growth=-growth,
             lead2=f"{lead * lead / -growth / 2.0:.4g}",
         )
-        raise _refused(statement, "thread-lead-missing", text, hint)
     return (lead + end) / 2.0, end
 
 
@@ -101,20 +97,13 @@ def _start_angle(
     angle = 0.0 if word is None else state.number(statement, word) % 360.0
     if word is None or not angle:
         return None
-    if state.threads:
-        text = Message("{word} is allowed only in the first block of a thread chain.", word=word.text)
-        raise statement.refuse(
-            word, "word-unused", text, "Write this word in the first block of the thread chain."
-        )
+    text = "{word} is allowed only in the first block of a thread chain."
+    hint = "Write this word in the first block of the thread chain."
+    statement.check(not state.threads, word, "word-unused", text, hint, word=word.text)
     state.start_turns = turns = angle / 360.0
     far = (lead - 0.5 * growth * turns) * turns
-    if lead - growth * turns < _LEAST_LEAD:
-        raise statement.refuse(
-            word,
-            "thread-lead-missing",
-            "at this start point, the lead has already decreased to 0.",
-            "Lower F.",
-        )
+    text = "at this start point, the lead has already decreased to 0."
+    statement.check(lead - growth * turns >= _LEAST_LEAD, word, "thread-lead-missing", text, "Lower F.")
     share = far / abs(travel.z - travel.z0)
     x, z = (a - (b - a) * share for a, b in ((travel.x0, travel.x), (travel.z0, travel.z)))
     return rapid(state, statement, travel._replace(x=x, z=z))
@@ -126,29 +115,22 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
     if along is None and across is None:
         if state.threads:
             return state.end_lead
-        text: str = Message("G{motion} needs K, the lead along Z.", motion=int(state.motion))
-        raise _refused(statement, "thread-lead-missing", text, "Write K.")
+        text = "G{motion} needs K, the lead along Z."
+        raise _refused(statement, "thread-lead-missing", text, "Write K.", motion=int(state.motion))
     if along is not None and across is not None:
         text = "the thread has both a lead along X and a lead along Z."
-        raise statement.refuse(
-            across, "thread-lead-both", text, "Write K for angles up to 45 degrees and I for larger angles."
-        )
+        hint = "Write K for angles up to 45 degrees and I for larger angles."
+        raise statement.refuse(across, "thread-lead-both", text, hint)
     word = along or across
     assert word is not None
     value = state.length(statement, word)
-    if value <= 0.0:
-        raise statement.refuse(
-            word,
-            "not-positive",
-            Message("{word}: a lead must be greater than 0.", word=word.text),
-            "Correct the value.",
-        )
+    text = "{word}: a lead must be greater than 0."
+    statement.check(value > 0.0, word, "not-positive", text, "Correct the value.", word=word.text)
     if along is not None:
         return value
     dx = abs(travel.x - travel.x0)
-    if dx < NO_WAY:
-        text = Message("{word} is the lead along X, but X does not move.", word=word.text)
-        raise statement.refuse(word, "thread-lead-missing", text, "Write K.")
+    text = "{word} is the lead along X, but X does not move."
+    statement.check(dx >= NO_WAY, word, "thread-lead-missing", text, "Write K.", word=word.text)
     return value * abs(travel.z - travel.z0) / dx
 
 
@@ -165,13 +147,15 @@ def check_spindle(state: State, statement: Statement, lead: float) -> None:
     speed, most = lead * abs(state.rpm) / 60.0, state.setup.limits.max_feed
     if speed > most * _ROUNDING:
         shown, limit = speed * 60.0, most * 60.0
-        text = Message(
+        raise _refused(
+            statement,
+            "feed-over-speed",
             "at {rpm} rpm, this lead requires {value} mm/min; the maximum is {limit} mm/min.",
+            "Lower S.",
             rpm=f"{abs(state.rpm):.0f}",
             value=f"{shown:.0f}",
             limit=f"{limit:.0f}",
         )
-        raise _refused(statement, "feed-over-speed", text, "Lower S.")
 
 
 def _continues(state: State, statement: Statement, travel: AxisTravel, lead: float) -> bool:
@@ -193,6 +177,8 @@ def _continues(state: State, statement: Statement, travel: AxisTravel, lead: flo
     return not leads_out or state.motion is not Motion.THREAD
 
 
-def _refused(statement: Statement, code: int | str, text: str, hint: str) -> ProgramError:
+def _refused(
+    statement: Statement, code: int | str, text: str, hint: str, /, **values: object
+) -> ProgramError:
     word: Word | None = statement.g.get(MOTION) or next(iter(statement.words.values()), None)
-    return statement.refuse(word, code, text, hint)
+    return statement.refuse(word, code, text, hint, **values)

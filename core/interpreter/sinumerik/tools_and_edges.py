@@ -26,18 +26,17 @@ def tool_words(state: State, statement: Statement, use: ToolUse) -> Iterator[Blo
         return
     if state.modal.nose_comp != 40:
         word = tool or edge
-        text: str = Message(
-            "{what} is not allowed while G{state} is active.",
-            what=word.text if word else "",
-            state=state.modal.nose_comp,
+        text = "{what} is not allowed while G{state} is active."
+        hint = "Write G40 and a move before this block."
+        raise statement.refuse(
+            word, "comp-with", text, hint, what=word.text if word else "", state=state.modal.nose_comp
         )
-        raise statement.refuse(word, "comp-with", text, "Write G40 and a move before this block.")
     before = state.modal.tool
     number = tool_of(before) if tool is None else _number(state, statement, tool)
     wanted = 1 if edge is None else _edge(state, statement, edge)
     if not number and edge is not None and wanted:
-        text = Message("{edge}: no tool is active.", edge=edge.text)
-        raise statement.refuse(edge, WRONG_EDGE, text, "Write T before this block.")
+        text = "{edge}: no tool is active."
+        raise statement.refuse(edge, WRONG_EDGE, text, "Write T before this block.", edge=edge.text)
     _take(state, statement, number, wanted if number else 0, use)
     if tool is not None or state.modal.tool != before:
         text = " ".join(word.text for word in (tool, edge) if word is not None)
@@ -48,10 +47,9 @@ def _number(state: State, statement: Statement, word: Word) -> int:
     if not word.string:
         value = state.number(statement, word)
         if not value.is_integer() or not 0 <= value < NAMED_TOOLS:
-            text = Message(
-                "{word} results in {value}, which is not a tool number.", word=word.text, value=f"{value:g}"
-            )
-            raise statement.refuse(word, WRONG_TOOL, text, "Enter the tool number as a whole number.")
+            text = "{word} results in {value}, which is not a tool number."
+            hint = "Enter the tool number as a whole number."
+            raise statement.refuse(word, WRONG_TOOL, text, hint, word=word.text, value=value)
         return int(value)
     wanted = word.string.casefold()
     for key, offset in sorted(state.setup.tools.items()):
@@ -64,9 +62,8 @@ def _number(state: State, statement: Statement, word: Word) -> int:
 
 def _edge(state: State, statement: Statement, word: Word) -> int:
     value = state.number(statement, word)
-    if value != 0 and value not in EDGES:
-        text = Message("{word}: cutting edges are D1 to D9; D0 deselects the cutting edge.", word=word.text)
-        raise statement.refuse(word, WRONG_EDGE, text, "Correct D.")
+    text = "{word}: cutting edges are D1 to D9; D0 deselects the cutting edge."
+    statement.check(value == 0 or value in EDGES, word, WRONG_EDGE, text, "Correct D.", word=word.text)
     return int(value)
 
 
@@ -89,13 +86,10 @@ def _offset(state: State, statement: Statement, key: int, use: ToolUse) -> ToolO
     tools = state.setup.tools
     if key not in tools and tool_of(key) in tools:
         name, word = edge_name(key), statement.words.get("D")
-        text = Message(
-            "{name} does not exist: {key} has no such cutting edge in the tool offsets.",
-            name=name,
-            key=edge_name(tool_of(key)),
-        )
+        text = "{name} does not exist: {key} has no such cutting edge in the tool offsets."
+        hint = "Set {other} on the TOOL OFFSETS page (F8)."
         raise statement.refuse(
-            word, WRONG_EDGE, text, Message("Set {other} on the TOOL OFFSETS page (F8).", other=name)
+            word, WRONG_EDGE, text, hint, name=name, key=edge_name(tool_of(key)), other=name
         )
     offset = use.offset(key, tools)
     if offset is None:

@@ -139,10 +139,9 @@ class Transformation:
                 made = self._resolved(statement, word)
                 words[names.centres[name]] = made._replace(name=names.centres[name])
             elif name in {"I", "J", "K"}:
-                text = Message(
-                    "{word} is not an arc center word in G{plane}.", word=word.text, plane=names.plane
-                )
-                raise statement.refuse(word, "word-unused", text, "Use the arc center words for this plane.")
+                what = "{word} is not an arc center word in G{plane}."
+                hint = "Use the arc center words for this plane."
+                raise statement.refuse(word, "word-unused", what, hint, word=word.text, plane=names.plane)
             else:
                 words[name] = word
         return replace(statement, words=words)
@@ -156,12 +155,10 @@ class Transformation:
         if word.name in {"X", "I"} and diameter and not (relative and self._state.distance_is_radius):
             value /= 2.0
         if word.form in {Form.DC, Form.ACP, Form.ACN}:
-            text = Message("{word}: {form} needs a rotary axis.", word=word.text, form=word.form)
+            text = "{word}: {form} needs a rotary axis."
+            hint = "Write {name}=AC( ) or {name2}=IC( )."
             raise statement.refuse(
-                word,
-                16800,
-                text,
-                Message("Write {name}=AC( ) or {name2}=IC( ).", name=word.name, name2=word.name),
+                word, 16800, text, hint, word=word.text, form=word.form, name=word.name, name2=word.name
             )
         return word._replace(value=value, formula=None)
 
@@ -270,9 +267,8 @@ class Transformation:
                     "walls from this value.",
                     word=word.text,
                 )
-            raise statement.refuse(
-                word, "not-in-subset", text, "Program the groove walls as contours after G40."
-            )
+            hint = "Program the groove walls as contours after G40."
+            raise statement.refuse(word, "not-in-subset", text, hint)
         self.offn = value
 
     def _check(self, statement: Statement) -> None:
@@ -280,27 +276,21 @@ class Transformation:
         state, names = self._state, self._names
         if self.holds and self._offset != (state.modal.base_x, state.modal.base_z):
             text = "the tool or the zero point changes between two moves of a corner or a contour."
-            raise statement.refuse(
-                None, "comp-with", text, "Change the tool or the zero point before the corner or after G40."
-            )
+            hint = "Change the tool or the zero point before the corner or after G40."
+            raise statement.refuse(None, "comp-with", text, hint)
         if (code := statement.code(BLOCKWISE)) in {25, 26, 74, 75} or SUPPRESSION in statement.g:
             word = statement.g.get(SUPPRESSION) or statement.g[BLOCKWISE]
             if code not in {25, 26} or {"X", "Y", "Z"} & statement.words.keys():
-                text = Message(
-                    "{word} moves the machine axes and cannot be used while {word2} is active.",
-                    word=word.text,
-                    word2=names.word,
-                )
-                raise statement.refuse(word, "transformation", text, "Write TRAFOOF before this block.")
+                text = "{word} moves the machine axes and cannot be used while {word2} is active."
+                hint = "Write TRAFOOF before this block."
+                raise statement.refuse(word, "transformation", text, hint, word=word.text, word2=names.word)
         if not PLACES & statement.words.keys():
             return
         word = statement.g.get(MOTION) or next(iter(statement.words.values()))
         if state.motion in THREADS | TAPS:
-            text = Message(
-                "a thread along Z needs the spindle running, but {word} uses the spindle as C.",
-                word=names.word,
-            )
-            raise statement.refuse(word, "transformation", text, "Write TRAFOOF before this block.")
+            text = "a thread along Z needs the spindle running, but {word} uses the spindle as C."
+            hint = "Write TRAFOOF before this block."
+            raise statement.refuse(word, "transformation", text, hint, word=names.word)
         needs = (
             state.motion in ARCS
             or state.modal.nose_comp != 40
@@ -308,14 +298,9 @@ class Transformation:
             or "ANG" in statement.words
         )
         if needs and state.plane != names.plane:
-            text = Message(
-                "arcs, corners and radius compensation in {word} need G{plane}.",
-                word=names.word,
-                plane=names.plane,
-            )
-            raise statement.refuse(
-                word, "arc-plane", text, Message("Write G{plane} before this block.", plane=names.plane)
-            )
+            text = "arcs, corners and radius compensation in {word} need G{plane}."
+            hint = "Write G{plane} before this block."
+            raise statement.refuse(word, "arc-plane", text, hint, word=names.word, plane=names.plane)
 
     def _depth_of(self, taken: Statement) -> float:
         """Where the depth of a statement leads, mm of the frame's zero."""

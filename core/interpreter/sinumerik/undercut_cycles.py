@@ -7,7 +7,7 @@ undercut has these sizes whatever the nose radius is.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import ceil, cos, radians, sin, tan
+from math import cos, radians, sin, tan
 from typing import NamedTuple
 
 from core.geometry.chamfer_and_rounding import rounding
@@ -16,14 +16,12 @@ from core.geometry.lines_and_arcs import Arc, Element, Line, Point, left_of, shi
 from core.interpreter.elementary_blocks import Block
 from core.interpreter.sinumerik.cycle_parameters import (
     MACHINING_TYPE,
-    MOST_PASSES,
     NO_FEED,
     RETRACT,
     Cycle,
     Step,
 )
 from core.interpreter.sinumerik.thread_cycle import COARSE_LEADS
-from core.message import Message
 from core.tool_edges import TIP_DIRECTIONS
 
 TOO_SMALL = 61601
@@ -91,24 +89,19 @@ class Place(NamedTuple):
 def shoulder_undercut(cycle: Cycle) -> Iterator[Block]:
     """CYCLE94. Raises ProgramError before the first block."""
     form = cycle.text("FORM")
-    if form not in {"E", "F"}:
-        raise cycle.wrong("FORM", '{name} must be "E" or "F"', "Correct the value.", WRONG_FORM)
+    cycle.check(form in {"E", "F"}, "FORM", '{name} must be "E" or "F"', "Correct the value.", WRONG_FORM)
     size = _at_shoulder(cycle, form)
     out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
     place = Place(cycle.needed("SPD") / 2.0, cycle.needed("SPL"), out, side)
-    return cycle.blocks(_cut(cycle, place, size, _feed(cycle.state.modal.feed, cycle), _CLEAR))
+    return cycle.blocks(_cut(cycle, place, size, cycle.known_feed(cycle.state.modal.feed, NO_FEED), _CLEAR))
 
 
 def _at_shoulder(cycle: Cycle, form: str) -> Size:
     """Form E or F of DIN 509 by the diameter SPD. Raises ProgramError."""
     diameter = cycle.over_zero("SPD", TOO_SMALL)
     if diameter <= 3.0:
-        text = Message(
-            "{name} is {diameter}, but must be greater than 3 mm for an undercut",
-            diameter=f"{diameter:g}",
-            name="SPD",
-        )
-        raise cycle.wrong("SPD", text, "Program the undercut block by block.", TOO_SMALL)
+        text = "{name} is {diameter}, but must be greater than 3 mm for an undercut"
+        raise cycle.wrong("SPD", text, "Program the undercut block by block.", TOO_SMALL, diameter=diameter)
     sizes = next((row[1:] for row in _DIN_509 if diameter <= row[0]), _DIN_509_OVER)
     depth, width, radius, face = sizes
     return Size(depth, width, radius, 15.0, face if form == "F" else 0.0)
@@ -121,14 +114,9 @@ def thread_undercut(cycle: Cycle) -> Iterator[Block]:
         raise cycle.wrong("FORM", '{name} must be "A", "B", "C" or "D"', "Correct the value.", WRONG_FORM)
     nominal = cycle.over_zero("DIATH", TOO_SMALL)
     lead = COARSE_LEADS.get(round(nominal), 0.0) if abs(nominal - round(nominal)) < _SAME else 0.0
-    if not lead:
-        text = Message(
-            "{name} is {nominal}, which is not a coarse thread size from M3 to M{largest_of_all}",
-            nominal=f"{nominal:g}",
-            largest_of_all=_LARGEST_OF_ALL,
-            name="DIATH",
-        )
-        raise cycle.wrong("DIATH", text, "Program the undercut block by block.", TOO_SMALL)
+    text = "{name} is {nominal}, which is not a coarse thread size from M3 to M{largest_of_all}"
+    hint = "Program the undercut block by block."
+    cycle.check(lead, "DIATH", text, hint, TOO_SMALL, nominal=nominal, largest_of_all=_LARGEST_OF_ALL)
     lacks, long, short, radius, long_inside, short_inside = _DIN_76[lead]
     out, side = position(cycle, cycle.whole("VARI", 0, 0, 4))
     inside = form in {"C", "D"}
@@ -139,9 +127,8 @@ def thread_undercut(cycle: Cycle) -> Iterator[Block]:
             else "{name} {form} is for outside undercuts, but the cutting edge of the tool is for inside "
             "undercuts"
         )
-        text = Message(template, form=form, name="FORM")
-        raise cycle.wrong("FORM", text, "Correct FORM, or use another tool.", WRONG_EDGE)
-    feed = _feed(cycle.state.modal.feed, cycle)
+        raise cycle.wrong("FORM", template, "Correct FORM, or use another tool.", WRONG_EDGE, form=form)
+    feed = cycle.known_feed(cycle.state.modal.feed, NO_FEED)
     if not inside:
         size = Size(lacks / 2.0, long if form == "A" else short, radius, 30.0)
         place = Place(nominal / 2.0, cycle.needed("SPL"), out, side)
@@ -165,23 +152,18 @@ def undercut(cycle: Cycle) -> Iterator[Block]:
     Its first seven parameters, and the order of all of them, are those of the maker's programming manual.
     """
     form = cycle.text("FORM")
-    if form not in {"A", "B", "E", "F"}:
-        hint = (
-            'Write form "A", "B", "E" or "F". For forms C and D, use CYCLE96. Program a free '
-            "form (T) block by block."
-        )
-        raise cycle.wrong(
-            "FORM",
-            Message("{name} is {form}, which is not supported", form=form or "missing", name="FORM"),
-            hint,
-            WRONG_FORM,
-        )
+    text = "{name} is {form}, which is not supported"
+    hint = (
+        'Write form "A", "B", "E" or "F". For forms C and D, use CYCLE96. Program a free form (T) block by '
+        "block."
+    )
+    cycle.check(form in {"A", "B", "E", "F"}, "FORM", text, hint, WRONG_FORM, form=form or "missing")
     for name in ("_EPD", "_EPL", "_R1", "_R2", "_STA", "_VRT"):
         cycle.zero_only(name, _NOT_BUILT)
     out, side = position(cycle, _OF_PLACE[cycle.whole("_LAGE", 0, 0, 3)])
     size = _at_shoulder(cycle, form) if form in {"E", "F"} else _behind_thread(cycle, form)
     place = Place(cycle.over_zero("SPD", TOO_SMALL) / 2.0, cycle.needed("SPL"), out, side)
-    clear, feed = cycle.size("_SDIS") or _CLEAR, _feed(cycle.feed("_FFP"), cycle)
+    clear, feed = cycle.size("_SDIS") or _CLEAR, cycle.known_feed(cycle.feed("_FFP"), NO_FEED)
     if form in {"E", "F"}:
         return cycle.blocks(_cut(cycle, place, size, feed, clear))
     return cycle.blocks(_in_passes(cycle, place, size, feed, clear))
@@ -193,13 +175,8 @@ def _behind_thread(cycle: Cycle, form: str) -> Size:
         lead = _LEADS[cycle.whole("_PITI", 0, 0, len(_LEADS) - 1)]
     else:
         lead = COARSE_LEADS.get(round(cycle.needed("SPD")), 0.0)
-    if lead not in _DIN_76:
-        text = Message(
-            "{name} specifies a lead of {lead}, but no undercut is defined for that lead",
-            lead=f"{lead:g}",
-            name="_PITI",
-        )
-        raise cycle.wrong("_PITI", text, "Program the undercut block by block.", TOO_SMALL)
+    text = "{name} specifies a lead of {lead}, but no undercut is defined for that lead"
+    cycle.check(lead in _DIN_76, "_PITI", text, "Program the undercut block by block.", TOO_SMALL, lead=lead)
     lacks, long, short, radius, *_ = _DIN_76[lead]
     return Size(lacks / 2.0, long if form == "A" else short, radius, 30.0)
 
@@ -207,27 +184,15 @@ def _behind_thread(cycle: Cycle, form: str) -> Size:
 def _in_passes(cycle: Cycle, place: Place, size: Size, feed: float, clear: float) -> list[Step]:
     """_VARI 1 roughs, 2 finishes, 3 does both: the profile at depths of _MID at most, above _FALX, _FALZ."""
     kind = cycle.whole("_VARI", 3, 1, 13)
-    if kind % 10 not in {1, 2, 3}:
-        raise cycle.wrong(
-            "_VARI",
-            Message("{name} cannot be {value}", value=kind, name="_VARI"),
-            "Enter 1 for roughing, 2 for finishing or 3 for both.",
-            MACHINING_TYPE,
-        )
+    hint = "Enter 1 for roughing, 2 for finishing or 3 for both."
+    cycle.check(kind % 10 in {1, 2, 3}, "_VARI", "{name} cannot be {value}", hint, MACHINING_TYPE, value=kind)
     left = cycle.size("_FAL")
     up, off = max(left, cycle.size("_FALX")), max(left, cycle.size("_FALZ"))
     infeed = cycle.size("_MID") or size.depth
     steps: list[Step] = []
     if kind % 10 != _FINISHES:
-        count = max(ceil((size.depth - up) / infeed - _SAME), 1)
-        if count > MOST_PASSES:
-            raise cycle.wrong(
-                "_MID",
-                Message(
-                    "{name} would need {count} passes, which is too many", count=f"{count:,}", name="_MID"
-                ),
-                "Look for a missing decimal point.",
-            )
+        text = "{name} would need {count} passes, which is too many"
+        count = max(cycle.pass_count(size.depth - up, infeed, "_MID", text), 1)
         for k in range(1, count + 1):
             above = up + (size.depth - up) * (count - k) / count
             moved = place._replace(radius=place.radius + place.out * above, shoulder=place.shoulder
@@ -245,16 +210,13 @@ def position(cycle: Cycle, chosen: int) -> tuple[float, float]:
     Raises ProgramError.
     """
     state = cycle.state
-    if not state.modal.edge:
-        text = Message("{call} needs an active tool with an offset.", call=cycle.line.call)
-        raise cycle.refused(61000, text, "Write T and D before this block.")
+    text = "{call} needs an active tool with an offset."
+    cycle.require(state.modal.edge, 61000, text, "Write T and D before this block.")
     quadrant = state.edge.quadrant
     if quadrant not in _BY_POSITION and (not chosen or state.edge.nose_radius):
-        text = Message(
-            "the tip quadrant of the tool is {quadrant}, but an undercut needs a quadrant from 1 to 4.",
-            quadrant=quadrant,
-        )
-        raise cycle.refused(WRONG_EDGE, text, "Enter the tip quadrant on the TOOL OFFSETS page (F8).")
+        text = "the tip quadrant of the tool is {quadrant}, but an undercut needs a quadrant from 1 to 4."
+        hint = "Enter the tip quadrant on the TOOL OFFSETS page (F8)."
+        raise cycle.refused(WRONG_EDGE, text, hint, quadrant=quadrant)
     return _BY_POSITION[chosen or quadrant]
 
 
@@ -273,19 +235,12 @@ def profile(place: Place, size: Size) -> list[Element]:
     return [Line(begin, foot), Line(foot, low), Line(low, place.point(top, 0.0))]
 
 
-def _feed(feed: float | None, cycle: Cycle) -> float:
-    if feed is None:
-        raise cycle.refused(NO_FEED, "no feedrate is programmed.", "Program F before this block.")
-    return feed
-
-
 def _cut(cycle: Cycle, place: Place, size: Size, feed: float, beside: float) -> list[Step]:
     """Beside the part, down the slope, along and up; ``beside``: how far off the surface that begins, mm."""
     way = _of_tip(cycle, place, _rounded(profile(place, size), size.radius, _nose(cycle, size)))
     clear = place.radius + place.out * beside
     (x0, z0), (_, z1) = way[0].start, way[-1].end
-    steps = [] if place.out * cycle.x >= place.out * clear else [Step(clear, cycle.z)]
-    steps += [Step(clear, z0), Step(x0, z0, feed)]
+    steps = [*cycle.off_part(clear, place.out), Step(clear, z0), Step(x0, z0, feed)]
     for each in way:
         centre, clockwise = (each.centre, each.clockwise) if isinstance(each, Arc) else (None, False)
         steps.append(Step(*each.end, feed, centre, clockwise))
@@ -296,13 +251,9 @@ def _cut(cycle: Cycle, place: Place, size: Size, feed: float, beside: float) -> 
 def _nose(cycle: Cycle, size: Size) -> float:
     """Nose radius of the tool, which must fit into the corners. Raises ProgramError."""
     nose = cycle.state.edge.nose_radius
-    if nose > size.radius + _SAME:
-        text = Message(
-            "the nose radius {nose} is larger than the radius {radius} of this undercut.",
-            nose=f"{nose:g}",
-            radius=f"{size.radius:g}",
-        )
-        raise cycle.refused(NOSE_TOO_LARGE, text, "Use a tool with a smaller nose radius.")
+    text = "the nose radius {nose} is larger than the radius {radius} of this undercut."
+    hint = "Use a tool with a smaller nose radius."
+    cycle.require(nose <= size.radius + _SAME, NOSE_TOO_LARGE, text, hint, nose=nose, radius=size.radius)
     return nose
 
 
@@ -324,11 +275,10 @@ def _of_tip(cycle: Cycle, place: Place, contour: list[Element]) -> list[Element]
     try:
         beside = pieces_beside(contour, edge.nose_radius if left > 0.0 else -edge.nose_radius)
     except GougeError as problem:
-        text = Message(
-            "the nose radius {nose_radius} does not fit into this undercut: {why}.",
-            nose_radius=f"{edge.nose_radius:g}",
-            why=problem.why,
-        )
-        raise cycle.refused(NOSE_TOO_LARGE, text, "Use a tool with a smaller nose radius.") from None
+        text = "the nose radius {nose_radius} does not fit into this undercut: {why}."
+        hint = "Use a tool with a smaller nose radius."
+        raise cycle.refused(
+            NOSE_TOO_LARGE, text, hint, nose_radius=edge.nose_radius, why=problem.why
+        ) from None
     z, x = TIP_DIRECTIONS[edge.quadrant]
     return [shifted(each.element, x * edge.nose_radius, z * edge.nose_radius) for each in beside]

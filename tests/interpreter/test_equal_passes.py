@@ -1,0 +1,29 @@
+"""How many passes a depth takes, and where they lie."""
+
+from __future__ import annotations
+
+import pytest
+
+from core.interpreter.equal_passes import equal_depths, pass_count
+
+
+@pytest.mark.parametrize(
+    ("whole", "most", "count"),
+    [(10.0, 4.0, 3), (12.0, 4.0, 3), (0.3, 0.1, 3), (0.7, 0.1, 7), (4.0, 10.0, 1), (4.0001, 4.0, 2)],
+)
+def test_no_pass_is_deeper_than_asked(whole: float, most: float, count: int) -> None:
+    assert pass_count(whole, most) == count
+
+
+def test_no_depth_takes_no_pass() -> None:
+    assert pass_count(0.0, 4.0) == 0
+    assert equal_depths(0.0, 0) == []
+
+
+def test_the_last_pass_goes_down_to_the_depth() -> None:
+    assert equal_depths(9.0, 3) == [3.0, 6.0, 9.0]
+
+
+def test_passes_of_no_depth_are_refused() -> None:
+    with pytest.raises(ZeroDivisionError):
+        pass_count(1.0, 0.0)
