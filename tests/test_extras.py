@@ -41,6 +41,10 @@ def test_an_addition_follows_the_item_that_it_names() -> None:
     assert insert_after("ab", str, [("x", "a"), ("y", "x")]) == ["a", "x", "y", "b"]
 
 
+def test_additions_that_follow_the_same_item_keep_their_order() -> None:
+    assert insert_after("ab", str, [("x", "a"), ("y", "a")]) == ["a", "x", "y", "b"]
+
+
 def test_an_addition_whose_item_is_absent_is_the_last() -> None:
     assert insert_after("ab", str, [("x", "gone")]) == ["a", "b", "x"]
 

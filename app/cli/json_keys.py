@@ -701,7 +701,7 @@ OUTPUTS = tuple(
             (each, after)
             for extra in extras().values()
             for after, outputs in extra.json_outputs().items()
-            for each in reversed(outputs)
+            for each in outputs
         ],
     )
 )

@@ -18,11 +18,12 @@ if TYPE_CHECKING:
     from app.compose.journal import Journal
     from app.desk.desk import Desk
     from app.desk.page_description import PageEntry
+    from core.executor.snapshot import Snapshot
     from core.json_key import Output
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-NAMES = ("sharing", "analyses", "scheduler")
+NAMES = ("mtconnect", "sharing", "analyses", "scheduler")
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -37,13 +38,19 @@ class Extra:
     ``app.extras.NAME.SUBCOMMAND_command``. ``threads`` maps each supervised thread to what an operator
     misses when the thread ends. ``needs`` names the features without which this feature is left out.
     ``proof_workers`` is the dotted name of a class of workers on other computers, which prove programs.
+
+    ``machine_actions`` lists the actions of ``turndesk machine``, each with a module
+    ``app.extras.NAME.ACTION_command``. ``tables_follow`` is the table of the machine file that the tables of
+    this feature follow; empty: they are the last ones.
     """
 
     needs: Sequence[str] = ()
     commands: Mapping[str, str] = {}
+    machine_actions: Sequence[str] = ()
     pages: Sequence[PageEntry] = ()
     threads: Mapping[str, str] = {}
     proof_workers = ""
+    tables_follow: str = ""
 
     def machine_tables(self) -> Sequence[Driver]:
         """Return the tables that this feature adds to the machine file."""
@@ -56,6 +63,14 @@ class Extra:
         """Start the threads of this feature, and return a function that ends them.
 
         ``tell`` reports a reason why the feature cannot run to the prompt line and to the event log.
+        """
+
+    def start_headless(
+        self, machine: Machine, snapshot: Callable[[], Snapshot], tell: Tell, *, paced: bool
+    ) -> Close | None:
+        """Start what this feature does during a run without a screen, and return a function that ends it.
+
+        ``paced``: the run takes as long as on the machine. ``tell`` prints why the feature cannot run.
         """
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
@@ -80,10 +95,19 @@ def extras() -> Mapping[str, Extra]:
 
 def command_modules() -> Mapping[str, str]:
     """Return the module of each subcommand that an optional feature adds."""
+    return _modules(lambda extra: extra.commands)
+
+
+def action_modules() -> Mapping[str, str]:
+    """Return the module of each action of ``turndesk machine`` that an optional feature adds."""
+    return _modules(lambda extra: extra.machine_actions)
+
+
+def _modules(words_of: Callable[[Extra], Iterable[str]]) -> Mapping[str, str]:
     return {
-        command: f"app.extras.{name}.{command}_command"
+        word: f"app.extras.{name}.{word}_command"
         for name, extra in extras().items()
-        for command in extra.commands
+        for word in words_of(extra)
     }
 
 
@@ -95,10 +119,14 @@ def proof_workers() -> str:
 def insert_after(items: Iterable[T], name_of: Callable[[T], str], added: Iterable[tuple[T, str]]) -> list[T]:
     """Return ``items`` with each pair of ``added`` inserted after the item that the pair names.
 
-    If there is no item of that name, the addition becomes the last one.
+    If there is no item of that name, the addition becomes the last one. Additions that follow the same item
+    keep their order.
     """
     found = list(items)
+    newest: dict[str, str] = {}
     for item, after in added:
         names = [name_of(each) for each in found]
-        found.insert(names.index(after) + 1 if after in names else len(found), item)
+        place = newest.get(after, after)
+        found.insert(names.index(place) + 1 if place in names else len(found), item)
+        newest[after] = name_of(item)
     return found

@@ -11,7 +11,6 @@ from app.compose.check_rows import FAILED, MISSING, NOT_CHECKED, Answers, Row
 from app.compose.extra import extras
 from app.compose.page_server import listening_at
 from app.compose.pendant_wire import wired
-from app.compose.shop_floor import try_shop_floor
 from core.key_declaration import Unit, shown
 from core.machine.machine_model import Axis, Machine
 from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, broker_of
@@ -22,7 +21,6 @@ from drivers.clocks import RealClock, StepClock
 from drivers.grblhal.grblhal_config import HARDWARE
 from drivers.inverter.inverter_spindle import InverterSpindle
 from drivers.inverter.inverter_table import InverterTable
-from drivers.mtconnect.mtconnect_table import MtconnectTable
 from drivers.pendant.pendant_station import PendantStation
 from drivers.pendant.pendant_table import PendantModel
 
@@ -46,26 +44,10 @@ def check_ports(machine: Machine) -> Answers:
     except DriverError as error:
         answers.rows.append(Row(_blamed(machine), "", "no answer", str(error)))
         answers.trouble.append(str(error))
-    _ask_shop_floor(machine, answers)
     _ask_office(machine, answers)
     for extra in extras().values():
         extra.check(machine, answers)
     return answers
-
-
-def _ask_shop_floor(machine: Machine, answers: Answers) -> None:
-    """Whether agents would find the adapter, and take its model."""
-    model = machine.hardware.table(MtconnectTable)
-    if model is None or not model.enabled:
-        return
-    at = f"{model.bind}:{model.port}"
-    try:
-        try_shop_floor(machine, model)
-    except DriverError as error:
-        answers.rows.append(Row("mtconnect", at, "fault", str(error)))
-        answers.trouble.append(str(error))
-    else:
-        answers.rows.append(Row("mtconnect", at, "ok", Message("device {device}", device=model.device)))
 
 
 def _ask_office(machine: Machine, answers: Answers) -> None:

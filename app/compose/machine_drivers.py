@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.compose.extra import extras
+from app.compose.extra import extras, insert_after
 from core.machine import backup_table, machine_file, serial_table, setter_table, shop_network_tables
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -12,13 +12,12 @@ from drivers.grblhal import grblhal_table
 from drivers.hal import hal_table
 from drivers.hal.boards import board_table
 from drivers.inverter import inverter_table
-from drivers.mtconnect import mtconnect_table
 from drivers.pendant import pendant_table
 from drivers.simulated import simulated_table
 
 # What each driver adds to the file, in the order in which a machine file's owner is told of them. The module
 # that puts a backend together stands in ``backend_entry``, where no table has to be loaded for it.
-DRIVERS: tuple[Driver, ...] = (
+_OWN_DRIVERS = (
     simulated_table.DRIVER,
     canopen_table.DRIVER,
     inverter_table.DRIVER,
@@ -28,10 +27,15 @@ DRIVERS: tuple[Driver, ...] = (
     serial_table.DRIVER,
     setter_table.DRIVER,
     pendant_table.DRIVER,
-    mtconnect_table.DRIVER,
     shop_network_tables.DRIVER,
     backup_table.DRIVER,
-    *(table for extra in extras().values() for table in extra.machine_tables()),
+)
+DRIVERS: tuple[Driver, ...] = tuple(
+    insert_after(
+        _OWN_DRIVERS,
+        lambda driver: driver.tables[0].path,
+        [(each, extra.tables_follow) for extra in extras().values() for each in extra.machine_tables()],
+    )
 )
 
 

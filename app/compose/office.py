@@ -11,7 +11,6 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.machine_status import conditions_of_device, device_of
 from app.compose.page_server import PageServer, listening_at
 from app.compose.stored_offsets import shapes_at_hand
 from app.compose.workshop import office_pictures
@@ -60,7 +59,7 @@ def open_office(
 
 
 def _look(desk: Desk, machine: Machine) -> OfficeLook:
-    reader = FloorReader(machine, conditions_of_device(device_of(machine, machine.name)), time.monotonic)
+    reader = FloorReader(machine, time.monotonic)
 
     def left(snapshot: Snapshot) -> float:
         return desk.time_left(snapshot, desk.session.now)

@@ -69,8 +69,8 @@ ROOMS = (
     *("core/drawings", "core/quality", "core/records", "core/shapes", "core/extras", "core/access"),
     "app/shopfloor",
 )
-# Where much is told to programs: what is marked alone.
-MARKED_ALONE = frozenset({"app/shopfloor"})
+# Where much is told to programs or to the console: what is marked alone.
+MARKED_ALONE = ("app/shopfloor/",)
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
     {
@@ -89,7 +89,10 @@ APART = frozenset(
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
         *("shared_database.py", "sharing/version_record.py", "share_command.py", "place_answer.py"),
-        *("sharing_table.py", "sharing_check.py", "sharing/extra.py"),
+        *("sharing_table.py", "sharing_check.py", "share_json_keys.py"),
+        *("driver/agent_links.py", "driver/devices_xml.py", "driver/mtconnect_adapter.py"),
+        *("driver/shdr_lines.py", "driver/mtconnect_items.py", "driver/mtconnect_table.py"),
+        *("mtconnect/shop_floor.py", "mtconnect_command.py", "mtconnect_check.py"),
         *("screen/pdf_pages.py", "shapes/sinumerik_lines.py", "shapes/bar_lines.py"),
         *("shapes/live_lines.py", "shapes/sinumerik_live_lines.py"),
         *(
@@ -264,7 +267,8 @@ def texts() -> dict[str, str]:
         loud = room.startswith(LOUD)
         for path in sorted((HOUSE / room).rglob("*.py")):
             if not _is_apart(path, room):
-                for text in _texts_of_file(path, loud, room in MARKED_ALONE):
+                marked_alone = str(path.relative_to(HOUSE)).startswith(MARKED_ALONE)
+                for text in _texts_of_file(path, loud, marked_alone):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
     tables = [*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_shapes()]
     return {**dict.fromkeys(tables, ""), **found}

@@ -14,7 +14,7 @@ OF_THE_REST = (
     *("core.store.store", "core.quality"),
     *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
     *("drivers.canopen.canopen_machine", "drivers.grblhal.grblhal_machine", "drivers.hal.hal_machine"),
-    *("drivers.inverter.inverter_spindle", "drivers.mtconnect.mtconnect_adapter"),
+    *("drivers.inverter.inverter_spindle", "app.extras.mtconnect.driver.mtconnect_adapter"),
     *("drivers.pendant.pendant_reader", "drivers.simulators", "drivers.setpoint_queue"),
 )
 OF_PYTHON = (

@@ -15,17 +15,19 @@ import subprocess
 import sys
 import tempfile
 from dataclasses import asdict
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from tests.benchmarks.footprint import RESULTS, keep_result
-from tests.fuzz.fuzz_target import faults_in
+from tests.fuzz.fuzz_target import faults_in, of_extras
 
 NAMES = (
     "omniturn", "klartext", "sinumerik", "machine file", "offsets file", "tools file", "inputs file",
     "profile of a blank", "record", "ring", "setup archive", "EDS file", "serial transfer",
-    "controller's lines", "SHDR lines", "grblHAL's wire", "CAN frames", "store file", "drawing.dxf",
+    "controller's lines", "grblHAL's wire", "CAN frames", "store file", "drawing.dxf",
     "drawing.svg",
+    *(target.name for module in of_extras() for target in import_module(module).TARGETS),
 )  # fmt: skip
 _EDGES = re.compile(r"cov: (\d+)")
 _ENDS = 25.0  # times its time, by the clock, after which a target hangs

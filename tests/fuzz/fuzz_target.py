@@ -16,6 +16,14 @@ _SHOWN = 4000  # bytes of an input that are kept with a fault
 Mutate = Callable[[bytes, random.Random], bytes]
 
 
+def of_extras() -> list[str]:
+    """Return the modules with the targets of the optional features, as ``TARGETS``."""
+    folder = Path(__file__).parents[1] / "extras"
+    return [
+        f"tests.extras.{each.parent.name}.fuzz_targets" for each in sorted(folder.glob("*/fuzz_targets.py"))
+    ]
+
+
 @dataclass(frozen=True, slots=True)
 class Target:
     """``run`` takes any bytes and answers with the sentences that it told a person, or raises one of

@@ -30,7 +30,7 @@ OF_LATER = (
     *("core.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
     *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen.canopen_machine", "drivers.feeder"),
     *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.pendant.pendant_reader"),
-    *("drivers.mtconnect.mtconnect_adapter", "drivers.transfer"),
+    *("app.extras.mtconnect.shop_floor", "drivers.transfer"),
     *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.shapes"),
     *("ezdxf", "svgelements"),
 )

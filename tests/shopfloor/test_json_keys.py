@@ -25,7 +25,7 @@ INTERRUPTED = InterruptedJob(
 
 
 def office(snapshot: Snapshot) -> Status:
-    reader = FloorReader(shipped_machine("gt75"), frozenset({"Xservo", "system"}), lambda: 0.0)
+    reader = FloorReader(shipped_machine("gt75"), lambda: 0.0)
     stops = [StopRow("s", "", "pin.nc", "2026-11-23T08:00:00Z", 10.0, "FEED HOLD")]
     now = datetime(2026, 11, 23, 9, tzinfo=UTC)
     return OfficeLook("GT-75", reader, lambda: snapshot, lambda _: 42.0, lambda: stops, lambda: now).status()
@@ -45,7 +45,7 @@ def test_the_office_page_and_events() -> None:
 
 
 def test_status_json(tmp_path: Path) -> None:
-    reader = FloorReader(shipped_machine("gt75"), frozenset({"Xservo", "system"}), lambda: 0.0)
+    reader = FloorReader(shipped_machine("gt75"), lambda: 0.0)
     values = []
     for number, shot in enumerate(shots()):
         path = tmp_path / f"{number}.json"

@@ -22,7 +22,6 @@ from PySide6.QtGui import QImage
 
 from app.compose.machine_answers import check_ports
 from app.compose.machine_files import load_machine, parse_machine
-from app.compose.machine_status import conditions_of_device, device_of
 from app.compose.office import AlarmDrawing, PartPicture
 from app.compose.page_connections import DEADLINE, MOST, MOST_OF_ONE
 from app.compose.page_server import PageServer, listening_at
@@ -277,7 +276,7 @@ def test_the_same_for_a_script() -> None:
 
 
 def looking(**snapshot: Any) -> Status:
-    reader = FloorReader(LATHE, conditions_of_device(device_of(LATHE, "GT-75")), lambda: 0.0)
+    reader = FloorReader(LATHE, lambda: 0.0)
     stops = [StopRow(str(i), "", "pin.nc", f"2026-11-23T08:0{i}:00Z", 10.0 + i, "H") for i in range(9)]
     now = datetime(2026, 11, 23, 9, tzinfo=UTC)
     shot = Snapshot(**snapshot)
@@ -304,7 +303,7 @@ def test_a_message_to_the_operator_is_why_it_stands() -> None:
 
 def test_of_a_silent_control_nothing_else_is_said() -> None:
     seconds = iter((0.0, 10.0, 20.0, 30.0))
-    reader = FloorReader(LATHE, frozenset({"system", "comms"}), lambda: next(seconds))
+    reader = FloorReader(LATHE, lambda: next(seconds))
     look = OfficeLook("GT-75", reader, Snapshot, lambda _: 1.0, lambda: (), lambda: datetime.now(UTC))
     look.status()
     told = look.status()

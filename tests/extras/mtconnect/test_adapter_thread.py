@@ -7,13 +7,13 @@ import threading
 
 import pytest
 
+from app.extras.mtconnect.driver.mtconnect_adapter import Adapter, AdapterThread
+from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
+from app.extras.mtconnect.driver.shdr_lines import Report
 from core.ports import DriverError
 from drivers.clocks import RealClock
-from drivers.mtconnect.mtconnect_adapter import Adapter, AdapterThread
-from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Report
 from tests.coded import raises_code
-from tests.drivers.mtconnect.bench import lathe
+from tests.extras.mtconnect.bench import lathe
 
 HERE = "127.0.0.1"
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.mtconnect.shdr_lines import Active, AgentsState, Report, Value
-from tests.drivers.mtconnect.bench import lathe
+from app.extras.mtconnect.driver.shdr_lines import Active, AgentsState, Report, Value
+from tests.extras.mtconnect.bench import lathe
 
 A, B = "2026-01-01T00:00:00.000Z", "2026-01-01T00:00:00.100Z"
 

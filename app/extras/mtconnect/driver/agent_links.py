@@ -5,9 +5,9 @@ from __future__ import annotations
 import socket
 import sys
 
+from app.extras.mtconnect.driver.shdr_lines import PING, pong
 from core.message import Message
 from core.ports import DriverError
-from drivers.mtconnect.shdr_lines import PING, pong
 
 BEHIND = 64 * 1024  # bytes that may wait for a slow agent; at ten lines a second about a minute
 READ = 1024  # bytes taken at a time: whoever sends more waits in its own buffers

@@ -10,11 +10,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
+from app.extras.mtconnect.driver.agent_links import AgentLink, GoneError, LostError, accepted, listening
+from app.extras.mtconnect.driver.mtconnect_items import DataItem
+from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
+from app.extras.mtconnect.driver.shdr_lines import AgentsState, Report, stamp
 from core.ports import Clock, DriverError
-from drivers.mtconnect.agent_links import AgentLink, GoneError, LostError, accepted, listening
-from drivers.mtconnect.mtconnect_items import DataItem
-from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import AgentsState, Report, stamp
 
 LOOK = 0.1  # s between two looks at the machine
 MOST = 8  # agents at a time

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 
+from app.extras.mtconnect.driver.devices_xml import devices_xml
+from app.extras.mtconnect.driver.mtconnect_adapter import Adapter
+from app.extras.mtconnect.driver.mtconnect_items import Component, Layout, machine_items
+from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
+from app.extras.mtconnect.driver.shdr_lines import Active, Report, Value
 from drivers.clocks import StepClock
-from drivers.mtconnect.devices_xml import devices_xml
-from drivers.mtconnect.mtconnect_adapter import Adapter
-from drivers.mtconnect.mtconnect_items import Component, Layout, machine_items
-from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Active, Report, Value
-from tests.drivers.mtconnect.agent import FakeAgent
+from tests.extras.mtconnect.agent import FakeAgent
 
 BEGIN = datetime(2026, 1, 31, 23, 59, 58, 500_000, tzinfo=UTC)
 HEARTBEAT = 10.0

@@ -6,8 +6,8 @@ from datetime import UTC, datetime
 
 import pytest
 
-from drivers.mtconnect.mtconnect_items import Category, DataItem
-from drivers.mtconnect.shdr_lines import (
+from app.extras.mtconnect.driver.mtconnect_items import Category, DataItem
+from app.extras.mtconnect.driver.shdr_lines import (
     LONGEST,
     Active,
     active_line,
@@ -19,7 +19,7 @@ from drivers.mtconnect.shdr_lines import (
     unknown_line,
     values_line,
 )
-from tests.drivers.mtconnect.agent import tokens
+from tests.extras.mtconnect.agent import tokens
 
 AT = "2026-11-21T22:17:39.000Z"
 PLACE = DataItem("Xabs", Category.SAMPLE, "POSITION", units="MILLIMETER", digits=4)

@@ -8,11 +8,11 @@ from xml.etree.ElementTree import Element
 
 import pytest
 
+from app.extras.mtconnect.driver.devices_xml import NAMESPACE, devices_xml
+from app.extras.mtconnect.driver.mtconnect_items import Layout, machine_items
 from core.ports import DriverError
-from drivers.mtconnect.devices_xml import NAMESPACE, devices_xml
-from drivers.mtconnect.mtconnect_items import Layout, machine_items
 from tests.coded import raises_code
-from tests.drivers.mtconnect.bench import lathe
+from tests.extras.mtconnect.bench import lathe
 
 AT = datetime(2026, 2, 3, 4, 5, 6, tzinfo=UTC)
 # (category, type, sub-type, units) of each key, from the table of the standard's items for this lathe.

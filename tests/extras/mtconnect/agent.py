@@ -11,8 +11,8 @@ import socket
 from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
+from app.extras.mtconnect.driver.devices_xml import NAMESPACE
 from core.ports import Clock
-from drivers.mtconnect.devices_xml import NAMESPACE
 
 UNAVAILABLE = "UNAVAILABLE"
 

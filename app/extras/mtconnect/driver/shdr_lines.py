@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from datetime import datetime
 from typing import NamedTuple
 
-from drivers.mtconnect.mtconnect_items import Category, DataItem
+from app.extras.mtconnect.driver.mtconnect_items import Category, DataItem
 
 UNAVAILABLE = "UNAVAILABLE"
 NORMAL = "NORMAL"

@@ -5,12 +5,12 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from app.extras.mtconnect.driver.devices_xml import devices_xml
+from app.extras.mtconnect.driver.mtconnect_items import Category
+from app.extras.mtconnect.driver.shdr_lines import Active, AgentsState, Report, Value, clean, values_line
 from drivers.clocks import StepClock
-from drivers.mtconnect.devices_xml import devices_xml
-from drivers.mtconnect.mtconnect_items import Category
-from drivers.mtconnect.shdr_lines import Active, AgentsState, Report, Value, clean, values_line
-from tests.drivers.mtconnect.agent import FakeAgent, tokens
-from tests.drivers.mtconnect.bench import BEGIN, lathe
+from tests.extras.mtconnect.agent import FakeAgent, tokens
+from tests.extras.mtconnect.bench import BEGIN, lathe
 
 AT = "2026-01-01T00:00:00.000Z"
 ITEMS = tuple(lathe().all_items())

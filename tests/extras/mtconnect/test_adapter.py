@@ -8,13 +8,13 @@ from functools import partial
 
 import pytest
 
+from app.extras.mtconnect.driver.agent_links import BEHIND, READ, AgentLink
+from app.extras.mtconnect.driver.mtconnect_adapter import MOST, Adapter
+from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
+from app.extras.mtconnect.driver.shdr_lines import Active, Report
 from core.ports import DriverError
 from drivers.clocks import StepClock
-from drivers.mtconnect.agent_links import BEHIND, READ, AgentLink
-from drivers.mtconnect.mtconnect_adapter import MOST, Adapter
-from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.mtconnect.shdr_lines import Active, Report
-from tests.drivers.mtconnect.bench import HEARTBEAT, Bench
+from tests.extras.mtconnect.bench import HEARTBEAT, Bench
 from tests.texts import shows
 
 

@@ -11,10 +11,10 @@ from datetime import datetime
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
+from app.extras.mtconnect.driver.mtconnect_items import Component, DataItem
+from app.extras.mtconnect.driver.shdr_lines import stamp
 from core.message import Message
 from core.ports import DriverError
-from drivers.mtconnect.mtconnect_items import Component, DataItem
-from drivers.mtconnect.shdr_lines import stamp
 
 VERSION = "2.2"
 NAMESPACE = f"urn:mtconnect.org:MTConnectDevices:{VERSION}"

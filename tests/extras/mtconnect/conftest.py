@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.drivers.mtconnect.bench import Bench
+from tests.extras.mtconnect.bench import Bench
 
 
 @pytest.fixture
