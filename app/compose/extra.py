@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
+    from app.compose.backend_entry import Connected
     from app.compose.check_rows import Answers
     from app.compose.journal import Journal
     from app.desk.desk import Desk
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-NAMES = ("mtconnect", "sharing", "analyses", "scheduler")
+NAMES = ("pendant", "mtconnect", "sharing", "analyses", "scheduler")
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -55,6 +56,14 @@ class Extra:
     def machine_tables(self) -> Sequence[Driver]:
         """Return the tables that this feature adds to the machine file."""
         return ()
+
+    def wired(self, machine: Machine) -> Machine:
+        """Return the machine as its backend is wired: without the inputs that this feature provides."""
+        return machine
+
+    def connect(self, machine: Machine, connected: Connected) -> Connected:
+        """Add what this feature provides to the ports of a connected machine."""
+        return connected
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None) -> None:
         """Attach the models of this feature to the desk; without a ``journal`` nothing is saved."""

@@ -5,12 +5,11 @@ from __future__ import annotations
 import socket
 from collections.abc import Iterator
 
-from app.compose.backend_entry import backend_of, has_inverter, played
-from app.compose.backends import connect, real_time
+from app.compose.backend_entry import Connected, backend_of, has_inverter, played
+from app.compose.backends import connect, real_time, wired
 from app.compose.check_rows import FAILED, MISSING, NOT_CHECKED, Answers, Row
 from app.compose.extra import extras
 from app.compose.page_server import listening_at
-from app.compose.pendant_wire import wired
 from core.key_declaration import Unit, shown
 from core.machine.machine_model import Axis, Machine
 from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, broker_of
@@ -21,8 +20,6 @@ from drivers.clocks import RealClock, StepClock
 from drivers.grblhal.grblhal_config import HARDWARE
 from drivers.inverter.inverter_spindle import InverterSpindle
 from drivers.inverter.inverter_table import InverterTable
-from drivers.pendant.pendant_station import PendantStation
-from drivers.pendant.pendant_table import PendantModel
 
 _SETTLED = 0.3  # s in which pots and inputs have been heard that are told only now and then
 _LONGEST = 3.0  # s for inputs that are read in turns
@@ -98,8 +95,8 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
     try:
         if real_time(machine):
             _settle(clock, connected.ports, machine)
-        measured = _measured(machine, connected.ports)
-        rows = [row.checked(measured) for row in _rows(machine, connected.ports)]
+        measured = _measured(machine, connected)
+        rows = [row.checked(measured) for row in _rows(machine, connected)]
         told = {row.detail for row in rows}
         answers.warnings += [each for each in connected.ports.warnings if each not in told]
     finally:
@@ -116,15 +113,12 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
     ]
 
 
-def _measured(machine: Machine, ports: MachinePorts) -> set[str]:
+def _measured(machine: Machine, connected: Connected) -> set[str]:
     """Return the names of the rows whose values hardware has reported."""
-    backend = wired(machine)
-    names = set() if played(machine) else set(backend_of(machine).measured(backend))
+    names = set() if played(machine) else set(backend_of(machine).measured(wired(machine)))
     if has_inverter(machine):
         names.add("spindle")
-    if isinstance(ports.station, PendantStation) and not ports.station.away:
-        names |= {"pendant", *(f"input {name}" for name in machine.inputs.keys() - backend.inputs.keys())}
-    return names
+    return names.union(connected.measured())
 
 
 def _settle(clock: Clock, ports: MachinePorts, machine: Machine) -> None:
@@ -143,7 +137,8 @@ def _blamed(machine: Machine) -> str:
     return "spindle" if word == "feeder" and has_inverter(machine) else word
 
 
-def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
+def _rows(machine: Machine, connected: Connected) -> Iterator[Row]:
+    ports = connected.ports
     sample, terminals = ports.axes.sample(), _terminals(machine)
     for name, homed, at in zip(ports.axes.axes, sample.homed, sample.actual, strict=True):
         detail = Message(
@@ -155,10 +150,7 @@ def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
     yield _spindle(machine, ports)
     station = ports.station.snapshot()
     yield Row("station", "", "E-stop" if station.estop else "ok", _hands(station))
-    model = machine.hardware.table(PendantModel)
-    if model is not None and isinstance(ports.station, PendantStation):
-        away = ports.station.away
-        yield Row("pendant", model.device, "no answer" if away else "ok", away)
+    yield from connected.more_rows()
     for kind, states in (("input", ports.io.inputs()), ("output", ports.io.outputs())):
         for name, on in states.items():
             yield Row(

@@ -12,7 +12,6 @@ from drivers.grblhal import grblhal_table
 from drivers.hal import hal_table
 from drivers.hal.boards import board_table
 from drivers.inverter import inverter_table
-from drivers.pendant import pendant_table
 from drivers.simulated import simulated_table
 
 # What each driver adds to the file, in the order in which a machine file's owner is told of them. The module
@@ -26,7 +25,6 @@ _OWN_DRIVERS = (
     board_table.DRIVER,
     serial_table.DRIVER,
     setter_table.DRIVER,
-    pendant_table.DRIVER,
     shop_network_tables.DRIVER,
     backup_table.DRIVER,
 )

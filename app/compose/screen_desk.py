@@ -78,7 +78,6 @@ SUPERVISED = {
     "daily-backup": "DAILY BACKUP",
     "status": "STATUS.JSON",
     "program-file": "PROGRAM FILE MONITOR",
-    "pendant": "PENDANT CONNECTION",
     "status-page": "STATUS PAGE",
     "announcer": "MQTT AND WEBHOOK",
     "inverter": "INVERTER CONNECTION",

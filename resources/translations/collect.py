@@ -90,9 +90,7 @@ APART = frozenset(
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
         *("shared_database.py", "sharing/version_record.py", "share_command.py", "place_answer.py"),
         *("sharing_table.py", "sharing_check.py", "share_json_keys.py"),
-        *("driver/agent_links.py", "driver/devices_xml.py", "driver/mtconnect_adapter.py"),
-        *("driver/shdr_lines.py", "driver/mtconnect_items.py", "driver/mtconnect_table.py"),
-        *("mtconnect/shop_floor.py", "mtconnect_command.py", "mtconnect_check.py"),
+        *("mtconnect/shop_floor.py", "mtconnect_command.py", "mtconnect_check.py", "pendant_wire.py"),
         *("screen/pdf_pages.py", "shapes/sinumerik_lines.py", "shapes/bar_lines.py"),
         *("shapes/live_lines.py", "shapes/sinumerik_live_lines.py"),
         *(
@@ -288,7 +286,8 @@ def console_texts(shown: Container[str]) -> dict[str, str]:
 
 def _is_apart(path: Path, room: str) -> bool:
     named = {path.name, f"{path.parent.name}/{path.name}"}
-    return bool(named & APART) or (room == COMPOSING and path.name not in COMPOSED)
+    driver = path.parent.name == "driver"  # of an optional feature
+    return driver or bool(named & APART) or (room == COMPOSING and path.name not in COMPOSED)
 
 
 def _texts_of_file(path: Path, loud: bool, marked_alone: bool) -> list[str]:

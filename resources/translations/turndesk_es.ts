@@ -4775,11 +4775,6 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
-      <source>PENDANT CONNECTION</source>
-      <translation>CONEXIÓN CON EL MANDO COLGANTE</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
       <source>PROGRAM FILE MONITOR</source>
       <translation>VIGILANCIA DEL ARCHIVO DEL PROGRAMA</translation>
     </message>
@@ -6877,6 +6872,11 @@
       <location filename="app/extras/mtconnect/extra.py" />
       <source>MTCONNECT</source>
       <translation>MTCONNECT</translation>
+    </message>
+    <message>
+      <location filename="app/extras/pendant/extra.py" />
+      <source>PENDANT CONNECTION</source>
+      <translation>CONEXIÓN CON EL MANDO COLGANTE</translation>
     </message>
     <message>
       <location filename="app/extras/sharing/extra.py" />

@@ -15,7 +15,7 @@ OF_THE_REST = (
     *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
     *("drivers.canopen.canopen_machine", "drivers.grblhal.grblhal_machine", "drivers.hal.hal_machine"),
     *("drivers.inverter.inverter_spindle", "app.extras.mtconnect.driver.mtconnect_adapter"),
-    *("drivers.pendant.pendant_reader", "drivers.simulators", "drivers.setpoint_queue"),
+    *("app.extras.pendant.driver.pendant_reader", "drivers.simulators", "drivers.setpoint_queue"),
 )
 OF_PYTHON = (
     *("concurrent", "difflib", "hashlib", "importlib.resources", "logging", "random", "socket", "sqlite3"),

@@ -29,7 +29,11 @@ OF_LATER = (
     ),
     *("core.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
     *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen.canopen_machine", "drivers.feeder"),
-    *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.pendant.pendant_reader"),
+    *(
+        "drivers.hal.hal_machine",
+        "drivers.inverter.inverter_spindle",
+        "app.extras.pendant.driver.pendant_reader",
+    ),
     *("app.extras.mtconnect.shop_floor", "drivers.transfer"),
     *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.shapes"),
     *("ezdxf", "svgelements"),

@@ -23,7 +23,7 @@ class Mtconnect(Extra):
 
     machine_actions = ("mtconnect",)
     threads = {"mtconnect": "MTCONNECT"}
-    tables_follow = "pendant"
+    tables_follow = "setter"
 
     def machine_tables(self) -> Sequence[Driver]:
         from app.extras.mtconnect.driver.mtconnect_table import DRIVER

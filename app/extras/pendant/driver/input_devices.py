@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
+from app.extras.pendant.driver.input_codes import ABS, AXES, KEY, KEYS, REL, Control
+from app.extras.pendant.driver.pendant_buttons import AxisRange
 from core.message import Message
 from core.ports import DriverError
-from drivers.pendant.input_codes import ABS, AXES, KEY, KEYS, REL, Control
-from drivers.pendant.pendant_buttons import AxisRange
 
 NODES, SYSFS = Path("/dev/input"), Path("/sys/class/input")
 _BLUETOOTH = "0005"
@@ -179,7 +179,7 @@ _CHUNK = 64 * 24
 
 def _ioctl(device: int, request: int, value: int | bytes | bytearray | array.array[int]) -> None:
     """One request to a device; only Linux has such devices, and the library for it."""
-    import fcntl  # noqa: PLC0415
+    import fcntl
 
     fcntl.ioctl(device, request, value)
 

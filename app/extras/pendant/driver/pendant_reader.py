@@ -8,11 +8,11 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from app.extras.pendant.driver.input_codes import Control
+from app.extras.pendant.driver.input_devices import EventSource
+from app.extras.pendant.driver.input_events import Packets
+from app.extras.pendant.driver.pendant_buttons import AxisRange, PendantButtons
 from core.ports import DriverError
-from drivers.pendant.input_codes import Control
-from drivers.pendant.input_devices import EventSource
-from drivers.pendant.input_events import Packets
-from drivers.pendant.pendant_buttons import AxisRange, PendantButtons
 
 _LISTEN = 0.05  # s that one look at the device lasts
 _AGAIN = 0.5  # s between two looks for one that is away

@@ -6,7 +6,7 @@ import struct
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from drivers.pendant.input_codes import SYN, SYN_DROPPED, SYN_REPORT
+from app.extras.pendant.driver.input_codes import SYN, SYN_DROPPED, SYN_REPORT
 
 # Two C longs of time, then type, code and value: 24 bytes where a long has 8. It is part of the kernel's
 # promise to programs (Documentation/input/event-codes.rst), and does not change.

@@ -1,4 +1,4 @@
-"""[pendant] and [setter] of a machine file: what may be at a pendant, and that nothing is started by it."""
+"""[pendant] of a machine file: what may be at a pendant, and that nothing is started by it."""
 
 from __future__ import annotations
 
@@ -10,14 +10,13 @@ import resources
 from app.compose.backends import connect
 from app.compose.machine_answers import check_ports
 from app.compose.machine_files import parse_machine
-from app.compose.pendant_wire import wired, with_pendant
+from app.extras.pendant.driver.pendant_buttons import AxisRange
+from app.extras.pendant.driver.pendant_table import PendantModel
+from app.extras.pendant.pendant_wire import wired, with_pendant
 from core.machine.machine_model import Machine
-from core.machine.setter_table import SetterModel
 from core.table_schema import MachineFileError
 from drivers.clocks import StepClock
-from drivers.pendant.pendant_buttons import AxisRange
-from drivers.pendant.pendant_table import PendantModel
-from tests.drivers.pendant.made import ABS_HAT0X, Peer
+from tests.extras.pendant.made import ABS_HAT0X, Peer
 from tests.texts import text as wording
 
 PENDANT = """
@@ -33,21 +32,11 @@ wheel_x = { at = "pendant.BTN_0" }
 wheel_step = { at = "pendant.BTN_2" }
 jog_z_minus = { at = "pendant.ABS_HAT0X-" }
 start_inhibit = { at = "pendant.BTN_1" }
-probe = { at = "IN-7" }
-"""
-SETTER = """
-[setter]
-x = 0.5
-z = 1.0
-width = 0.25
-overtravel = 0.15
-speed = 20
-slow = 0.5
 """
 
 
 def text(*changes: tuple[str, str]) -> str:
-    found = resources.machine_file("gt75.toml").replace("[io.in]\n", BUTTONS) + PENDANT + SETTER
+    found = resources.machine_file("gt75.toml").replace("[io.in]\n", BUTTONS) + PENDANT
     for old, new in changes:
         assert old in found
         found = found.replace(old, new)
@@ -60,17 +49,13 @@ def refused(*changes: tuple[str, str]) -> str:
     return str(caught.value)
 
 
-def test_a_pendant_and_a_setter() -> None:
+def test_a_pendant() -> None:
     machine = parse_machine(text(), "test")
     assert machine.hardware.table(PendantModel) == PendantModel("0b33:0030", "", "place")
-    setter = machine.hardware.table(SetterModel)
-    assert setter is not None
-    assert setter.face("X", -1) == pytest.approx(25.4 * (0.5 + 0.125))
-    assert setter.face("Z", 1) == pytest.approx(25.4 * (1.0 - 0.125))
     backend = wired(machine)
     assert not {"wheel_x", "start_inhibit"} & set(backend.inputs)
     assert "handwheel" not in backend.hardware.analog
-    assert {"probe", "guard"} <= set(backend.inputs)
+    assert "guard" in backend.inputs
 
 
 @pytest.mark.parametrize(
@@ -107,11 +92,6 @@ def test_a_pendant_and_a_setter() -> None:
         ),
         ('counts = "place"', 'counts = "clicks"', "pendant.counts"),
         ("handwheel = {", "feed_pot = {", "the handwheel is the only analog input that can be on a pendant"),
-        ('probe = { at = "IN-7" }\n', "", f"io.in.probe: {wording('machine.setter-needs-input')}"),
-        ("speed = 20\nslow", "speed = 100\nslow", "exceeds setter.overtravel; reduce the speed"),
-        ("slow = 0.5", "slow = 15", "setter.slow"),
-        ("speed = 20\nslow = 0.5", "speed = 0.3\nslow = 0.5", wording("machine.setter-too-fast")),
-        ("width = 0.25", "width = 0", "setter.width"),
     ],
 )
 def test_what_is_refused(old: str, new: str, expected: str) -> None:
@@ -129,7 +109,7 @@ def test_a_pendant_that_nothing_is_at() -> None:
 
 def test_a_pendant_that_is_not_there_is_a_row_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     """``machine check`` names it, and what to do; the machine answers all the same."""
-    monkeypatch.setattr("app.compose.pendant_wire.entries", list)
+    monkeypatch.setattr("app.extras.pendant.pendant_wire.entries", list)
     answers = check_ports(parse_machine(text(), "test"))
     rows = {each.name: each for each in answers.rows}
     assert (rows["pendant"].at, rows["pendant"].state) == ("0b33:0030", "no answer")

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
+from app.extras.pendant.driver.input_codes import ABS, KEY, REL, Control, button_of, wheel_of
+from app.extras.pendant.driver.input_devices import DeviceEntry, KernelDevice, chosen, entries
 from core.ports import DriverError
-from drivers.pendant.input_codes import ABS, KEY, REL, Control, button_of, wheel_of
-from drivers.pendant.input_devices import DeviceEntry, KernelDevice, chosen, entries
 from tests.coded import raises_code
 
 WANTED = {"hold": Control(KEY, 0x131), "handwheel": Control(REL, 7)}
@@ -114,7 +114,7 @@ def test_what_may_not_be_read_says_the_rule_to_add(tmp_path: Path, monkeypatch: 
     def refused(*_: object) -> int:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("drivers.pendant.input_devices.os.open", refused)
+    monkeypatch.setattr("app.extras.pendant.driver.input_devices.os.open", refused)
     with pytest.raises(DriverError) as caught:
         KernelDevice(entry(), tmp_path)
     assert 'ATTRS{idVendor}=="0b33", ATTRS{idProduct}=="0030", TAG+="uaccess"' in str(caught.value)
@@ -140,7 +140,7 @@ def test_the_kernel_is_asked_by_the_numbers_of_its_header(
         if request == 0x80184550:
             struct.pack_into("@iiiiii", value, 0, 7, -1, 255, 0, 0, 0)
 
-    monkeypatch.setattr("drivers.pendant.input_devices._ioctl", ioctl)
+    monkeypatch.setattr("app.extras.pendant.driver.input_devices._ioctl", ioctl)
     os.mkfifo(tmp_path / "event3")
     device = KernelDevice(entry(able=ABLE | {(ABS, 0x10)}), tmp_path)
     try:

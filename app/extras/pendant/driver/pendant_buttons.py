@@ -9,8 +9,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from drivers.pendant.input_codes import ABS, KEY, REL, Control
-from drivers.pendant.input_events import InputEvent, Packet
+from app.extras.pendant.driver.input_codes import ABS, KEY, REL, Control
+from app.extras.pendant.driver.input_events import InputEvent, Packet
 
 LATE = 0.1  # s from the kernel to here; what is older was done to a machine that looked different
 _PRESSED, _FREE = 0.6, 0.3  # of the way to the end of an axis: down from the first on, up at the second

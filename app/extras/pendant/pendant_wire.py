@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 
 from app.compose.backend_entry import Connected
+from app.compose.check_rows import Row
+from app.extras.pendant.driver.input_codes import Control, button_of, wheel_of
+from app.extras.pendant.driver.input_devices import EventSource, KernelDevice, chosen, entries
+from app.extras.pendant.driver.pendant_reader import Pendant
+from app.extras.pendant.driver.pendant_station import PendantIO, PendantStation
+from app.extras.pendant.driver.pendant_table import AT_PENDANT, STOPS, PendantModel
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from core.table_schema import AT_PENDANT
-from drivers.pendant.input_codes import Control, button_of, wheel_of
-from drivers.pendant.input_devices import EventSource, KernelDevice, chosen, entries
-from drivers.pendant.pendant_reader import Pendant
-from drivers.pendant.pendant_station import PendantIO, PendantStation
-from drivers.pendant.pendant_table import STOPS, PendantModel
 
 WHEEL = "handwheel"
 Find = Callable[[PendantModel, Mapping[str, Control]], Sequence[EventSource]]
@@ -78,7 +78,14 @@ def with_pendant(machine: Machine, connected: Connected, find: Find | None = Non
         connected.close()
         pendant.close()
 
-    return replace(connected, ports=ports, close=close)
+    def rows() -> Iterable[Row]:
+        yield Row("pendant", model.device, "no answer" if station.away else "ok", station.away)
+
+    def measured() -> Iterable[str]:
+        if not station.away:
+            yield from ("pendant", *(f"input {name}" for name in bound))
+
+    return replace(connected, ports=ports, close=close, more_rows=rows, measured=measured)
 
 
 def _at_pendant(terminal: str) -> bool:

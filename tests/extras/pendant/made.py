@@ -6,8 +6,8 @@ import os
 import struct
 from collections.abc import Mapping
 
-from drivers.pendant.input_codes import button_of, wheel_of
-from drivers.pendant.pendant_buttons import AxisRange
+from app.extras.pendant.driver.input_codes import button_of, wheel_of
+from app.extras.pendant.driver.pendant_buttons import AxisRange
 
 # Written down from the kernel's header, and not from the reader that is tested.
 EVENT = struct.Struct("@llHHi")

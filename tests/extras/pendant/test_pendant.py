@@ -7,15 +7,15 @@ from collections.abc import Callable
 
 import pytest
 
+from app.extras.pendant.driver.input_codes import wheel_of
+from app.extras.pendant.driver.input_events import InputEvent, Packet, Packets
+from app.extras.pendant.driver.pendant_buttons import AxisRange, PendantButtons
+from app.extras.pendant.driver.pendant_reader import Pendant
+from app.extras.pendant.driver.pendant_station import LOST, PendantIO, PendantStation
+from app.extras.pendant.driver.pendant_table import STOPS
 from core.ports import DriverError, StationState
-from drivers.pendant.input_codes import wheel_of
-from drivers.pendant.input_events import InputEvent, Packet, Packets
-from drivers.pendant.pendant_buttons import AxisRange, PendantButtons
-from drivers.pendant.pendant_reader import Pendant
-from drivers.pendant.pendant_station import LOST, PendantIO, PendantStation
-from drivers.pendant.pendant_table import STOPS
 from tests.coded import raises_code
-from tests.drivers.pendant.made import (
+from tests.extras.pendant.made import (
     ABS,
     ABS_HAT0X,
     BOUND,

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from app.extras.pendant.driver.input_codes import button_of, wheel_of
 from core.key_declaration import file_key, key_table
 from core.message import Message
-from core.table_schema import AT_PENDANT, Driver, DriverTable, FileReading, Finding, written
-from drivers.pendant.input_codes import button_of, wheel_of
+from core.table_schema import Driver, DriverTable, FileReading, Finding, written
 
+AT_PENDANT = "pendant."  # begins the address of a button or wheel
 _PATH, _WHEEL = "pendant", "io.analog.handwheel"
 STOPS = ("hold", "start_inhibit")  # what must not be believed to be there when it is gone
 _MAY = re.compile(r"hold|start_inhibit|wheel_\w+|jog_rapid|jog_[xyzabc]_(plus|minus)")
@@ -43,12 +44,13 @@ class PendantModel:
 
 
 def _rules(file: FileReading) -> Iterator[Finding]:
-    for path, terminal in file.at_pendant.items():
+    buttons = _buttons(file)
+    for path, terminal in buttons.items():
         if why := _wrong_button(path, terminal):
             yield Finding(f"{path}.at", written(terminal), why)
-    yield from _taken(file)
+    yield from _taken(buttons)
     yield from _analog(file)
-    used = [*file.at_pendant, *([_WHEEL] if _wheel(file) else ())]
+    used = [*buttons, *([_WHEEL] if _wheel(file) else ())]
     if used and _PATH not in file.tables:
         yield Finding(
             f"[{_PATH}]",
@@ -61,6 +63,11 @@ def _rules(file: FileReading) -> Iterator[Finding]:
     if not used and _PATH in file.tables:
         expected = 'nothing is at it; expected an input such as hold = { at = "pendant.BTN_B" }'
         yield Finding(f"[{_PATH}]", "", expected)
+
+
+def _buttons(file: FileReading) -> Mapping[str, str]:
+    """Return the inputs and outputs that are at the pendant, by path."""
+    return {path: at for path, at in file.elsewhere.items() if at.startswith(AT_PENDANT)}
 
 
 def _wrong_button(path: str, terminal: str) -> str:
@@ -84,10 +91,10 @@ def _wrong_button(path: str, terminal: str) -> str:
     return ""
 
 
-def _taken(file: FileReading) -> Iterator[Finding]:
+def _taken(buttons: Mapping[str, str]) -> Iterator[Finding]:
     """One button means one thing: whoever presses it does not mean two."""
     taken: dict[object, str] = {}
-    for path, terminal in file.at_pendant.items():
+    for path, terminal in buttons.items():
         code = button_of(terminal.removeprefix(AT_PENDANT))
         first = taken.setdefault(code, path)
         if code is not None and first != path:
@@ -123,5 +130,6 @@ DRIVER = Driver(
             purpose="A pendant, gamepad or jog dial on USB. Its buttons are inputs of [io.in] at "
             "`pendant.…`; no button can start a cycle or switch an output.",
         ),
-    )
+    ),
+    prefix=AT_PENDANT,
 )

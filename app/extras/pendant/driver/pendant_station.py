@@ -5,8 +5,8 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 
+from app.extras.pendant.driver.pendant_reader import Pendant, PendantState
 from core.ports import DigitalIO, Station, StationState
-from drivers.pendant.pendant_reader import Pendant, PendantState
 
 _TOLD = 0.3  # s for which something that happened once is told: a control that looks every tick has seen it
 LOST = "pendant events were lost; the handwheel may have turned farther than TurnDesk counted"
