@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-NAMES = ("pendant", "mtconnect", "sharing", "analyses", "scheduler")
+NAMES = ("pendant", "mtconnect", "office", "sharing", "analyses", "scheduler")
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -85,6 +85,10 @@ class Extra:
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
         """Return the declared outputs of --json of this feature, by the output that they follow."""
         return {}
+
+    def floor_outputs(self) -> Sequence[Output]:
+        """Return what this feature sends to the shop network; ``command`` is the title of its section."""
+        return ()
 
     def check(self, machine: Machine, answers: Answers) -> None:
         """Add the rows of this feature to ``turndesk machine check``."""

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import socket
 from collections.abc import Iterator
 
 from app.compose.backend_entry import Connected, backend_of, has_inverter, played
 from app.compose.backends import connect, real_time, wired
 from app.compose.check_rows import FAILED, MISSING, NOT_CHECKED, Answers, Row
 from app.compose.extra import extras
-from app.compose.page_server import listening_at
 from core.key_declaration import Unit, shown
 from core.machine.machine_model import Axis, Machine
-from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, broker_of
 from core.message import Message
 from core.ports import Clock, DriverError, MachinePorts, StationState
 from drivers.canopen.canopen_table import CanopenTable
@@ -24,7 +21,6 @@ from drivers.inverter.inverter_table import InverterTable
 _SETTLED = 0.3  # s in which pots and inputs have been heard that are told only now and then
 _LONGEST = 3.0  # s for inputs that are read in turns
 _LOOK = 0.02  # s
-_BROKER_PATIENCE = 2.0  # s
 
 
 def check_ports(machine: Machine) -> Answers:
@@ -41,41 +37,9 @@ def check_ports(machine: Machine) -> Answers:
     except DriverError as error:
         answers.rows.append(Row(_blamed(machine), "", "no answer", str(error)))
         answers.trouble.append(str(error))
-    _ask_office(machine, answers)
     for extra in extras().values():
         extra.check(machine, answers)
     return answers
-
-
-def _ask_office(machine: Machine, answers: Answers) -> None:
-    """Whether browsers would find the status page, and whether the broker is there."""
-    page, told = machine.hardware.table(StatusPageTable), machine.hardware.table(AnnounceTable)
-    if page is not None and page.enabled:
-        try:
-            listening_at(page.bind, page.port).close()
-        except DriverError as error:
-            answers.rows.append(Row("status_page", f"{page.bind}:{page.port}", "fault", str(error)))
-            answers.trouble.append(str(error))
-        else:
-            who = (
-                "the status page can be opened only with its token"
-                if page.token
-                else ("the status page can be opened only from this computer")
-            )
-            answers.rows.append(Row("status_page", f"{page.bind}:{page.port}", "ok", who))
-    if told is not None and told.mqtt:
-        try:
-            socket.create_connection(broker_of(told.mqtt), _BROKER_PATIENCE).close()
-        except OSError as error:
-            why = Message(
-                "[announce] {mqtt}: {cause}; check the address and port of the broker",
-                mqtt=told.mqtt,
-                cause=error.strerror or error,
-            )
-            answers.rows.append(Row("announce", told.mqtt, "no answer", why))
-            answers.trouble.append(why)
-        else:
-            answers.rows.append(Row("announce", told.mqtt, "ok", told.topic))
 
 
 def _ask_nodes(machine: Machine, clock: Clock, answers: Answers) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.compose.extra import extras, insert_after
-from core.machine import backup_table, machine_file, serial_table, setter_table, shop_network_tables
+from core.machine import backup_table, machine_file, serial_table, setter_table
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.table_schema import Driver, Finding, MachineFileError, written
@@ -25,7 +25,6 @@ _OWN_DRIVERS = (
     board_table.DRIVER,
     serial_table.DRIVER,
     setter_table.DRIVER,
-    shop_network_tables.DRIVER,
     backup_table.DRIVER,
 )
 DRIVERS: tuple[Driver, ...] = tuple(

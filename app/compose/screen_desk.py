@@ -22,7 +22,6 @@ from app.compose.kinematics_chain import kinematics_of
 from app.compose.machine_in_use import remember_machine
 from app.compose.machine_setup import read_machine
 from app.compose.machine_status import keep_status
-from app.compose.office import open_office
 from app.compose.scope_desk import give_scope
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import (
@@ -78,12 +77,8 @@ SUPERVISED = {
     "daily-backup": "DAILY BACKUP",
     "status": "STATUS.JSON",
     "program-file": "PROGRAM FILE MONITOR",
-    "status-page": "STATUS PAGE",
-    "announcer": "MQTT AND WEBHOOK",
     "inverter": "INVERTER CONNECTION",
     "recorder": "SCOPE RECORDER",
-    "paho-mqtt-client-": "MQTT BROKER CONNECTION",  # the name that paho gives its thread
-    "web-hook": "WEBHOOK",
     WATCHDOG: "CONTROL WATCHDOG",
     **{name: what for extra in extras().values() for name, what in extra.threads.items()},
 }
@@ -166,7 +161,6 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> list[Callab
     if not journal.trouble or journal.waiting:
         open_ones.append(keep_status(desk.lathe, snapshot, data_folder()))
         open_ones.append(_daily_backup(desk, desk.lathe, journal))
-    open_ones.append(open_office(desk, desk.lathe, journal, tell))
     started = [extra.start(desk, journal, tell) for extra in extras().values()]
     open_ones += [close for close in started if close is not None]
     return open_ones

@@ -70,7 +70,7 @@ ROOMS = (
     "app/shopfloor",
 )
 # Where much is told to programs or to the console: what is marked alone.
-MARKED_ALONE = ("app/shopfloor/",)
+MARKED_ALONE = ("app/shopfloor/", "app/extras/office/")
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
     {
@@ -88,9 +88,16 @@ APART = frozenset(
             "run_without_screen.py",
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
-        *("shared_database.py", "sharing/version_record.py", "share_command.py", "place_answer.py"),
+        *(
+            "shared_database.py",
+            "proof_scheduler.py",
+            "sharing/version_record.py",
+            "share_command.py",
+            "place_answer.py",
+        ),
         *("sharing_table.py", "sharing_check.py", "share_json_keys.py"),
         *("mtconnect/shop_floor.py", "mtconnect_command.py", "mtconnect_check.py", "pendant_wire.py"),
+        *("office/office.py", "office_check.py", "page_server.py", "shop_network_tables.py"),
         *("screen/pdf_pages.py", "shapes/sinumerik_lines.py", "shapes/bar_lines.py"),
         *("shapes/live_lines.py", "shapes/sinumerik_live_lines.py"),
         *(
@@ -265,7 +272,8 @@ def texts() -> dict[str, str]:
         loud = room.startswith(LOUD)
         for path in sorted((HOUSE / room).rglob("*.py")):
             if not _is_apart(path, room):
-                marked_alone = str(path.relative_to(HOUSE)).startswith(MARKED_ALONE)
+                place = path.relative_to(HOUSE).as_posix()
+                marked_alone = place.startswith(MARKED_ALONE) and path.name != "extra.py"
                 for text in _texts_of_file(path, loud, marked_alone):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
     tables = [*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_shapes()]

@@ -4750,16 +4750,6 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
-      <source>MQTT AND WEBHOOK</source>
-      <translation>MQTT Y WEBHOOK</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>MQTT BROKER CONNECTION</source>
-      <translation>CONEXIÓN CON EL BROKER MQTT</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
       <source>NO DAILY BACKUP: {why}</source>
       <translation>SIN COPIA DIARIA: {why}</translation>
     </message>
@@ -4795,18 +4785,8 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
-      <source>STATUS PAGE</source>
-      <translation>PÁGINA DE ESTADO</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
       <source>STORAGE OF OFFSETS AND COUNTS</source>
       <translation>ALMACENAMIENTO DE CORRECTORES Y CUENTAS</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>WEBHOOK</source>
-      <translation>WEBHOOK</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -6869,9 +6849,689 @@
       <translation>{size} bytes</translation>
     </message>
     <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>A dash means that the arc is too short to calculate the value.</source>
+      <translation>Una raya indica que el arco es demasiado corto para calcular el valor.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>ADDED DEPTH</source>
+      <translation>PROF. AÑADIDA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Axis positions are measured from home, X as a radius.</source>
+      <translation>Las posiciones de los ejes se miden desde la referencia, X como radio.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Axis positions are measured from home.</source>
+      <translation>Las posiciones de los ejes se miden desde la referencia.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>BACKLASH {axis}</source>
+      <translation>JUEGO {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>BALL BAR</source>
+      <translation>BALL BAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>CALCULATING …</source>
+      <translation>CALCULANDO …</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>ENTRY ANGLE</source>
+      <translation>ÁNG. DE ENTRADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Flank infeed shifts the entry angle with the depth.</source>
+      <translation>La penetración por un flanco desplaza el ángulo de entrada según la profundidad.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>LEAD ERROR</source>
+      <translation>ERROR DE PASO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Largest error: {distance}</source>
+      <translation>Error mayor: {distance}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Lead: {lead} per revolution</source>
+      <translation>Paso: {lead} por vuelta</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Line {line}, arc {number} of {count}: radius {radius}, {angle}°</source>
+      <translation>Línea {line}, arco {number} de {count}: radio {radius}, {angle}°</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>PASS</source>
+      <translation>Nº</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>PATH DEVIATION</source>
+      <translation>DESVIACIÓN DE TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>PATH ERROR</source>
+      <translation>ERROR DE TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Positive values are to the left of the direction of travel.</source>
+      <translation>Los valores positivos quedan a la izquierda del sentido de avance.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>RADIUS ERROR</source>
+      <translation>ERROR DE RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>RESPONSE</source>
+      <translation>RESPUESTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>REVERSAL SPIKE {axis}</source>
+      <translation>PICO DE INVERSIÓN {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>ROUNDNESS</source>
+      <translation>REDONDEZ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>RPM DROP</source>
+      <translation>CAÍDA RPM</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>SCALE OF {value} RELATIVE TO {v}</source>
+      <translation>ESCALA DE {value} RESPECTO A {v}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>SQUARENESS ERROR</source>
+      <translation>ERROR DE PERPENDICULARIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>THREAD</source>
+      <translation>ROSCA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>THREAD DEVIATION</source>
+      <translation>DESVIACIÓN DE LA ROSCA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>The axis is fast enough to cut this lead at up to {rpm} rpm</source>
+      <translation>El eje es bastante rápido para tallar este paso hasta {rpm} rpm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>The encoder cannot measure backlash between the encoder and the tool.</source>
+      <translation>El encoder no puede medir el juego entre el encoder y la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>The table shows the worst point of each line.</source>
+      <translation>La tabla muestra el peor punto de cada línea.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>The thread entry angles agree within {angle}°</source>
+      <translation>Los ángulos de entrada de la rosca coinciden en {angle}°</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>a path needs two linear axes, but the record contains fewer than two</source>
+      <translation>una trayectoria necesita dos ejes lineales, pero el registro contiene menos de dos</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>error magnified {times}x; press Z to change the scale</source>
+      <translation>error ampliado {times}x; pulse Z para cambiar la escala</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>last move: commanded position, actual position and following error over time in seconds</source>
+      <translation>último movimiento: posición de consigna, posición real y error de seguimiento en segundos</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>last spindle speed change: commanded and actual speed over time in seconds</source>
+      <translation>último cambio de velocidad del husillo: velocidad de consigna y real en segundos</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>this time range does not contain an arc of 60 degrees or more; cut an arc of this size while recording</source>
+      <translation>este intervalo no contiene ningún arco de 60 grados o más; corte un arco de ese tamaño mientras graba</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>thread passes overlaid by spindle angle: deviation from the thread, and spindle speed</source>
+      <translation>pasadas de rosca superpuestas por ángulo del husillo: desviación de la rosca, y velocidad del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>{fixed} mm/m</source>
+      <translation>{fixed} mm/m</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>{title}  rpm</source>
+      <translation>{title}  rpm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses_view.py" />
+      <source>ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE</source>
+      <translation>FLECHAS: ELEGIR FILA   Z: AMPLIAR   MISMA TECLA F: ACTUALIZAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses_view.py" />
+      <source>DRIVE TEST</source>
+      <translation>PRUEBA DE ACCIONAMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses_view.py" />
+      <source>NEXT ARC</source>
+      <translation>OTRO ARC</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses_view.py" />
+      <source>TEST</source>
+      <translation>PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>AT {share} SPEED</source>
+      <translation>A {share} DE VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>ERROR LIMIT AT THIS SPEED</source>
+      <translation>LÍMITE A ESTA VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>FOLLOWING LAG</source>
+      <translation>RETRASO DE SEGUIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>For a good result, jog a single step on the Jog page, or press F9 on this page to open the drive tests.</source>
+      <translation>Para un buen resultado, mueva un solo paso en la página Manual, o pulse F9 en esta página para abrir las pruebas de accionamiento.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>LARGEST ERROR</source>
+      <translation>ERROR MAYOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>LIMIT REDUCED TO {share}</source>
+      <translation>LÍMITE REDUCIDO A {share}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>Last move of {axis}. These values are for information only; no setting was changed.</source>
+      <translation>Último movimiento de {axis}. Estos valores son solo informativos; no se cambió ningún ajuste.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>MAXIMUM SPEED</source>
+      <translation>VELOCIDAD MÁXIMA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>OVERSHOOT</source>
+      <translation>SOBREPASO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>RISE, 10 TO 90 %</source>
+      <translation>SUBIDA, 10 A 90 %</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>SMALLEST LIMIT WITHOUT A TRIP</source>
+      <translation>LÍMITE MÍNIMO SIN DISPARO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>SPEED AT WHICH LAG EQUALS LIMIT</source>
+      <translation>VELOCIDAD CON RETRASO = LÍMITE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>TIME UNTIL IN POSITION</source>
+      <translation>TIEMPO HASTA EN POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>TRAVEL</source>
+      <translation>RECORRIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>no trip</source>
+      <translation>sin disparo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>the limit is not reached in the axis speed range</source>
+      <translation>el límite no se alcanza en el rango de velocidad del eje</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>this time range contains no complete move of an axis from rest to rest; jog one step on the Jog page</source>
+      <translation>en este intervalo no hay ningún movimiento completo de un eje de reposo a reposo; mueva un paso en la página Manual</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>trips at {position}</source>
+      <translation>dispara a los {position}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>90° PHASE LAG</source>
+      <translation>DESFASE DE 90°</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>BANDWIDTH, −3 dB</source>
+      <translation>ANCHO DE BANDA, −3 dB</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>DELAY</source>
+      <translation>RETARDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>GAIN</source>
+      <translation>GANANCIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>LAG AT CONSTANT SPEED</source>
+      <translation>RETRASO A VELOCIDAD CONSTANTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>Nothing was written to the drive.</source>
+      <translation>No se escribió nada en el accionamiento.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>OUTBOUND</source>
+      <translation>IDA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>PHASE LAG</source>
+      <translation>DESFASE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>RAMP</source>
+      <translation>RAMPA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>RETURN</source>
+      <translation>VUELTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>SINE</source>
+      <translation>SENO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>SPEED / LAG (GAIN)</source>
+      <translation>VELOCIDAD / RETRASO (GANANCIA)</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>drive test</source>
+      <translation>prueba de accionamiento</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>the key was released before the test ended; hold the key until the axis has returned</source>
+      <translation>la tecla se soltó antes de terminar la prueba; mantenga la tecla hasta que el eje haya vuelto</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>this machine has no {axis} axis</source>
+      <translation>esta máquina no tiene eje {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>{words}, {item} Hz</source>
+      <translation>{words}, {item} Hz</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>−3 dB is not reached at frequencies up to {maximum} Hz</source>
+      <translation>no se alcanzan −3 dB en frecuencias hasta {maximum} Hz</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>DRIVE TEST HAS NO RAPID. PRESS THE ARROW WITHOUT SHIFT</source>
+      <translation>LA PRUEBA DE ACCIONAMIENTO NO TIENE RÁPIDO. PULSE LA FLECHA SIN MAYÚS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>DRIVE TEST NOT POSSIBLE: {why}</source>
+      <translation>PRUEBA DE ACCIONAMIENTO NO POSIBLE: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>FOLLOWING ERROR LIMIT {axis}</source>
+      <translation>LÍMITE ERROR SEGUIMIENTO {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>FREQUENCY</source>
+      <translation>FRECUENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>KEEP HOLDING THE KEY UNTIL THE AXIS HAS RETURNED</source>
+      <translation>MANTENGA LA TECLA HASTA QUE EL EJE HAYA VUELTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>KEY</source>
+      <translation>TECLA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>NO TEST VALUES YET. RUN A TEST FIRST</source>
+      <translation>AÚN NO HAY VALORES. HAGA ANTES UNA PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>NOT ENOUGH TRAVEL IN {axis}. JOG AWAY FROM THE END OF TRAVEL</source>
+      <translation>RECORRIDO INSUFICIENTE EN {axis}. ALÉJELO A MANO DEL FINAL DE RECORRIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>PRESS AN ARROW TO SHOW THE TRAVEL. HOLD IT TO RUN THE TEST</source>
+      <translation>PULSE UNA FLECHA PARA VER EL RECORRIDO. MANTÉNGALA PARA HACER LA PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>PRESS ARROW: SHOW TRAVEL   HOLD ARROW: RUN TEST   F5: VALUES</source>
+      <translation>PULSAR FLECHA: VER RECORRIDO   MANTENER: PRUEBA   F5: VALORES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>SETTING</source>
+      <translation>AJUSTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>SIZE is the travel of the axis; in X, the diameter changes by twice this travel.</source>
+      <translation>TAMAÑO es el recorrido del eje; en X, el diámetro cambia el doble de ese recorrido.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>SPINDLE IS TURNING. STOP IT FIRST</source>
+      <translation>EL HUSILLO GIRA. PÁRELO ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>TEST STOPPED: ANOTHER TEST WAS SELECTED</source>
+      <translation>PRUEBA DETENIDA: SE ELIGIÓ OTRA PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS</source>
+      <translation>PRUEBA DETENIDA: ESTA PÁGINA YA NO TIENE EL FOCO DEL TECLADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>The test does not write any data to the drive.</source>
+      <translation>La prueba no escribe ningún dato en el accionamiento.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>as fast as possible</source>
+      <translation>lo más rápido posible</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>drive test {axis} {shape}</source>
+      <translation>prueba de accionamiento {axis} {shape}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>no test has been run yet</source>
+      <translation>aún no se ha hecho ninguna prueba</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>{axis} FROM {position} TO {present} AND BACK IN {seconds} S</source>
+      <translation>{axis} DE {position} A {present} Y VUELTA EN {seconds} S</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>{axis} NOT HOMED, SO TRAVEL CANNOT BE CHECKED. HOME IT FIRST</source>
+      <translation>{axis} SIN REFERENCIA: NO SE COMPRUEBA EL RECORRIDO. REFERÉNCIELO ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>{travel}: HOLD {key} TO RUN THE TEST, RELEASE TO STOP</source>
+      <translation>{travel}: MANTENGA {key} PARA HACER LA PRUEBA, SUELTE PARA PARAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_view.py" />
+      <source>DRIVE TEST  ·  PRESS ARROW, THEN HOLD IT</source>
+      <translation>PRUEBA  ·  PULSAR FLECHA, LUEGO MANTENERLA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_view.py" />
+      <source>HOLD {direction}</source>
+      <translation>MANTENGA {direction}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/extra.py" />
+      <source>SHARED PROGRAMS</source>
+      <translation>PROGRAMAS COMPARTIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>Last change of spindle speed. These values are for information only; no setting was changed.</source>
+      <translation>Último cambio de velocidad del husillo. Estos valores son solo informativos; no se cambió ningún ajuste.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>MEAN SPEED ERROR</source>
+      <translation>DESVÍO MEDIO DE VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>Mean error and variation are calculated from the last second. A dash means that the speed did not stay within the tolerance band.</source>
+      <translation>El desvío medio y la variación se calculan del último segundo. Una raya indica que la velocidad no se mantuvo en la banda de tolerancia.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>SPEED VARIATION</source>
+      <translation>VARIACIÓN DE VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>TIME TO SETTLE WITHIN {share}</source>
+      <translation>TIEMPO HASTA ESTABLE DENTRO DE {share}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>The acceleration in the machine file is {accel} rpm/s; a speed within {share} of the target counts as reached.</source>
+      <translation>La aceleración en el archivo de máquina es {accel} rpm/s; una velocidad dentro de {share} del valor cuenta como alcanzada.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>no device on this machine reports the measured spindle speed</source>
+      <translation>ningún dispositivo de esta máquina informa la velocidad medida del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>spindle {name}</source>
+      <translation>husillo {name}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>the spindle speed did not change in this time range; start the spindle from a program or in MDI</source>
+      <translation>la velocidad del husillo no cambió en este intervalo; arranque el husillo con un programa o en MDI</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>this machine has no spindle</source>
+      <translation>esta máquina no tiene husillo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>{acceleration} rpm/s</source>
+      <translation>{acceleration} rpm/s</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>{speed} rpm</source>
+      <translation>{speed} rpm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>{target} → {target2} rpm</source>
+      <translation>{target} → {target2} rpm</translation>
+    </message>
+    <message>
       <location filename="app/extras/mtconnect/extra.py" />
       <source>MTCONNECT</source>
       <translation>MTCONNECT</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/agent_desk.py" />
+      <source>the MTConnect agent reports that the machine is unavailable</source>
+      <translation>el agente MTConnect indica que la máquina no está disponible</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/announcements.py" />
+      <source>part {number} of {program} is finished</source>
+      <translation>pieza {number} de {program} terminada</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/extra.py" />
+      <source>MQTT AND WEBHOOK</source>
+      <translation>MQTT Y WEBHOOK</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/extra.py" />
+      <source>MQTT BROKER CONNECTION</source>
+      <translation>CONEXIÓN CON EL BROKER MQTT</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/extra.py" />
+      <source>STATUS PAGE</source>
+      <translation>PÁGINA DE ESTADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/extra.py" />
+      <source>WEBHOOK</source>
+      <translation>WEBHOOK</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/mqtt_broker.py" />
+      <source>the MQTT broker {host}:{port}</source>
+      <translation>el broker MQTT {host}:{port}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/network_causes.py" />
+      <source>the server certificate cannot be verified: {verify_message}</source>
+      <translation>el certificado del servidor no se puede verificar: {verify_message}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/other_desks.py" />
+      <source>access token rejected</source>
+      <translation>token de acceso rechazado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/other_desks.py" />
+      <source>no response for {age} s</source>
+      <translation>sin respuesta desde hace {age} s</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/other_desks.py" />
+      <source>the server at this address is not a TurnDesk server</source>
+      <translation>el servidor de esta dirección no es un servidor TurnDesk</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/other_desks.py" />
+      <source>the server returns HTTP status {answer}</source>
+      <translation>el servidor devuelve el estado HTTP {answer}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/status_page.py" />
+      <source>Following errors recorded before the last alarm</source>
+      <translation>Errores de seguimiento registrados antes de la última alarma</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/status_page.py" />
+      <source>Last cycle</source>
+      <translation>Último ciclo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/status_page.py" />
+      <source>Last stops</source>
+      <translation>Últimos paros</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/status_page.py" />
+      <source>NO RESPONSE: the values below are out of date</source>
+      <translation>SIN RESPUESTA: los valores de abajo no están actualizados</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/status_page.py" />
+      <source>Program</source>
+      <translation>Programa</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/status_page.py" />
+      <source>The part made by the loaded program</source>
+      <translation>La pieza del programa cargado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/status_page.py" />
+      <source>Time remaining</source>
+      <translation>Tiempo restante</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/web_hook.py" />
+      <source>, redirected to {to}; set [announce] hook to that address</source>
+      <translation>, redirigido a {to}; ponga esa dirección en [announce] hook</translation>
+    </message>
+    <message>
+      <location filename="app/extras/office/web_hook.py" />
+      <source>HTTP response {code} {reason}{place}</source>
+      <translation>respuesta HTTP {code} {reason}{place}</translation>
     </message>
     <message>
       <location filename="app/extras/pendant/extra.py" />
@@ -6887,11 +7547,6 @@
       <location filename="app/extras/sharing/extra.py" />
       <source>SHARED</source>
       <translation>COMPART.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/extra.py" />
-      <source>SHARED PROGRAMS</source>
-      <translation>PROGRAMAS COMPARTIDOS</translation>
     </message>
     <message>
       <location filename="app/extras/sharing/extra.py" />
@@ -7354,181 +8009,6 @@
       <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, LUEGO F6: REVISE LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>DRIVE TEST</source>
-      <translation>PRUEBA DE ACCIONAMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>DRIVE TEST HAS NO RAPID. PRESS THE ARROW WITHOUT SHIFT</source>
-      <translation>LA PRUEBA DE ACCIONAMIENTO NO TIENE RÁPIDO. PULSE LA FLECHA SIN MAYÚS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>DRIVE TEST NOT POSSIBLE: {why}</source>
-      <translation>PRUEBA DE ACCIONAMIENTO NO POSIBLE: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>FOLLOWING ERROR LIMIT {axis}</source>
-      <translation>LÍMITE ERROR SEGUIMIENTO {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>FREQUENCY</source>
-      <translation>FRECUENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>KEEP HOLDING THE KEY UNTIL THE AXIS HAS RETURNED</source>
-      <translation>MANTENGA LA TECLA HASTA QUE EL EJE HAYA VUELTO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>KEY</source>
-      <translation>TECLA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>NO TEST VALUES YET. RUN A TEST FIRST</source>
-      <translation>AÚN NO HAY VALORES. HAGA ANTES UNA PRUEBA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>NOT ENOUGH TRAVEL IN {axis}. JOG AWAY FROM THE END OF TRAVEL</source>
-      <translation>RECORRIDO INSUFICIENTE EN {axis}. ALÉJELO A MANO DEL FINAL DE RECORRIDO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>PRESS AN ARROW TO SHOW THE TRAVEL. HOLD IT TO RUN THE TEST</source>
-      <translation>PULSE UNA FLECHA PARA VER EL RECORRIDO. MANTÉNGALA PARA HACER LA PRUEBA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>PRESS ARROW: SHOW TRAVEL   HOLD ARROW: RUN TEST   F5: VALUES</source>
-      <translation>PULSAR FLECHA: VER RECORRIDO   MANTENER: PRUEBA   F5: VALORES</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>RAMP</source>
-      <translation>RAMPA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SAVED: {path}</source>
-      <translation>GUARDADO: {path}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SETTING</source>
-      <translation>AJUSTE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SHAPE</source>
-      <translation>FORMA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SINE</source>
-      <translation>SENO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SIZE</source>
-      <translation>TAMAÑO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SIZE is the travel of the axis; in X, the diameter changes by twice this travel.</source>
-      <translation>TAMAÑO es el recorrido del eje; en X, el diámetro cambia el doble de ese recorrido.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SPINDLE IS TURNING. STOP IT FIRST</source>
-      <translation>EL HUSILLO GIRA. PÁRELO ANTES</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>STEP</source>
-      <translation>PASO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>TEST STOPPED: ANOTHER TEST WAS SELECTED</source>
-      <translation>PRUEBA DETENIDA: SE ELIGIÓ OTRA PRUEBA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS</source>
-      <translation>PRUEBA DETENIDA: ESTA PÁGINA YA NO TIENE EL FOCO DEL TECLADO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>The test does not write any data to the drive.</source>
-      <translation>La prueba no escribe ningún dato en el accionamiento.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>as fast as possible</source>
-      <translation>lo más rápido posible</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>drive test {axis} {shape}</source>
-      <translation>prueba de accionamiento {axis} {shape}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>no test has been run yet</source>
-      <translation>aún no se ha hecho ninguna prueba</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>{axis} FROM {position} TO {present} AND BACK IN {seconds} S</source>
-      <translation>{axis} DE {position} A {present} Y VUELTA EN {seconds} S</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>{axis} NOT HOMED, SO TRAVEL CANNOT BE CHECKED. HOME IT FIRST</source>
-      <translation>{axis} SIN REFERENCIA: NO SE COMPRUEBA EL RECORRIDO. REFERÉNCIELO ANTES</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>{item} Hz</source>
-      <translation>{item} Hz</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>{travel}: HOLD {key} TO RUN THE TEST, RELEASE TO STOP</source>
-      <translation>{travel}: MANTENGA {key} PARA HACER LA PRUEBA, SUELTE PARA PARAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_view.py" />
-      <source>ANALYZE</source>
-      <translation>ANALIZAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_view.py" />
-      <source>DRIVE TEST  ·  PRESS ARROW, THEN HOLD IT</source>
-      <translation>PRUEBA  ·  PULSAR FLECHA, LUEGO MANTENERLA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_view.py" />
-      <source>HOLD {direction}</source>
-      <translation>MANTENGA {direction}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_view.py" />
-      <source>JOG</source>
-      <translation>MANUAL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_view.py" />
-      <source>VALUES</source>
-      <translation>VALORES</translation>
-    </message>
-    <message>
       <location filename="app/jog/hand_functions.py" />
       <source>A LINE IS RUNNING. LET IT END, OR STOP IT AND PRESS R</source>
       <translation>HAY UNA LÍNEA EN EJECUCIÓN. DEJE QUE TERMINE, O PÁRELA Y PULSE R</translation>
@@ -7972,6 +8452,11 @@
       <location filename="app/jog/jog_pad_view.py" />
       <source>SETTER (P)</source>
       <translation>PALPADOR (P)</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>STEP</source>
+      <translation>PASO</translation>
     </message>
     <message>
       <location filename="app/jog/jog_pad_view.py" />
@@ -9340,6 +9825,11 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
+      <source>SHAPE</source>
+      <translation>FORMA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>TOOL OFFSETS</source>
       <translation>CORRECTORES DE HERRAMIENTA</translation>
     </message>
@@ -10002,6 +10492,11 @@
       <location filename="app/programs/folder_chooser.py" />
       <source>READ-ONLY</source>
       <translation>SOLO LECTURA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/folder_chooser.py" />
+      <source>SIZE</source>
+      <translation>TAMAÑO</translation>
     </message>
     <message>
       <location filename="app/programs/folder_chooser.py" />
@@ -10800,6 +11295,11 @@
     </message>
     <message>
       <location filename="app/quality/readings_section.py" />
+      <source>SAVED: {path}</source>
+      <translation>GUARDADO: {path}</translation>
+    </message>
+    <message>
+      <location filename="app/quality/readings_section.py" />
       <source>STILL READING STORED DATA. PRESS F8 AGAIN</source>
       <translation>AÚN SE LEEN LOS DATOS GUARDADOS. PULSE F8 OTRA VEZ</translation>
     </message>
@@ -11424,426 +11924,6 @@
       <translation>{row}: aún no se ha medido ninguna de las piezas empezadas desde el último cambio de {name}</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>A dash means that the arc is too short to calculate the value.</source>
-      <translation>Una raya indica que el arco es demasiado corto para calcular el valor.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>ADDED DEPTH</source>
-      <translation>PROF. AÑADIDA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Axis positions are measured from home, X as a radius.</source>
-      <translation>Las posiciones de los ejes se miden desde la referencia, X como radio.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Axis positions are measured from home.</source>
-      <translation>Las posiciones de los ejes se miden desde la referencia.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>BACKLASH {axis}</source>
-      <translation>JUEGO {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>BALL BAR</source>
-      <translation>BALL BAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>CALCULATING …</source>
-      <translation>CALCULANDO …</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>ENTRY ANGLE</source>
-      <translation>ÁNG. DE ENTRADA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Flank infeed shifts the entry angle with the depth.</source>
-      <translation>La penetración por un flanco desplaza el ángulo de entrada según la profundidad.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>LEAD ERROR</source>
-      <translation>ERROR DE PASO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Largest error: {distance}</source>
-      <translation>Error mayor: {distance}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Lead: {lead} per revolution</source>
-      <translation>Paso: {lead} por vuelta</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Line {line}, arc {number} of {count}: radius {radius}, {angle}°</source>
-      <translation>Línea {line}, arco {number} de {count}: radio {radius}, {angle}°</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD</source>
-      <translation>SIN DATOS DEL OSCILOSCOPIO EN ESTA MÁQUINA. F9: ABRIR UN REGISTRO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>PASS</source>
-      <translation>Nº</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>PATH DEVIATION</source>
-      <translation>DESVIACIÓN DE TRAYECTORIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>PATH ERROR</source>
-      <translation>ERROR DE TRAYECTORIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Positive values are to the left of the direction of travel.</source>
-      <translation>Los valores positivos quedan a la izquierda del sentido de avance.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>RADIUS ERROR</source>
-      <translation>ERROR DE RADIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>RESPONSE</source>
-      <translation>RESPUESTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>REVERSAL SPIKE {axis}</source>
-      <translation>PICO DE INVERSIÓN {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>ROUNDNESS</source>
-      <translation>REDONDEZ</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>RPM DROP</source>
-      <translation>CAÍDA RPM</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>SCALE OF {value} RELATIVE TO {v}</source>
-      <translation>ESCALA DE {value} RESPECTO A {v}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>SQUARENESS ERROR</source>
-      <translation>ERROR DE PERPENDICULARIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>THREAD</source>
-      <translation>ROSCA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>THREAD DEVIATION</source>
-      <translation>DESVIACIÓN DE LA ROSCA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The axis is fast enough to cut this lead at up to {rpm} rpm</source>
-      <translation>El eje es bastante rápido para tallar este paso hasta {rpm} rpm</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The encoder cannot measure backlash between the encoder and the tool.</source>
-      <translation>El encoder no puede medir el juego entre el encoder y la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The table shows the worst point of each line.</source>
-      <translation>La tabla muestra el peor punto de cada línea.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The thread entry angles agree within {angle}°</source>
-      <translation>Los ángulos de entrada de la rosca coinciden en {angle}°</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>a path needs two linear axes, but the record contains fewer than two</source>
-      <translation>una trayectoria necesita dos ejes lineales, pero el registro contiene menos de dos</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>error magnified {times}x; press Z to change the scale</source>
-      <translation>error ampliado {times}x; pulse Z para cambiar la escala</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>last move: commanded position, actual position and following error over time in seconds</source>
-      <translation>último movimiento: posición de consigna, posición real y error de seguimiento en segundos</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>last spindle speed change: commanded and actual speed over time in seconds</source>
-      <translation>último cambio de velocidad del husillo: velocidad de consigna y real en segundos</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>line {line}</source>
-      <translation>línea {line}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>spindle command</source>
-      <translation>consigna del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>spindle speed</source>
-      <translation>velocidad del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>spindle turns</source>
-      <translation>vueltas del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>this time range does not contain an arc of 60 degrees or more; cut an arc of this size while recording</source>
-      <translation>este intervalo no contiene ningún arco de 60 grados o más; corte un arco de ese tamaño mientras graba</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>thread passes overlaid by spindle angle: deviation from the thread, and spindle speed</source>
-      <translation>pasadas de rosca superpuestas por ángulo del husillo: desviación de la rosca, y velocidad del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>turns</source>
-      <translation>vueltas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>{fixed} mm/m</source>
-      <translation>{fixed} mm/m</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>{item} actual</source>
-      <translation>{item} real</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>{item} demand</source>
-      <translation>{item} consigna</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>{title}  rpm</source>
-      <translation>{title}  rpm</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses_view.py" />
-      <source>ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE</source>
-      <translation>FLECHAS: ELEGIR FILA   Z: AMPLIAR   MISMA TECLA F: ACTUALIZAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses_view.py" />
-      <source>NEXT ARC</source>
-      <translation>OTRO ARC</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses_view.py" />
-      <source>TEST</source>
-      <translation>PRUEBA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>AT {share} SPEED</source>
-      <translation>A {share} DE VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>ERROR LIMIT AT THIS SPEED</source>
-      <translation>LÍMITE A ESTA VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>FOLLOWING ERROR</source>
-      <translation>ERROR DE SEGUIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>FOLLOWING LAG</source>
-      <translation>RETRASO DE SEGUIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>For a good result, jog a single step on the Jog page, or press F9 on this page to open the drive tests.</source>
-      <translation>Para un buen resultado, mueva un solo paso en la página Manual, o pulse F9 en esta página para abrir las pruebas de accionamiento.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>LARGEST ERROR</source>
-      <translation>ERROR MAYOR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>LIMIT REDUCED TO {share}</source>
-      <translation>LÍMITE REDUCIDO A {share}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>Last move of {axis}. These values are for information only; no setting was changed.</source>
-      <translation>Último movimiento de {axis}. Estos valores son solo informativos; no se cambió ningún ajuste.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>MAXIMUM SPEED</source>
-      <translation>VELOCIDAD MÁXIMA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>OVERSHOOT</source>
-      <translation>SOBREPASO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>RISE, 10 TO 90 %</source>
-      <translation>SUBIDA, 10 A 90 %</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>SMALLEST LIMIT WITHOUT A TRIP</source>
-      <translation>LÍMITE MÍNIMO SIN DISPARO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>SPEED AT WHICH LAG EQUALS LIMIT</source>
-      <translation>VELOCIDAD CON RETRASO = LÍMITE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>TIME UNTIL IN POSITION</source>
-      <translation>TIEMPO HASTA EN POSICIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>TRAVEL</source>
-      <translation>RECORRIDO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>no trip</source>
-      <translation>sin disparo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>the limit is not reached in the axis speed range</source>
-      <translation>el límite no se alcanza en el rango de velocidad del eje</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>this time range contains no complete move of an axis from rest to rest; jog one step on the Jog page</source>
-      <translation>en este intervalo no hay ningún movimiento completo de un eje de reposo a reposo; mueva un paso en la página Manual</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>trips at {position}</source>
-      <translation>dispara a los {position}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>{seconds} ms</source>
-      <translation>{seconds} ms</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>90° PHASE LAG</source>
-      <translation>DESFASE DE 90°</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>BANDWIDTH, −3 dB</source>
-      <translation>ANCHO DE BANDA, −3 dB</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>DELAY</source>
-      <translation>RETARDO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>GAIN</source>
-      <translation>GANANCIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>LAG AT CONSTANT SPEED</source>
-      <translation>RETRASO A VELOCIDAD CONSTANTE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>Nothing was written to the drive.</source>
-      <translation>No se escribió nada en el accionamiento.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>OUTBOUND</source>
-      <translation>IDA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>PHASE LAG</source>
-      <translation>DESFASE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>RETURN</source>
-      <translation>VUELTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>SPEED / LAG (GAIN)</source>
-      <translation>VELOCIDAD / RETRASO (GANANCIA)</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>drive test</source>
-      <translation>prueba de accionamiento</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>the key was released before the test ended; hold the key until the axis has returned</source>
-      <translation>la tecla se soltó antes de terminar la prueba; mantenga la tecla hasta que el eje haya vuelto</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>this machine has no {axis} axis</source>
-      <translation>esta máquina no tiene eje {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>{words}, {item} Hz</source>
-      <translation>{words}, {item} Hz</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>−3 dB is not reached at frequencies up to {maximum} Hz</source>
-      <translation>no se alcanzan −3 dB en frecuencias hasta {maximum} Hz</translation>
-    </message>
-    <message>
       <location filename="app/scope/record_shelf.py" />
       <source>alarm time</source>
       <translation>hora de la alarma</translation>
@@ -11905,6 +11985,11 @@
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
+      <source>NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD</source>
+      <translation>SIN DATOS DEL OSCILOSCOPIO EN ESTA MÁQUINA. F9: ABRIR UN REGISTRO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
       <source>PRESS Y TO DELETE {path}, N TO KEEP IT</source>
       <translation>PULSE Y PARA BORRAR {path}, N PARA CONSERVARLO</translation>
     </message>
@@ -11942,6 +12027,16 @@
       <location filename="app/scope/scope_readings_view.py" />
       <source>Press F4 to select curves.</source>
       <translation>Pulse F4 para elegir curvas.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_readings_view.py" />
+      <source>VALUES</source>
+      <translation>VALORES</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_readings_view.py" />
+      <source>{item} Hz</source>
+      <translation>{item} Hz</translation>
     </message>
     <message>
       <location filename="app/scope/scope_sheets.py" />
@@ -12075,6 +12170,11 @@
     </message>
     <message>
       <location filename="app/scope/scope_view.py" />
+      <source>ANALYZE</source>
+      <translation>ANALIZAR</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
       <source>CURSORS</source>
       <translation>CURSORES</translation>
     </message>
@@ -12119,6 +12219,11 @@
       <translation>{rate} muestras por segundo</translation>
     </message>
     <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>{seconds} ms</source>
+      <translation>{seconds} ms</translation>
+    </message>
+    <message>
       <location filename="app/scope/signals.py" />
       <source>ACCELERATION</source>
       <translation>ACELERACIÓN</translation>
@@ -12152,6 +12257,11 @@
       <location filename="app/scope/signals.py" />
       <source>Control cycle delay</source>
       <translation>Retraso del control</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>FOLLOWING ERROR</source>
+      <translation>ERROR DE SEGUIMIENTO</translation>
     </message>
     <message>
       <location filename="app/scope/signals.py" />
@@ -12270,6 +12380,11 @@
     </message>
     <message>
       <location filename="app/scope/signals.py" />
+      <source>spindle command</source>
+      <translation>consigna del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
       <source>spindle load</source>
       <translation>carga del husillo</translation>
     </message>
@@ -12285,8 +12400,33 @@
     </message>
     <message>
       <location filename="app/scope/signals.py" />
+      <source>spindle speed</source>
+      <translation>velocidad del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>spindle turns</source>
+      <translation>vueltas del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>turns</source>
+      <translation>vueltas</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
       <source>velocity</source>
       <translation>velocidad</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>{item} actual</source>
+      <translation>{item} real</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>{item} demand</source>
+      <translation>{item} consigna</translation>
     </message>
     <message>
       <location filename="app/scope/signals.py" />
@@ -12319,71 +12459,6 @@
       <translation>ventana de {ms} ms</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>Last change of spindle speed. These values are for information only; no setting was changed.</source>
-      <translation>Último cambio de velocidad del husillo. Estos valores son solo informativos; no se cambió ningún ajuste.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>MEAN SPEED ERROR</source>
-      <translation>DESVÍO MEDIO DE VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>Mean error and variation are calculated from the last second. A dash means that the speed did not stay within the tolerance band.</source>
-      <translation>El desvío medio y la variación se calculan del último segundo. Una raya indica que la velocidad no se mantuvo en la banda de tolerancia.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>SPEED VARIATION</source>
-      <translation>VARIACIÓN DE VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>TIME TO SETTLE WITHIN {share}</source>
-      <translation>TIEMPO HASTA ESTABLE DENTRO DE {share}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>The acceleration in the machine file is {accel} rpm/s; a speed within {share} of the target counts as reached.</source>
-      <translation>La aceleración en el archivo de máquina es {accel} rpm/s; una velocidad dentro de {share} del valor cuenta como alcanzada.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>no device on this machine reports the measured spindle speed</source>
-      <translation>ningún dispositivo de esta máquina informa la velocidad medida del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>spindle {name}</source>
-      <translation>husillo {name}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>the spindle speed did not change in this time range; start the spindle from a program or in MDI</source>
-      <translation>la velocidad del husillo no cambió en este intervalo; arranque el husillo con un programa o en MDI</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>this machine has no spindle</source>
-      <translation>esta máquina no tiene husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>{acceleration} rpm/s</source>
-      <translation>{acceleration} rpm/s</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>{speed} rpm</source>
-      <translation>{speed} rpm</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>{target} → {target2} rpm</source>
-      <translation>{target} → {target2} rpm</translation>
-    </message>
-    <message>
       <location filename="app/screen/alarm_panels.py" />
       <source>ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD</source>
       <translation>ALARMAS Y PAROS  ·  ESC: CERRAR  ·  CTRL+FLECHAS: SELECCIONAR  ·  MAYÚS+F10: REGISTRO DEL OSCILOSCOPIO</translation>
@@ -12407,6 +12482,11 @@
       <location filename="app/screen/alarm_panels.py" />
       <source>WHAT TO DO</source>
       <translation>QUÉ HACER</translation>
+    </message>
+    <message>
+      <location filename="app/screen/alarm_panels.py" />
+      <source>line {line}</source>
+      <translation>línea {line}</translation>
     </message>
     <message>
       <location filename="app/screen/entry_panel.py" />
@@ -12492,6 +12572,11 @@
       <location filename="app/screen/page_table.py" />
       <source>G54…G59: zero offsets for SINUMERIK programs</source>
       <translation>G54…G59: decalajes de origen de los programas SINUMERIK</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
+      <source>JOG</source>
+      <translation>MANUAL</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -13452,91 +13537,6 @@
       <location filename="app/shapes/shapes_view.py" />
       <source>SHAPES  ·  IN THIS PROGRAM, BY LINE</source>
       <translation>FORMAS  ·  EN ESTE PROGRAMA, POR LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/agent_desk.py" />
-      <source>the MTConnect agent reports that the machine is unavailable</source>
-      <translation>el agente MTConnect indica que la máquina no está disponible</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/announcements.py" />
-      <source>part {number} of {program} is finished</source>
-      <translation>pieza {number} de {program} terminada</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/mqtt_broker.py" />
-      <source>the MQTT broker {host}:{port}</source>
-      <translation>el broker MQTT {host}:{port}</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/network_causes.py" />
-      <source>the server certificate cannot be verified: {verify_message}</source>
-      <translation>el certificado del servidor no se puede verificar: {verify_message}</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/other_desks.py" />
-      <source>access token rejected</source>
-      <translation>token de acceso rechazado</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/other_desks.py" />
-      <source>no response for {age} s</source>
-      <translation>sin respuesta desde hace {age} s</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/other_desks.py" />
-      <source>the server at this address is not a TurnDesk server</source>
-      <translation>el servidor de esta dirección no es un servidor TurnDesk</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/other_desks.py" />
-      <source>the server returns HTTP status {answer}</source>
-      <translation>el servidor devuelve el estado HTTP {answer}</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/status_page.py" />
-      <source>Following errors recorded before the last alarm</source>
-      <translation>Errores de seguimiento registrados antes de la última alarma</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/status_page.py" />
-      <source>Last cycle</source>
-      <translation>Último ciclo</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/status_page.py" />
-      <source>Last stops</source>
-      <translation>Últimos paros</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/status_page.py" />
-      <source>NO RESPONSE: the values below are out of date</source>
-      <translation>SIN RESPUESTA: los valores de abajo no están actualizados</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/status_page.py" />
-      <source>Program</source>
-      <translation>Programa</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/status_page.py" />
-      <source>The part made by the loaded program</source>
-      <translation>La pieza del programa cargado</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/status_page.py" />
-      <source>Time remaining</source>
-      <translation>Tiempo restante</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/web_hook.py" />
-      <source>, redirected to {to}; set [announce] hook to that address</source>
-      <translation>, redirigido a {to}; ponga esa dirección en [announce] hook</translation>
-    </message>
-    <message>
-      <location filename="app/shopfloor/web_hook.py" />
-      <source>HTTP response {code} {reason}{place}</source>
-      <translation>respuesta HTTP {code} {reason}{place}</translation>
     </message>
     <message>
       <location filename="app/special/access_levels.py" />
@@ -18252,6 +18252,96 @@
       <location filename="core/executor/watchdog.py" />
       <source>the software thread of the control is stuck</source>
       <translation>el hilo de software del control está atorado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/ball_bar.py" />
+      <source>a ball-bar plot needs {minimum} samples of an arc; use a lower feed or a larger arc</source>
+      <translation>un diagrama ball-bar necesita {minimum} muestras de un arco; use un avance menor o un arco mayor</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/ball_bar.py" />
+      <source>the arc is shorter than {least_angle} degrees, too short for a ball-bar plot</source>
+      <translation>el arco es más corto que {least_angle} grados, demasiado corto para un diagrama ball-bar</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/ball_bar.py" />
+      <source>the driver does not report the axis positions, so no arc can be shown</source>
+      <translation>el driver no informa de las posiciones de los ejes, así que no se puede mostrar ningún arco</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/ball_bar.py" />
+      <source>this time range does not contain an arc; choose a line that programs an arc</source>
+      <translation>este intervalo no contiene ningún arco; elija una línea que programe un arco</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>a path error plot needs at least {minimum} samples of a path; record while a program runs</source>
+      <translation>un diagrama de error de trayectoria necesita al menos {minimum} muestras; registre mientras corre un programa</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>no axis moved in this time range; record while a program runs</source>
+      <translation>ningún eje se movió en este intervalo; registre mientras corre un programa</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>the driver does not report the axis positions, so no path can be compared</source>
+      <translation>el driver no informa de las posiciones de los ejes, así que no se puede comparar ninguna trayectoria</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>the number of path points and the number of line numbers differ</source>
+      <translation>el número de puntos de la trayectoria y el de números de línea difieren</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>a response measurement needs at least {minimum} samples, but this driver supplies fewer</source>
+      <translation>una medición de respuesta necesita al menos {minimum} muestras, pero este driver da menos</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>a step of {step} is too small for the in-position window of {band}; use a larger step</source>
+      <translation>un escalón de {step} es demasiado pequeño para la ventana de posición de {band}; use un escalón mayor</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>the commanded motion contains no sine wave of {frequency} Hz</source>
+      <translation>el movimiento ordenado no contiene un seno de {frequency} Hz</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>the commanded motion never reaches a constant speed; use a longer move</source>
+      <translation>el movimiento ordenado no llega a una velocidad constante; use un recorrido más largo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>the driver does not report the axis position, so no response can be shown</source>
+      <translation>el driver no informa de la posición del eje, así que no se puede mostrar ninguna respuesta</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>the record is shorter than one sine period; record for longer</source>
+      <translation>el registro es más corto que un período del seno; registre más tiempo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/thread_passes.py" />
+      <source>an analysis of thread passes needs at least 100 samples; record while a thread is cut</source>
+      <translation>el análisis de pasadas de rosca necesita al menos 100 muestras; registre mientras se corta una rosca</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/thread_passes.py" />
+      <source>no spindle encoder count is available, so the spindle angle is not in the record</source>
+      <translation>no hay cuenta de encoder del husillo, así que el ángulo del husillo no está en el registro</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/thread_passes.py" />
+      <source>the spindle does not turn in this time range; record while a thread is cut</source>
+      <translation>el husillo no gira en este intervalo; registre mientras se corta una rosca</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/thread_passes.py" />
+      <source>this time range does not contain a thread pass, because no axis moves at a steady speed for two spindle revolutions</source>
+      <translation>este intervalo no contiene ninguna pasada de rosca, porque ningún eje avanza a velocidad uniforme durante dos vueltas del husillo</translation>
     </message>
     <message>
       <location filename="core/extras/sharing/connection_string.py" />
@@ -30054,46 +30144,6 @@
       <translation>{feature}: no se ha medido ninguna pieza desde la última corrección</translation>
     </message>
     <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>a ball-bar plot needs {minimum} samples of an arc; use a lower feed or a larger arc</source>
-      <translation>un diagrama ball-bar necesita {minimum} muestras de un arco; use un avance menor o un arco mayor</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>the arc is shorter than {least_angle} degrees, too short for a ball-bar plot</source>
-      <translation>el arco es más corto que {least_angle} grados, demasiado corto para un diagrama ball-bar</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>the driver does not report the axis positions, so no arc can be shown</source>
-      <translation>el driver no informa de las posiciones de los ejes, así que no se puede mostrar ningún arco</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>this time range does not contain an arc; choose a line that programs an arc</source>
-      <translation>este intervalo no contiene ningún arco; elija una línea que programe un arco</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/path_error.py" />
-      <source>a path error plot needs at least {minimum} samples of a path; record while a program runs</source>
-      <translation>un diagrama de error de trayectoria necesita al menos {minimum} muestras; registre mientras corre un programa</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/path_error.py" />
-      <source>no axis moved in this time range; record while a program runs</source>
-      <translation>ningún eje se movió en este intervalo; registre mientras corre un programa</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/path_error.py" />
-      <source>the driver does not report the axis positions, so no path can be compared</source>
-      <translation>el driver no informa de las posiciones de los ejes, así que no se puede comparar ninguna trayectoria</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/path_error.py" />
-      <source>the number of path points and the number of line numbers differ</source>
-      <translation>el número de puntos de la trayectoria y el de números de línea difieren</translation>
-    </message>
-    <message>
       <location filename="core/records/record.py" />
       <source>a channel name is not text</source>
       <translation>el nombre de un canal no es texto</translation>
@@ -30212,56 +30262,6 @@
       <location filename="core/records/ring_file.py" />
       <source>{path} is not a TurnDesk record; choose a file in the records folder</source>
       <translation>{path} no es un registro de TurnDesk; elija un archivo de la carpeta records</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>a response measurement needs at least {minimum} samples, but this driver supplies fewer</source>
-      <translation>una medición de respuesta necesita al menos {minimum} muestras, pero este driver da menos</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>a step of {step} is too small for the in-position window of {band}; use a larger step</source>
-      <translation>un escalón de {step} es demasiado pequeño para la ventana de posición de {band}; use un escalón mayor</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>the commanded motion contains no sine wave of {frequency} Hz</source>
-      <translation>el movimiento ordenado no contiene un seno de {frequency} Hz</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>the commanded motion never reaches a constant speed; use a longer move</source>
-      <translation>el movimiento ordenado no llega a una velocidad constante; use un recorrido más largo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>the driver does not report the axis position, so no response can be shown</source>
-      <translation>el driver no informa de la posición del eje, así que no se puede mostrar ninguna respuesta</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>the record is shorter than one sine period; record for longer</source>
-      <translation>el registro es más corto que un período del seno; registre más tiempo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/thread_passes.py" />
-      <source>an analysis of thread passes needs at least 100 samples; record while a thread is cut</source>
-      <translation>el análisis de pasadas de rosca necesita al menos 100 muestras; registre mientras se corta una rosca</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/thread_passes.py" />
-      <source>no spindle encoder count is available, so the spindle angle is not in the record</source>
-      <translation>no hay cuenta de encoder del husillo, así que el ángulo del husillo no está en el registro</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/thread_passes.py" />
-      <source>the spindle does not turn in this time range; record while a thread is cut</source>
-      <translation>el husillo no gira en este intervalo; registre mientras se corta una rosca</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/thread_passes.py" />
-      <source>this time range does not contain a thread pass, because no axis moves at a steady speed for two spindle revolutions</source>
-      <translation>este intervalo no contiene ninguna pasada de rosca, porque ningún eje avanza a velocidad uniforme durante dos vueltas del husillo</translation>
     </message>
     <message>
       <location filename="core/shapes/bar_work.py" />

@@ -29,12 +29,14 @@ from tests.cli.conftest import Turndesk
 from tests.cli.json_output import declared_alone, whole
 from tests.cli.test_profile import SHEET
 from tests.drawings.hand import chain, dxf
+from tests.whole_product import WHOLE_PRODUCT
 
 PAGE = Path(__file__).parents[2] / "docs" / "json.md"
 PROGRAMS = Path(resources.__file__).parent / "programs"
 HEAD = "G90G94F300\nM03S600\nT1\n"
 
 
+@WHOLE_PRODUCT
 def test_the_page_is_up_to_date() -> None:
     assert PAGE.read_text("utf-8") == document(), "python -m app.cli.json_page docs/json.md"
 
@@ -46,7 +48,7 @@ def test_the_command_writes_the_page(tmp_path: Path) -> None:
 
 def test_meanings_are_sentences() -> None:
     tables = [each.keys for each in json_keys.OUTPUTS] + [table.columns for table in PUBLIC]
-    for key in (key for table in (*tables, floor_keys.FILE, floor_keys.EVENT) for key in table):
+    for key in (key for table in (*tables, floor_keys.FILE) for key in table):
         assert key.meaning.endswith("."), key
         assert "|" not in key.meaning, key
 

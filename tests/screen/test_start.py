@@ -34,7 +34,7 @@ OF_LATER = (
         "drivers.inverter.inverter_spindle",
         "app.extras.pendant.driver.pendant_reader",
     ),
-    *("app.extras.mtconnect.shop_floor", "drivers.transfer"),
+    *("app.extras.mtconnect.shop_floor", "app.extras.office.office", "drivers.transfer"),
     *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.shapes"),
     *("ezdxf", "svgelements"),
 )

@@ -11,28 +11,29 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.page_server import PageServer, listening_at
 from app.compose.stored_offsets import shapes_at_hand
-from app.compose.workshop import office_pictures
+from app.compose.workshop import thumbnails
 from app.desk.kept_part import kept_part
 from app.desk.prompt_line import UNDER_WAY
+from app.extras.office.office_status import OfficeLook
+from app.extras.office.page_server import PageServer, listening_at
 from app.quality.parts_watch import PartsWatch
 from app.shopfloor.floor_reading import FloorReader
-from app.shopfloor.office_status import OfficeLook
-from core.machine.shop_network_tables import AnnounceTable, StatusPageTable
+from core.extras.office.shop_network_tables import AnnounceTable, StatusPageTable
 from core.ports import DriverError
 
 if TYPE_CHECKING:
     from app.compose.journal import Journal
     from app.desk.desk import Desk
+    from app.extras.office.announcements import Told
+    from app.extras.office.status_page import OtherDesk
     from app.programs.preview import DrawThumbnail
-    from app.shopfloor.announcements import Told
-    from app.shopfloor.status_page import OtherDesk
     from core.executor.job import Job
     from core.executor.snapshot import Snapshot
     from core.machine.machine_model import Machine
     from core.store.part_cycles import StopRow
 
+PICTURE = 600, 400  # pixels: as large as a telephone shows it
 MISSING = "{what} needs {package}, which is not installed; install turndesk[shop]"
 
 
@@ -74,8 +75,8 @@ def _look(desk: Desk, machine: Machine) -> OfficeLook:
 def _announcer(
     table: AnnounceTable, look: OfficeLook, tell: Callable[[str], None]
 ) -> list[Callable[[], None]]:
-    from app.shopfloor.announcements import Announcer
-    from app.shopfloor.web_hook import WebHook
+    from app.extras.office.announcements import Announcer
+    from app.extras.office.web_hook import WebHook
 
     told: list[Told] = []
     if table.hook:
@@ -83,7 +84,7 @@ def _announcer(
     if table.mqtt and find_spec("paho") is None:
         tell(MISSING.format(what="[announce] mqtt", package="paho-mqtt"))
     elif table.mqtt:
-        from app.shopfloor.mqtt_broker import MqttBroker
+        from app.extras.office.mqtt_broker import MqttBroker
 
         told.append(MqttBroker(table))
     announcer = Announcer(look.status, told)
@@ -102,9 +103,9 @@ def _page(
     if find_spec("waitress") is None:
         tell(MISSING.format(what="[status_page]", package="waitress"))
         return []
-    from app.shopfloor.agent_desk import asked_agent
-    from app.shopfloor.other_desks import OtherDesks, asked
-    from app.shopfloor.status_page import StatusPage
+    from app.extras.office.agent_desk import asked_agent
+    from app.extras.office.other_desks import OtherDesks, asked
+    from app.extras.office.status_page import StatusPage
 
     try:
         listening = listening_at(table.bind, table.port)
@@ -119,7 +120,8 @@ def _page(
         return asked_agent(address) if address in table.told_by_agents else asked(address)
 
     others = OtherDesks((*table.others, *table.told_by_agents), ask)
-    pictures = office_pictures(machine, shapes_at_hand, partial(kept_part, journal.setting))
+    kept = partial(kept_part, journal.setting)
+    pictures = thumbnails(machine, shapes_at_hand, kept, size=PICTURE)
     part = PartPicture(lambda: desk.session.now.job, still, pictures)
     alarm = AlarmDrawing(desk.recorder.folder if desk.recorder is not None else None, still)
 
@@ -155,7 +157,7 @@ class PartPicture:
         return png if job is not None and job.digest == digest else b""
 
     def _png(self, job: Job) -> bytes:
-        from app.shopfloor.png_file import png_of
+        from app.extras.office.png_file import png_of
 
         found = self.draw(job, lambda _done: None)
         return png_of(found.pixels, found.width, found.height) if found is not None else b""
@@ -183,7 +185,7 @@ class AlarmDrawing:
 
 
 def _drawing(record: Path) -> bytes:
-    from app.shopfloor.alarm_drawing import alarm_drawing
+    from app.extras.office.alarm_drawing import alarm_drawing
     from core.records.record_errors import RecordError
     from core.records.record_file import open_record
 

@@ -41,7 +41,7 @@ class PageServer:
         from waitress.server import create_server
         from waitress.task import ThreadedTaskDispatcher
 
-        from app.compose.page_connections import MOST, Connection
+        from app.extras.office.page_connections import MOST, Connection
 
         self._loop, self._close_all = wasyncore.loop, wasyncore.close_all
         self._between, self._clock = between, clock

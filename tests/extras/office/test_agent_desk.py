@@ -10,8 +10,8 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 import pytest
 
 from app.compose.machine_files import parse_machine
-from app.shopfloor.agent_desk import asked_agent, current_address, streams_answer
-from core.machine.shop_network_tables import StatusPageTable
+from app.extras.office.agent_desk import asked_agent, current_address, streams_answer
+from core.extras.office.shop_network_tables import StatusPageTable
 from core.table_schema import MachineFileError
 from resources import machine_file
 from tests.texts import text

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 import paho.mqtt.client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode
 
-from app.shopfloor.announcements import HELD, Announcement
-from app.shopfloor.network_causes import NO_ANSWER, Trouble, cause_of
+from app.extras.office.announcements import HELD, Announcement
+from app.extras.office.network_causes import NO_ANSWER, Trouble, cause_of
 from app.shopfloor.status_file import Status
-from core.machine.shop_network_tables import AnnounceTable, broker_of
+from core.extras.office.shop_network_tables import AnnounceTable, broker_of
 from core.message import Message
 
 if TYPE_CHECKING:

@@ -25,14 +25,14 @@ import paho.mqtt.client as mqtt
 import pytest
 from paho.mqtt.enums import CallbackAPIVersion
 
-from app.shopfloor import mqtt_broker
-from app.shopfloor.announcements import HELD, Announcement, Announcer, happened
-from app.shopfloor.mqtt_broker import MqttBroker
-from app.shopfloor.network_causes import Trouble, cause_of
-from app.shopfloor.other_desks import asked
+from app.extras.office import mqtt_broker
+from app.extras.office.announcements import HELD, Announcement, Announcer, happened
+from app.extras.office.mqtt_broker import MqttBroker
+from app.extras.office.network_causes import Trouble, cause_of
+from app.extras.office.other_desks import asked
+from app.extras.office.web_hook import WebHook, posted
 from app.shopfloor.status_file import Status
-from app.shopfloor.web_hook import WebHook, posted
-from core.machine.shop_network_tables import AnnounceTable
+from core.extras.office.shop_network_tables import AnnounceTable
 from tests.free_port import free_port
 from tests.texts import text
 
@@ -434,7 +434,7 @@ class Logged(logging.Handler):
 @pytest.fixture
 def logged() -> Iterator[Logged]:
     heard = Logged()
-    logger = logging.getLogger("app.shopfloor.mqtt_broker")
+    logger = logging.getLogger("app.extras.office.mqtt_broker")
     logger.addHandler(heard)
     yield heard
     logger.removeHandler(heard)

@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 from app.desk.translation import tr
-from app.shopfloor.other_desks import Answer, answered
-from app.shopfloor.status_page import OtherDesk
+from app.extras.office.other_desks import Answer, answered
+from app.extras.office.status_page import OtherDesk
 
 _MOST = 1_000_000  # bytes
 _UNAVAILABLE = "UNAVAILABLE"

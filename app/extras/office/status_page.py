@@ -14,6 +14,7 @@ from datetime import datetime
 from html import escape
 from http import HTTPStatus
 from http.cookies import CookieError, SimpleCookie
+from pathlib import Path
 from string import Template
 from typing import TYPE_CHECKING, Any
 from urllib.parse import parse_qs
@@ -22,11 +23,11 @@ from zlib import crc32
 from app.desk.formats import duration
 from app.desk.translation import spoken, tr
 from app.shopfloor.status_file import Status
-from resources import status_page_file
 
 if TYPE_CHECKING:
     from _typeshed.wsgi import StartResponse, WSGIEnvironment
 
+_FILES = Path(__file__).with_name("page")
 COOKIE = "turndesk-"  # and the port: a browser keeps one name for all ports of a computer
 _NO_ORDERS = b"this page takes no orders\n"
 _NO_TOKEN = b"open this page with ?token= and the token of the machine file\n"
@@ -84,7 +85,7 @@ class StatusPage:
 
     def page(self) -> tuple[str, bytes]:
         """The whole page."""
-        frame = Template(status_page_file("page.html").decode())
+        frame = Template((_FILES / "page.html").read_text("utf-8"))
         page = frame.substitute(
             title=escape(self.machine),
             language=spoken(),
@@ -103,11 +104,11 @@ class StatusPage:
 
     def style(self) -> tuple[str, bytes]:
         """How it looks."""
-        return "text/css; charset=utf-8", status_page_file("page.css")
+        return "text/css; charset=utf-8", (_FILES / "page.css").read_bytes()
 
     def script(self) -> tuple[str, bytes]:
         """What looks again, and says when nobody answers any more."""
-        return "text/javascript; charset=utf-8", status_page_file("page.js")
+        return "text/javascript; charset=utf-8", (_FILES / "page.js").read_bytes()
 
     def json(self) -> tuple[str, bytes]:
         """The same for other desks and for scripts."""

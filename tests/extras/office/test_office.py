@@ -22,21 +22,21 @@ from PySide6.QtGui import QImage
 
 from app.compose.machine_answers import check_ports
 from app.compose.machine_files import load_machine, parse_machine
-from app.compose.office import AlarmDrawing, PartPicture
-from app.compose.page_connections import DEADLINE, MOST, MOST_OF_ONE
-from app.compose.page_server import PageServer, listening_at
+from app.extras.office import other_desks
+from app.extras.office.alarm_drawing import HIGH, alarm_drawing
+from app.extras.office.office import AlarmDrawing, PartPicture
+from app.extras.office.office_status import STOPS, OfficeLook
+from app.extras.office.other_desks import OtherDesks, asked, status_address
+from app.extras.office.page_connections import DEADLINE, MOST, MOST_OF_ONE
+from app.extras.office.page_server import PageServer, listening_at
+from app.extras.office.png_file import png_of
+from app.extras.office.status_page import OtherDesk, StatusPage
 from app.programs.preview import Thumbnail
 from app.screen.language import speak_in
-from app.shopfloor import other_desks
-from app.shopfloor.alarm_drawing import HIGH, alarm_drawing
 from app.shopfloor.floor_reading import FloorReader
-from app.shopfloor.office_status import STOPS, OfficeLook
-from app.shopfloor.other_desks import OtherDesks, asked, status_address
-from app.shopfloor.png_file import png_of
 from app.shopfloor.status_file import Status
-from app.shopfloor.status_page import OtherDesk, StatusPage
 from core.executor.snapshot import Snapshot, State
-from core.machine.shop_network_tables import StatusPageTable, broker_of
+from core.extras.office.shop_network_tables import StatusPageTable, broker_of
 from core.ports import DriverError
 from core.records.record import Record, channels_of
 from core.store.part_cycles import StopRow

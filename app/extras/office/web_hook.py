@@ -12,10 +12,10 @@ from http.client import HTTPException
 from urllib.error import HTTPError, URLError
 from urllib.request import HTTPRedirectHandler, Request
 
-from app.shopfloor.announcements import HELD, Announcement
-from app.shopfloor.network_causes import Trouble, cause_of, host_of, one_line
+from app.extras.office.announcements import HELD, Announcement
+from app.extras.office.network_causes import Trouble, cause_of, host_of, one_line
+from app.extras.office.timed_http import Clock, timed_opener
 from app.shopfloor.status_file import Status
-from app.shopfloor.timed_http import Clock, timed_opener
 from core.message import Message
 
 _PATIENCE = 5.0  # s
