@@ -315,9 +315,6 @@ def raw_at(data: object, path: str) -> object:
 # --- tables that drivers add ------------------------------------------------------------------------------
 
 
-AT_PENDANT = "pendant."  # begins the address of a button or wheel of a pendant, which no backend knows
-
-
 @dataclass(frozen=True, slots=True)
 class FileReading:
     """A machine file of which the tables are read: what a driver may look at for its own rules and values."""
@@ -327,7 +324,8 @@ class FileReading:
     axes: tuple[str, ...]  # of the machine
     terminals: Mapping[str, str]  # of its inputs and outputs, by path: io.in.start → where it is wired
     tables: tuple[str, ...]  # paths of the tables of drivers that are there
-    at_pendant: Mapping[str, str]  # what of them is not wired, but at a pendant
+    elsewhere: Mapping[str, str]  # inputs at a device that no backend knows, such as a pendant, by path
+    prefixes: tuple[str, ...]  # that begin the addresses at such devices
 
     def raw(self, path: str) -> object:
         """What stands in the file at a path, read or not; None: nothing."""
@@ -337,7 +335,7 @@ class FileReading:
         """The terminals of its pots and wheels that are wired, by path."""
         paths = (f"io.analog.{name}.at" for name in self.names("io.analog"))
         said = {path: self.values.text(path) for path in paths if self.values.has(path)}
-        return {path.removesuffix(".at"): at for path, at in said.items() if not at.startswith(AT_PENDANT)}
+        return {path.removesuffix(".at"): at for path, at in said.items() if not at.startswith(self.prefixes)}
 
     def names(self, path: str) -> list[str]:
         """The keys of a table whose names are of the owner's choice."""
@@ -389,6 +387,7 @@ class Driver:
     can be stopped at an angle. ``count_rate`` the counts
     per second that it takes on an axis. ``terminal`` makes two ways to write one terminal equal, None for
     what is no address of this driver; ``inputs`` are the addresses that an input may have, in their order.
+    ``prefix`` begins the addresses at a device of its own, which no backend knows.
     """
 
     tables: tuple[DriverTable, ...]
@@ -398,6 +397,7 @@ class Driver:
     count_rate: float = inf
     terminal: Callable[[FileReading, str], object] | None = None
     inputs: Callable[[], Iterator[str]] | None = None
+    prefix: str = ""
 
 
 def expected_table(path: str, raw: object) -> Finding:

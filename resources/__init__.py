@@ -1,4 +1,4 @@
-"""What the product ships besides code: machine files, sample programs, fonts, the page for the office."""
+"""What the product ships besides code: machine files, sample programs, fonts."""
 
 from __future__ import annotations
 
@@ -25,8 +25,3 @@ def machine_path(name: str) -> Path:
 def hal_file(name: str) -> Path:
     """Where a shipped HAL file is, such as ``gt75-hal.hal``: LinuxCNC reads it itself."""
     return _HERE / "machines" / name
-
-
-def status_page_file(name: str) -> bytes:
-    """A file of the page for the office, such as ``page.html``. Raises FileNotFoundError."""
-    return (_HERE / "status_page" / name).read_bytes()

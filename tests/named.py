@@ -13,8 +13,14 @@ _FOLDERS = (ROOT / "tests", ROOT / "tests" / "drivers")
 
 
 def named_in(text: str) -> list[tuple[str, str]]:
-    """(file, test) of every reference in a text, each once."""
-    return sorted(set(NAMED.findall(text)))
+    """(file, test) of every reference in a text, each once, but those of features that are left out."""
+    return sorted({(file, test) for file, test in NAMED.findall(text) if not is_left_out(file)})
+
+
+def is_left_out(path: str) -> bool:
+    """Return whether a path belongs to an optional feature whose folders are deleted."""
+    name = re.search(r"\bextras/(\w+)", path)
+    return name is not None and not (ROOT / "app" / "extras" / name.group(1)).exists()
 
 
 def file_of(file: str) -> Path | None:

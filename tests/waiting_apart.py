@@ -24,6 +24,8 @@ WAIT = (
     STORIES,
     "tests/killed/",
     "tests/shopfloor/",
+    "tests/extras/mtconnect/",
+    "tests/extras/office/",
     "tests/drivers/feeder/",
     "tests/drivers/grblhal/",
     "tests/drivers/hal/",

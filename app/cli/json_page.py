@@ -8,8 +8,9 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from app.cli.json_keys import OUTPUTS
-from app.shopfloor.json_keys import EVENT, FILE, OFFICE
-from core.json_key import Key
+from app.compose.extra import extras
+from app.shopfloor.json_keys import FILE
+from core.json_key import Key, Output
 from core.page_contents import anchor_of
 from core.store.table_keys import RUNS_FILE, TABLES, TableKeys
 
@@ -49,15 +50,6 @@ _STATUS = """
 change and at least every ten seconds. If the file is older than 30 seconds, TurnDesk is no longer
 running.
 """
-_OFFICE = """
-The office page, which [status_page] configures, serves this object at `/status.json`. MQTT
-publishes it as a retained message at `TOPIC/state`. `TOPIC/available` is `online` or `offline`,
-without JSON.
-"""
-_EVENT = """
-MQTT publishes each event at `TOPIC/event` as a message that is not retained. The web hook receives
-the same object by POST, with `Content-Type: application/json`.
-"""
 _STORE = """
 The store is the SQLite file `turndesk.db` in the data folder. Open it read-only while TurnDesk
 runs. `turndesk store export DIR` writes each table below that names an export file as a CSV file
@@ -83,7 +75,7 @@ def _contents() -> Iterator[str]:
         yield f"- [{title}](#{anchor_of(title)})"
         below = {
             "Commands": [each.command for each in OUTPUTS],
-            "Shop floor": list(_FLOOR),
+            "Shop floor": [each.command for each in _FLOOR],
             "Store": [table.name for table in TABLES],
         }
         yield from (f"  - [{_code(name, title)}](#{anchor_of(name)})" for name in below.get(title, ()))
@@ -100,17 +92,16 @@ def _commands() -> Iterator[str]:
         yield from ("", f"### `{each.command}`", "", *_wrapped(each.purpose), "", *_table(each.keys))
 
 
-_FLOOR = {
-    "The file status.json": (_STATUS, FILE),
-    "The office web page and the MQTT state message": (_OFFICE, OFFICE),
-    "MQTT and webhook events": (_EVENT, EVENT),
-}
+_FLOOR = (
+    Output("The file status.json", _STATUS, FILE),
+    *(each for extra in extras().values() for each in extra.floor_outputs()),
+)
 
 
 def _shop_floor() -> Iterator[str]:
     yield from ("", "## Shop floor")
-    for title, (text, declared) in _FLOOR.items():
-        yield from ("", f"### {title}", text, *_table(declared))
+    for each in _FLOOR:
+        yield from ("", f"### {each.command}", each.purpose, *_table(each.keys))
 
 
 def _store() -> Iterator[str]:

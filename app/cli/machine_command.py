@@ -1,4 +1,4 @@
-"""``turndesk machine``: is a machine file good, does everything in it answer, and what is told of it?"""
+"""``turndesk machine``: is a machine file good, and does everything in it answer?"""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ import signal
 import sys
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from datetime import UTC, datetime
+from importlib import import_module
 from types import FrameType
 from typing import TYPE_CHECKING
 
 from app.cli.machine_hal import add_hal_parser, write_hal
 from app.cli.who_changes import COMMAND_LINE, add_as_option, who_changes
+from app.compose.extra import action_modules
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError, as_command_error
 from core.access.access_table import Act
 from core.message import Message
@@ -47,10 +48,8 @@ def add_parser(subparsers: SubParsers) -> None:
     accept.add_argument("file", metavar="FILE")
     add_as_option(accept)
     add_hal_parser(actions)
-    model = actions.add_parser(
-        "mtconnect", help="print the device model (Devices.xml) for an MTConnect agent"
-    )
-    model.add_argument("file", metavar="FILE")
+    for module in action_modules().values():
+        import_module(module).add_parser(actions)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -61,8 +60,10 @@ def run(args: argparse.Namespace) -> int:
         return write_hal(args)
     if args.action == "accept":
         return accept(args.file, args)
-    acts = {"peer": play, "mtconnect": write_model}
-    return acts[args.action](args.file)
+    if args.action == "peer":
+        return play(args.file)
+    status: int = import_module(action_modules()[args.action]).run(args)
+    return status
 
 
 # --- check -----------------------------------------------------------------------------------------------
@@ -234,23 +235,6 @@ def _counted(changes: int) -> str:
     if not changes:
         return "no changes"
     return "1 change" if changes == 1 else f"{changes} changes"
-
-
-# --- mtconnect -------------------------------------------------------------------------------------------
-
-
-def write_model(file: str) -> int:
-    """Writes ``Devices.xml`` of a machine file to stdout. Raises CommandError."""
-    from app.compose.machine_setup import read_machine
-    from app.compose.shop_floor import device_model, told_to_agents
-    from core.ports import DriverError
-
-    machine = read_machine(file)
-    with as_command_error(DriverError):
-        sys.stdout.write(device_model(machine, datetime.now(UTC)))
-    if not told_to_agents(machine):
-        sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false, so no agent can find the adapter\n")
-    return EXIT_OK
 
 
 # --- peer: the other end of a bus that has no hardware on it ---------------------------------------------

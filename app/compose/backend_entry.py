@@ -11,6 +11,7 @@ from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError, MachinePorts
 
 if TYPE_CHECKING:
+    from app.compose.check_rows import Row
     from app.desk.station_hands import StationPanel
     from drivers.feeder.feeder_server import Driven
 
@@ -31,12 +32,18 @@ Play = Callable[
 
 @dataclass(frozen=True, slots=True)
 class Connected:
-    """The ports of a machine. ``panel``: the station on the screen, None where the machine has its own."""
+    """The ports of a machine. ``panel``: the station on the screen, None where the machine has its own.
+
+    ``more_rows`` are rows of ``turndesk machine check`` that follow the station. ``measured`` lists those of
+    them, and the inputs beside the backend's own, whose values hardware reports.
+    """
 
     ports: MachinePorts
     panel: StationPanel | None
     set_input: Callable[[str, bool], None] | None  # of a simulated machine
     close: Callable[[], None]
+    more_rows: Callable[[], Iterable[Row]] = tuple
+    measured: Callable[[], Iterable[str]] = tuple
 
 
 @dataclass(frozen=True, slots=True)

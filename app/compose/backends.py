@@ -1,6 +1,6 @@
 """From a machine file to ports: in this process, or through the feeder's.
 
-Feeder and pendant are loaded by the machines that have them: everybody waits for what a start loads.
+The feeder is loaded by the machines that have it: everybody waits for what a start loads.
 """
 
 from __future__ import annotations
@@ -8,20 +8,26 @@ from __future__ import annotations
 import sys
 
 from app.compose.backend_entry import Connected, backend_of, has_inverter, played
+from app.compose.extra import extras
 from core.machine.machine_model import Machine
 from core.ports import Clock
 
 FEEDER = sys.platform != "win32"  # elsewhere a simulated machine lives in the control's own process
-PENDANT = "pendant"  # its table
 
 
 def connect(machine: Machine, clock: Clock) -> Connected:
     """Everything the executor needs. Raises DriverError for what does not answer."""
-    if PENDANT not in machine.hardware.tables:
-        return _connected(machine, clock)
-    from app.compose.pendant_wire import wired, with_pendant
+    connected = _connected(wired(machine), clock)
+    for extra in extras().values():
+        connected = extra.connect(machine, connected)
+    return connected
 
-    return with_pendant(machine, _connected(wired(machine), clock))
+
+def wired(machine: Machine) -> Machine:
+    """Return the machine as its backend is wired: without the inputs that optional features provide."""
+    for extra in extras().values():
+        machine = extra.wired(machine)
+    return machine
 
 
 def _connected(machine: Machine, clock: Clock) -> Connected:

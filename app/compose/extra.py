@@ -14,15 +14,17 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
+    from app.compose.backend_entry import Connected
     from app.compose.check_rows import Answers
     from app.compose.journal import Journal
     from app.desk.desk import Desk
     from app.desk.page_description import PageEntry
+    from core.executor.snapshot import Snapshot
     from core.json_key import Output
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-NAMES = ("sharing", "analyses", "scheduler", "shapes", "drawings")
+NAMES = (*("pendant", "mtconnect", "office", "sharing", "analyses", "scheduler", "shapes", "drawings"),)
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -40,19 +42,33 @@ class Extra:
     ``drawings`` are the endings of drawings from which this feature makes programs: the list of programs
     shows them. ``editor_panel`` is the dotted name of a subclass of ``EditorPanel`` that writes lines in
     the place of the editor's text.
+
+    ``machine_actions`` lists the actions of ``turndesk machine``, each with a module
+    ``app.extras.NAME.ACTION_command``. ``tables_follow`` is the table of the machine file that the tables of
+    this feature follow; empty: they are the last ones.
     """
 
     needs: Sequence[str] = ()
     commands: Mapping[str, str] = {}
+    machine_actions: Sequence[str] = ()
     pages: Sequence[PageEntry] = ()
     threads: Mapping[str, str] = {}
     proof_workers = ""
     drawings: Sequence[str] = ()
     editor_panel: str = ""
+    tables_follow: str = ""
 
     def machine_tables(self) -> Sequence[Driver]:
         """Return the tables that this feature adds to the machine file."""
         return ()
+
+    def wired(self, machine: Machine) -> Machine:
+        """Return the machine as its backend is wired: without the inputs that this feature provides."""
+        return machine
+
+    def connect(self, machine: Machine, connected: Connected) -> Connected:
+        """Add what this feature provides to the ports of a connected machine."""
+        return connected
 
     def attach(self, desk: Desk, machine: Machine, journal: Journal | None) -> None:
         """Attach the models of this feature to the desk; without a ``journal`` nothing is saved."""
@@ -66,12 +82,24 @@ class Extra:
         ``tell`` reports a reason why the feature cannot run to the prompt line and to the event log.
         """
 
+    def start_headless(
+        self, machine: Machine, snapshot: Callable[[], Snapshot], tell: Tell, *, paced: bool
+    ) -> Close | None:
+        """Start what this feature does during a run without a screen, and return a function that ends it.
+
+        ``paced``: the run takes as long as on the machine. ``tell`` prints why the feature cannot run.
+        """
+
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
         """Return the declared outputs of --json of this feature, by the output that they follow."""
         return {}
 
     def words(self) -> Sequence[str]:
         """Return texts of the screen that look like names in the source, for the list of all texts."""
+        return ()
+
+    def floor_outputs(self) -> Sequence[Output]:
+        """Return what this feature sends to the shop network; ``command`` is the title of its section."""
         return ()
 
     def check(self, machine: Machine, answers: Answers) -> None:
@@ -92,10 +120,19 @@ def extras() -> Mapping[str, Extra]:
 
 def command_modules() -> Mapping[str, str]:
     """Return the module of each subcommand that an optional feature adds."""
+    return _modules(lambda extra: extra.commands)
+
+
+def action_modules() -> Mapping[str, str]:
+    """Return the module of each action of ``turndesk machine`` that an optional feature adds."""
+    return _modules(lambda extra: extra.machine_actions)
+
+
+def _modules(words_of: Callable[[Extra], Iterable[str]]) -> Mapping[str, str]:
     return {
-        command: f"app.extras.{name}.{command}_command"
+        word: f"app.extras.{name}.{word}_command"
         for name, extra in extras().items()
-        for command in extra.commands
+        for word in words_of(extra)
     }
 
 

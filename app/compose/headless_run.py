@@ -8,9 +8,9 @@ from dataclasses import replace
 
 from app.compose.backend_entry import Connected, played
 from app.compose.backends import connect, real_time
+from app.compose.extra import extras
 from app.compose.headless_lives import HeadlessLives
 from app.compose.journal import Journal
-from app.compose.machine_status import AGENTS
 from app.compose.run_log import EventLog
 from app.desk.command_errors import CommandError, as_command_error
 from app.desk.data_folder import RECORDS, data_folder
@@ -74,7 +74,10 @@ def headless(
         tools = tools_of(machine.kind)
         lives = HeadlessLives(journal, executor.post, say, tools) if journal is not None else None
         recorder.start()
-        close_floor = _shop_floor(machine, executor, say, paced=paced)
+        started = [
+            extra.start_headless(machine, lambda: executor.snapshot, say, paced=paced)
+            for extra in extras().values()
+        ]
         try:
             palms, see = _palms(machine, connected, say), lives.see if lives is not None else None
             yield HeadlessRun(executor, clock, say, progress, palms, see)
@@ -83,7 +86,9 @@ def headless(
             if lives is not None:
                 lives.close()
             recorder.close()
-            close_floor()
+            for close in started:
+                if close is not None:
+                    close()
 
 
 def _paced(machine: Machine, realtime: bool) -> bool:
@@ -156,24 +161,6 @@ def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:
             ),
             "job-interrupted",
         )
-
-
-def _shop_floor(
-    machine: Machine, executor: Executor, say: Callable[[str], None], *, paced: bool
-) -> Callable[[], None]:
-    """A run that takes less than its time would tell the shop floor of parts that nobody has made."""
-
-    if AGENTS not in machine.hardware.tables:
-        return lambda: None
-    from app.compose.shop_floor import open_shop_floor, told_to_agents
-
-    def tell(why: str) -> None:
-        say(Message("no data is reported to the shop floor: {why}", why=why))
-
-    if told_to_agents(machine) and not paced:
-        tell("this run is faster than real time; use --realtime")
-        return lambda: None
-    return open_shop_floor(machine, lambda: executor.snapshot, tell)
 
 
 def _palms(machine: Machine, connected: Connected, say: Callable[[str], None]) -> Callable[[], None] | None:

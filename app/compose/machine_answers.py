@@ -2,34 +2,25 @@
 
 from __future__ import annotations
 
-import socket
 from collections.abc import Iterator
 
-from app.compose.backend_entry import backend_of, has_inverter, played
-from app.compose.backends import connect, real_time
+from app.compose.backend_entry import Connected, backend_of, has_inverter, played
+from app.compose.backends import connect, real_time, wired
 from app.compose.check_rows import FAILED, MISSING, NOT_CHECKED, Answers, Row
 from app.compose.extra import extras
-from app.compose.page_server import listening_at
-from app.compose.pendant_wire import wired
-from app.compose.shop_floor import try_shop_floor
 from core.key_declaration import Unit, shown
 from core.machine.machine_model import Axis, Machine
-from core.machine.shop_network_tables import AnnounceTable, StatusPageTable, broker_of
 from core.message import Message
 from core.ports import Clock, DriverError, MachinePorts, StationState
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.grblhal.grblhal_config import HARDWARE
 from drivers.inverter.inverter_spindle import InverterSpindle
 from drivers.inverter.inverter_table import InverterTable
-from drivers.mtconnect.mtconnect_table import MtconnectTable
-from drivers.pendant.pendant_station import PendantStation
-from drivers.pendant.pendant_table import PendantModel
 from drivers.waiting import RealClock, StepClock
 
 _SETTLED = 0.3  # s in which pots and inputs have been heard that are told only now and then
 _LONGEST = 3.0  # s for inputs that are read in turns
 _LOOK = 0.02  # s
-_BROKER_PATIENCE = 2.0  # s
 
 
 def check_ports(machine: Machine) -> Answers:
@@ -46,57 +37,9 @@ def check_ports(machine: Machine) -> Answers:
     except DriverError as error:
         answers.rows.append(Row(_blamed(machine), "", "no answer", str(error)))
         answers.trouble.append(str(error))
-    _ask_shop_floor(machine, answers)
-    _ask_office(machine, answers)
     for extra in extras().values():
         extra.check(machine, answers)
     return answers
-
-
-def _ask_shop_floor(machine: Machine, answers: Answers) -> None:
-    """Whether agents would find the adapter, and take its model."""
-    model = machine.hardware.table(MtconnectTable)
-    if model is None or not model.enabled:
-        return
-    at = f"{model.bind}:{model.port}"
-    try:
-        try_shop_floor(machine, model)
-    except DriverError as error:
-        answers.rows.append(Row("mtconnect", at, "fault", str(error)))
-        answers.trouble.append(str(error))
-    else:
-        answers.rows.append(Row("mtconnect", at, "ok", Message("device {device}", device=model.device)))
-
-
-def _ask_office(machine: Machine, answers: Answers) -> None:
-    """Whether browsers would find the status page, and whether the broker is there."""
-    page, told = machine.hardware.table(StatusPageTable), machine.hardware.table(AnnounceTable)
-    if page is not None and page.enabled:
-        try:
-            listening_at(page.bind, page.port).close()
-        except DriverError as error:
-            answers.rows.append(Row("status_page", f"{page.bind}:{page.port}", "fault", str(error)))
-            answers.trouble.append(str(error))
-        else:
-            who = (
-                "the status page can be opened only with its token"
-                if page.token
-                else ("the status page can be opened only from this computer")
-            )
-            answers.rows.append(Row("status_page", f"{page.bind}:{page.port}", "ok", who))
-    if told is not None and told.mqtt:
-        try:
-            socket.create_connection(broker_of(told.mqtt), _BROKER_PATIENCE).close()
-        except OSError as error:
-            why = Message(
-                "[announce] {mqtt}: {cause}; check the address and port of the broker",
-                mqtt=told.mqtt,
-                cause=error.strerror or error,
-            )
-            answers.rows.append(Row("announce", told.mqtt, "no answer", why))
-            answers.trouble.append(why)
-        else:
-            answers.rows.append(Row("announce", told.mqtt, "ok", told.topic))
 
 
 def _ask_nodes(machine: Machine, clock: Clock, answers: Answers) -> None:
@@ -116,8 +59,8 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
     try:
         if real_time(machine):
             _settle(clock, connected.ports, machine)
-        measured = _measured(machine, connected.ports)
-        rows = [row.checked(measured) for row in _rows(machine, connected.ports)]
+        measured = _measured(machine, connected)
+        rows = [row.checked(measured) for row in _rows(machine, connected)]
         told = {row.detail for row in rows}
         answers.warnings += [each for each in connected.ports.warnings if each not in told]
     finally:
@@ -134,15 +77,12 @@ def _ask_ports(machine: Machine, clock: Clock, answers: Answers) -> None:
     ]
 
 
-def _measured(machine: Machine, ports: MachinePorts) -> set[str]:
+def _measured(machine: Machine, connected: Connected) -> set[str]:
     """Return the names of the rows whose values hardware has reported."""
-    backend = wired(machine)
-    names = set() if played(machine) else set(backend_of(machine).measured(backend))
+    names = set() if played(machine) else set(backend_of(machine).measured(wired(machine)))
     if has_inverter(machine):
         names.add("spindle")
-    if isinstance(ports.station, PendantStation) and not ports.station.away:
-        names |= {"pendant", *(f"input {name}" for name in machine.inputs.keys() - backend.inputs.keys())}
-    return names
+    return names.union(connected.measured())
 
 
 def _settle(clock: Clock, ports: MachinePorts, machine: Machine) -> None:
@@ -161,7 +101,8 @@ def _blamed(machine: Machine) -> str:
     return "spindle" if word == "feeder" and has_inverter(machine) else word
 
 
-def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
+def _rows(machine: Machine, connected: Connected) -> Iterator[Row]:
+    ports = connected.ports
     sample, terminals = ports.axes.sample(), _terminals(machine)
     for name, homed, at in zip(ports.axes.axes, sample.homed, sample.actual, strict=True):
         detail = Message(
@@ -173,10 +114,7 @@ def _rows(machine: Machine, ports: MachinePorts) -> Iterator[Row]:
     yield _spindle(machine, ports)
     station = ports.station.snapshot()
     yield Row("station", "", "E-stop" if station.estop else "ok", _hands(station))
-    model = machine.hardware.table(PendantModel)
-    if model is not None and isinstance(ports.station, PendantStation):
-        away = ports.station.away
-        yield Row("pendant", model.device, "no answer" if away else "ok", away)
+    yield from connected.more_rows()
     for kind, states in (("input", ports.io.inputs()), ("output", ports.io.outputs())):
         for name, on in states.items():
             yield Row(

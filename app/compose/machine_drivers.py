@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.compose.extra import extras
-from core.machine import desk_tables, machine_file, setter_table, shop_network_tables
+from app.compose.extra import extras, insert_after
+from core.machine import desk_tables, machine_file, setter_table
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.table_schema import Driver, Finding, MachineFileError, written
@@ -12,13 +12,11 @@ from drivers.grblhal import grblhal_table
 from drivers.hal import hal_table
 from drivers.hal.boards import board_table
 from drivers.inverter import inverter_table
-from drivers.mtconnect import mtconnect_table
-from drivers.pendant import pendant_table
 from drivers.simulated import simulated_table
 
 # What each driver adds to the file, in the order in which a machine file's owner is told of them. The module
 # that puts a backend together stands in ``backend_entry``, where no table has to be loaded for it.
-DRIVERS: tuple[Driver, ...] = (
+_OWN_DRIVERS = (
     simulated_table.DRIVER,
     canopen_table.DRIVER,
     inverter_table.DRIVER,
@@ -27,11 +25,14 @@ DRIVERS: tuple[Driver, ...] = (
     board_table.DRIVER,
     desk_tables.DRIVER,
     setter_table.DRIVER,
-    pendant_table.DRIVER,
-    mtconnect_table.DRIVER,
-    shop_network_tables.DRIVER,
     desk_tables.BACKUP_DRIVER,
-    *(table for extra in extras().values() for table in extra.machine_tables()),
+)
+DRIVERS: tuple[Driver, ...] = tuple(
+    insert_after(
+        _OWN_DRIVERS,
+        lambda driver: driver.tables[0].path,
+        [(each, extra.tables_follow) for extra in extras().values() for each in extra.machine_tables()],
+    )
 )
 
 

@@ -21,8 +21,7 @@ from app.compose.journal import Journal
 from app.compose.kinematics_chain import kinematics_of
 from app.compose.machine_in_use import remember_machine
 from app.compose.machine_setup import read_machine
-from app.compose.machine_status import AGENTS, keep_status
-from app.compose.office import open_office
+from app.compose.machine_status import keep_status
 from app.compose.scope_desk import give_scope
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import (
@@ -75,15 +74,9 @@ SUPERVISED = {
     "store-writer": "STORAGE OF OFFSETS AND COUNTS",
     "daily-backup": "DAILY BACKUP",
     "status": "STATUS.JSON",
-    "mtconnect": "MTCONNECT",
     "program-file": "PROGRAM FILE MONITOR",
-    "pendant": "PENDANT CONNECTION",
-    "status-page": "STATUS PAGE",
-    "announcer": "MQTT AND WEBHOOK",
     "inverter": "INVERTER CONNECTION",
     "recorder": "SCOPE RECORDER",
-    "paho-mqtt-client-": "MQTT BROKER CONNECTION",  # the name that paho gives its thread
-    "web-hook": "WEBHOOK",
     WATCHDOG: "CONTROL WATCHDOG",
     **{name: what for extra in extras().values() for name, what in extra.threads.items()},
 }
@@ -148,9 +141,10 @@ def _thread_ended(desk: Desk, journal: Journal, name: str) -> None:
 
 
 def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> list[Callable[[], None]]:
-    """Told to agents, and kept in the status file; what is in the way goes to the prompt line and to the log.
+    """Start the status file, the daily backup, and what reports to the shop floor or to other desks.
 
-    A folder that another TurnDesk has, as its store tells, has that one's status. Returns what closes them.
+    What prevents it goes to the prompt line and to the log. A folder that another TurnDesk has, as its store
+    tells, has that one's status. Returns what closes them.
     """
 
     def tell(why: str) -> None:
@@ -162,14 +156,9 @@ def _shop_floor(desk: Desk, executor: Executor, journal: Journal) -> list[Callab
 
     assert desk.lathe is not None
     open_ones = list[Callable[[], None]]()
-    if AGENTS in desk.lathe.hardware.tables:
-        from app.compose.shop_floor import open_shop_floor
-
-        open_ones.append(open_shop_floor(desk.lathe, snapshot, tell))
     if not journal.trouble or journal.waiting:
         open_ones.append(keep_status(desk.lathe, snapshot, data_folder()))
         open_ones.append(_daily_backup(desk, desk.lathe, journal))
-    open_ones.append(open_office(desk, desk.lathe, journal, tell))
     started = [extra.start(desk, journal, tell) for extra in extras().values()]
     open_ones += [close for close in started if close is not None]
     return open_ones

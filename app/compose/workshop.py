@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from app.compose.desk_part import KeptOfProgram, PartDesk, Shapes, nothing_kept
 from app.compose.journal import Journal
 from app.compose.stored_offsets import Offsets, setup_with
-from app.compose.thumbnails import Thumbnails
+from app.compose.thumbnails import HIGH, WIDE, Thumbnails
 from app.desk.data_folder import data_folder
 from app.desk.desk import Desk
 from app.desk.latest import Watch
@@ -171,18 +171,12 @@ def part_comparer(machine: Machine, shapes: Shapes = dict, kept: KeptOfProgram =
     return PartDesk(machine, shapes, kept, _read).compared
 
 
-def thumbnails(machine: Machine, shapes: Shapes, kept: KeptOfProgram) -> DrawThumbnail:
-    """Draws the finished part of a job small, and keeps it in the data folder."""
-    return _part_pictures(machine, shapes, kept).of
-
-
-def office_pictures(machine: Machine, shapes: Shapes, kept: KeptOfProgram) -> DrawThumbnail:
-    """The same, as large as a telephone shows it."""
-    return replace(_part_pictures(machine, shapes, kept), wide=OFFICE_WIDE, high=OFFICE_HIGH).of
-
-
-def _part_pictures(machine: Machine, shapes: Shapes, kept: KeptOfProgram) -> Thumbnails:
-    return Thumbnails(data_folder() / "thumbnails", machine, PartDesk(machine, shapes, kept, _read))
+def thumbnails(
+    machine: Machine, shapes: Shapes, kept: KeptOfProgram, size: tuple[int, int] = (WIDE, HIGH)
+) -> DrawThumbnail:
+    """Draws the finished part of a job in a size in pixels, and keeps it in the data folder."""
+    parts = PartDesk(machine, shapes, kept, _read)
+    return Thumbnails(data_folder() / "thumbnails", machine, parts, *size).of
 
 
 def drawer(machine: Machine) -> Draw:
@@ -265,7 +259,6 @@ def give_part(desk: Desk, machine: Machine, keep: Persistence) -> None:
 # --- SEARCHTO of a desk on this machine.
 
 
-OFFICE_WIDE, OFFICE_HIGH = 600, 400  # pixels
 _MODEST = 0.2  # of the manual rapid: legs within the part
 
 

@@ -32,6 +32,17 @@ PLACES: dict[Code, str] = {
 _NOWHERE = {_SERVO: SYSTEM, _TRAVEL: MOTION}  # where the alarm names no axis
 
 
+def condition_keys(machine: Machine) -> frozenset[str]:
+    """Return the names of all conditions of a machine: those of each axis with its own drive, and the others.
+
+    On a lathe the spindle is the C axis too, unless C has its own drive.
+    """
+    turns_c = machine.kind == "lathe" and machine.spindle_is_c
+    axes = [axis.name for axis in machine.axes if not (turns_c and axis.rotary and axis.name == "C")]
+    own = (f"{name}{kind}" for name in axes for kind in (_SERVO, _TRAVEL))
+    return frozenset((*own, SPINDLE, COMMS, LOGIC, SYSTEM, MOTION))
+
+
 def conditions_of(snapshot: Snapshot, keys: frozenset[str]) -> Mapping[str, tuple[Condition, ...]]:
     """What is active of each of these conditions; nothing of it: normal.
 
@@ -182,8 +193,8 @@ class FloorReader:
     """Looks at snapshots of one machine; ``clock`` in s tells when they no longer come."""
 
     machine: Machine
-    keys: frozenset[str]  # of the conditions that there are
     clock: Callable[[], float]
+    _keys: frozenset[str] = field(init=False)  # of the conditions that there are
     _execution: Execution = field(init=False)
     _pulse: SilenceWatch = field(default_factory=SilenceWatch)
 
@@ -191,6 +202,7 @@ class FloorReader:
         wired = self.machine.inputs
         terminals = (each.terminal for each in wired.values() if each.terminal)
         self._execution = Execution(frozenset((*wired, *terminals)))
+        self._keys = condition_keys(self.machine)
 
     def look(self, snapshot: Snapshot) -> Reading:
         """What is true now. Of a control that is silent nothing is known but that."""
@@ -209,7 +221,7 @@ class FloorReader:
         }
         stop = (snapshot.stop,) if snapshot.stop is not None else ()
         alarms = (*snapshot.alarms, *stop)
-        return Reading(values, conditions_of(snapshot, self.keys), snapshot.interrupted, alarms)
+        return Reading(values, conditions_of(snapshot, self._keys), snapshot.interrupted, alarms)
 
     def _axes(self, snapshot: Snapshot) -> dict[str, Value]:
         """Machine frame, X a radius; an axis that has no home does not know where it is."""

@@ -27,15 +27,7 @@ from core.machine.machine_reading import Reading
 from core.machine.mill_kinematics import KinematicsReading
 from core.machine.station_rules import wrong_jog, wrong_palms, wrong_wheel
 from core.message import Message
-from core.table_schema import (
-    AT_PENDANT,
-    Driver,
-    FileReading,
-    Finding,
-    MachineFileError,
-    joined,
-    written_openly,
-)
+from core.table_schema import Driver, FileReading, Finding, MachineFileError, joined, written_openly
 
 _MOST_BYTES = 16 * 1024 * 1024
 _NONE = (-math.inf, math.inf)
@@ -87,9 +79,10 @@ def parse_machine(text: str, source: str, drivers: Sequence[Driver]) -> Machine:
     reading = Reading(data, drivers)
     untold = [*machine_reading.fill(reading)]
     axes, said = _axis_names(reading), signal_rules.terminals(reading)
-    buttons = {path: at for path, at in said.items() if at.startswith(AT_PENDANT)}
-    wired = {path: at for path, at in said.items() if path not in buttons}
-    file = FileReading(data, reading.values, axes, wired, tables_there(data, drivers), buttons)
+    prefixes = tuple(driver.prefix for driver in drivers if driver.prefix)
+    elsewhere = {path: at for path, at in said.items() if at.startswith(prefixes)}
+    wired = {path: at for path, at in said.items() if path not in elsewhere}
+    file = FileReading(data, reading.values, axes, wired, tables_there(data, drivers), elsewhere, prefixes)
     added = DriverReading(file, drivers)
     rotary = [name for name in axes if name not in machine_tables.SLIDES[reading.kind]]
     kinematics = KinematicsReading(data, reading.values, reading.kind, rotary)

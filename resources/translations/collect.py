@@ -66,8 +66,8 @@ ROOMS = (
     *("core/quality", "core/records", "core/extras", "core/access"),
     "app/shopfloor",
 )
-# Where much is told to programs: what is marked alone.
-MARKED_ALONE = frozenset({"app/shopfloor"})
+# Where much is told to programs or to the console: what is marked alone.
+MARKED_ALONE = ("app/shopfloor/", "app/extras/office/")
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
 APART = frozenset(
     {
@@ -85,8 +85,16 @@ APART = frozenset(
             "run_without_screen.py",
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
-        *("shared_database.py", "sharing/version_record.py", "share_command.py", "place_answer.py"),
+        *(
+            "shared_database.py",
+            "proof_scheduler.py",
+            "sharing/version_record.py",
+            "share_command.py",
+            "place_answer.py",
+        ),
         *("sharing_table.py", "sharing_check.py", "share_json_keys.py"),
+        *("mtconnect/shop_floor.py", "mtconnect_command.py", "mtconnect_check.py", "pendant_wire.py"),
+        *("office/office.py", "office_check.py", "page_server.py", "shop_network_tables.py"),
         *("profile_command.py", "profile_json_keys.py", "shapes_json_keys.py"),
         *("shapes_command.py", "shape_steps.py"),
         *("screen/pdf_pages.py", "lines/sinumerik_lines.py", "lines/bar_lines.py"),
@@ -254,7 +262,9 @@ def texts() -> dict[str, str]:
         loud = room.startswith(LOUD)
         for path in sorted((HOUSE / room).rglob("*.py")):
             if not _is_apart(path, room):
-                for text in _texts_of_file(path, loud, room in MARKED_ALONE):
+                place = path.relative_to(HOUSE).as_posix()
+                marked_alone = place.startswith(MARKED_ALONE) and path.name != "extra.py"
+                for text in _texts_of_file(path, loud, marked_alone):
                     found.setdefault(text, str(path.relative_to(HOUSE)))
     tables = [*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_extras()]
     return {**dict.fromkeys(tables, ""), **found}
@@ -274,7 +284,8 @@ def console_texts(shown: Container[str]) -> dict[str, str]:
 
 def _is_apart(path: Path, room: str) -> bool:
     named = {path.name, f"{path.parent.name}/{path.name}"}
-    return bool(named & APART) or (room == COMPOSING and path.name not in COMPOSED)
+    driver = path.parent.name == "driver"  # of an optional feature
+    return driver or bool(named & APART) or (room == COMPOSING and path.name not in COMPOSED)
 
 
 def _texts_of_file(path: Path, loud: bool, marked_alone: bool) -> list[str]:

@@ -14194,87 +14194,87 @@
       <translation>VERSIONES EN OTROS CONTROLES</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/agent_desk.py" />
+      <location filename="app/extras/office/agent_desk.py" />
       <source>the MTConnect agent reports that the machine is unavailable</source>
       <translation>el agente MTConnect indica que la máquina no está disponible</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/announcements.py" />
+      <location filename="app/extras/office/announcements.py" />
       <source>part {number} of {program} is finished</source>
       <translation>pieza {number} de {program} terminada</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/mqtt_broker.py" />
+      <location filename="app/extras/office/mqtt_broker.py" />
       <source>the MQTT broker {host}:{port}</source>
       <translation>el broker MQTT {host}:{port}</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/network_causes.py" />
+      <location filename="app/extras/office/network_causes.py" />
       <source>the server certificate cannot be verified: {verify_message}</source>
       <translation>el certificado del servidor no se puede verificar: {verify_message}</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/other_desks.py" />
+      <location filename="app/extras/office/other_desks.py" />
       <source>access token rejected</source>
       <translation>token de acceso rechazado</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/other_desks.py" />
+      <location filename="app/extras/office/other_desks.py" />
       <source>no response for {age} s</source>
       <translation>sin respuesta desde hace {age} s</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/other_desks.py" />
+      <location filename="app/extras/office/other_desks.py" />
       <source>the server at this address is not a TurnDesk server</source>
       <translation>el servidor de esta dirección no es un servidor TurnDesk</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/other_desks.py" />
+      <location filename="app/extras/office/other_desks.py" />
       <source>the server returns HTTP status {answer}</source>
       <translation>el servidor devuelve el estado HTTP {answer}</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/status_page.py" />
+      <location filename="app/extras/office/status_page.py" />
       <source>Following errors recorded before the last alarm</source>
       <translation>Errores de seguimiento registrados antes de la última alarma</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/status_page.py" />
+      <location filename="app/extras/office/status_page.py" />
       <source>Last cycle</source>
       <translation>Último ciclo</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/status_page.py" />
+      <location filename="app/extras/office/status_page.py" />
       <source>Last stops</source>
       <translation>Últimos paros</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/status_page.py" />
+      <location filename="app/extras/office/status_page.py" />
       <source>NO RESPONSE: the values below are out of date</source>
       <translation>SIN RESPUESTA: los valores de abajo no están actualizados</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/status_page.py" />
+      <location filename="app/extras/office/status_page.py" />
       <source>Program</source>
       <translation>Programa</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/status_page.py" />
+      <location filename="app/extras/office/status_page.py" />
       <source>The part made by the loaded program</source>
       <translation>La pieza del programa cargado</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/status_page.py" />
+      <location filename="app/extras/office/status_page.py" />
       <source>Time remaining</source>
       <translation>Tiempo restante</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/web_hook.py" />
+      <location filename="app/extras/office/web_hook.py" />
       <source>, redirected to {to}; set [announce] hook to that address</source>
       <translation>, redirigido a {to}; ponga esa dirección en [announce] hook</translation>
     </message>
     <message>
-      <location filename="app/shopfloor/web_hook.py" />
+      <location filename="app/extras/office/web_hook.py" />
       <source>HTTP response {code} {reason}{place}</source>
       <translation>respuesta HTTP {code} {reason}{place}</translation>
     </message>

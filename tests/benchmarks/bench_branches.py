@@ -27,7 +27,7 @@ ROOMS = {
     "drivers": (
         "tests/drivers",
         *(f"tests/machine/test_{name}.py" for name in (
-            "board_table", "encoder", "hal_table", "hardware", "pendant_and_setter", "spindle_c", "wheel"
+            "board_table", "encoder", "hal_table", "hardware", "spindle_c", "wheel"
         )),  # their tables of the machine file
     ),
 }  # fmt: skip

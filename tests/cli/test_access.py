@@ -10,6 +10,7 @@ import time
 import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import closing
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -164,7 +165,7 @@ for _each in of_extras("options"):
 READS = {
     "expand", "trace", "alarms", "parts", "shift", "scope", "offsets show", "offsets history",
     "store verify", "access list", "access table", "jobs list", "share status", "share compare",
-    "machine check", "machine hal", "machine mtconnect", "serial ports", "serial send", "setup completion",
+    "machine check", "machine hal", "serial ports", "serial send", "setup completion",
     "store upgrade",  # what the screen does when it starts
     "store backup", "store export", "setup save",  # to a file of whoever asks; the store stays as it is
     "machine peer",  # the other end of a machine that is simulated
@@ -172,6 +173,8 @@ READS = {
     "access reset",  # for those whose PINs are forgotten, at the machine's own keyboard
 }  # fmt: skip
 """Commands that change nothing here that a level could guard."""
+for _each in sorted((Path(__file__).parents[1] / "extras").glob("*/options.py")):
+    READS |= getattr(import_module(f"tests.extras.{_each.parent.name}.options"), "READS", set())
 
 
 def commands(parser: argparse.ArgumentParser, *words: str) -> Iterator[tuple[str, bool]]:

@@ -14,8 +14,8 @@ OF_THE_REST = (
     *("core.records", "core.store.store", "core.quality"),
     *("core.interpreter.klartext", "core.interpreter.sinumerik", "core.part.milled_part"),
     *("drivers.canopen.canopen_machine", "drivers.grblhal.grblhal_machine", "drivers.hal.hal_machine"),
-    *("drivers.inverter.inverter_spindle", "drivers.mtconnect.mtconnect_adapter"),
-    *("drivers.pendant.pendant_station", "drivers.simulators", "drivers.setpoint_queue"),
+    *("drivers.inverter.inverter_spindle", "app.extras.mtconnect.driver.mtconnect_adapter"),
+    *("app.extras.pendant.driver.pendant_station", "drivers.simulators", "drivers.setpoint_queue"),
 )
 OF_PYTHON = (
     *("concurrent", "difflib", "hashlib", "importlib.resources", "logging", "random", "socket", "sqlite3"),

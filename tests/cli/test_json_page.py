@@ -13,7 +13,6 @@ import pytest
 import resources
 from app.cli import json_keys
 from app.cli.json_page import document, main
-from app.compose.extra import NAMES, extras
 from app.shopfloor import json_keys as floor_keys
 from core.access.access_table import Level
 from core.access.pins import hashed
@@ -29,13 +28,14 @@ from core.store.table_keys import RUNS_FILE
 from core.store.table_keys import TABLES as PUBLIC
 from tests.cli.conftest import Turndesk
 from tests.cli.json_output import declared_alone, whole
+from tests.whole_product import WHOLE_PRODUCT
 
 PAGE = Path(__file__).parents[2] / "docs" / "json.md"
 PROGRAMS = Path(resources.__file__).parent / "programs"
 HEAD = "G90G94F300\nM03S600\nT1\n"
 
 
-@pytest.mark.skipif(len(extras()) < len(NAMES), reason="the page describes all optional features")
+@WHOLE_PRODUCT
 def test_the_page_is_up_to_date() -> None:
     assert PAGE.read_text("utf-8") == document(), "python -m app.cli.json_page docs/json.md"
 
@@ -47,7 +47,7 @@ def test_the_command_writes_the_page(tmp_path: Path) -> None:
 
 def test_meanings_are_sentences() -> None:
     tables = [each.keys for each in json_keys.OUTPUTS] + [table.columns for table in PUBLIC]
-    for key in (key for table in (*tables, floor_keys.FILE, floor_keys.EVENT) for key in table):
+    for key in (key for table in (*tables, floor_keys.FILE) for key in table):
         assert key.meaning.endswith("."), key
         assert "|" not in key.meaning, key
 

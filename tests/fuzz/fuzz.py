@@ -25,8 +25,8 @@ from tests.fuzz.fuzz_target import faults_in
 NAMES = (
     "omniturn", "klartext", "sinumerik", "machine file", "offsets file", "tools file", "inputs file",
     "profile of a blank", "record", "ring", "setup archive", "EDS file", "serial transfer",
-    "controller's lines", "SHDR lines", "grblHAL's wire", "CAN frames", "store file",
-    *(name for each in of_extras("fuzz_targets") for name in each.NAMES),
+    "controller's lines", "grblHAL's wire", "CAN frames", "store file",
+    *(name for kind in ("fuzz_files", "fuzz_targets") for each in of_extras(kind) for name in each.NAMES),
 )  # fmt: skip
 _EDGES = re.compile(r"cov: (\d+)")
 _ENDS = 25.0  # times its time, by the clock, after which a target hangs

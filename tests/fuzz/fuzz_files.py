@@ -278,5 +278,5 @@ FILES: tuple[Target, ...] = (
     Target("setup archive", _setups, _setup, (CommandError,), _sealed),
     Target("EDS file", _dictionaries, _dictionary, (DriverError,)),
     STORE,
-    *(target for each in of_extras("fuzz_targets") for target in each.TARGETS),
+    *(target for each in of_extras("fuzz_files") for target in each.TARGETS),
 )

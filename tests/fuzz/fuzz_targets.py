@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import socket
 from collections.abc import Iterable, Iterator
 
 from core.ports import DriverError
 from drivers.grblhal.grblhal_report import read_identity, read_report
 from drivers.inverter.modbus_rtu import answer_in
-from drivers.mtconnect.agent_links import Active, AgentLink, LostError, clean, text_of, values_line
-from drivers.mtconnect.mtconnect_items import Category, DataItem
 from drivers.serial_line import LineSettings
 from drivers.transfer.program_framing import Incoming, Phase, TransferSettings, outgoing
+from tests.extras.modules import of_extras
 from tests.fuzz.fuzz_files import FILES
 from tests.fuzz.fuzz_target import Target
 from tests.fuzz.fuzz_wires import CAN, GRBLHAL
@@ -44,32 +42,7 @@ def _lines(data: bytes) -> Iterable[str]:
     return ()
 
 
-# --- lines of SHDR ----------------------------------------------------------------------------------------
-
-_ITEM = DataItem("block", Category.EVENT, "BLOCK")
-
-
-def _shdr(data: bytes) -> Iterable[str]:
-    """Texts of programs and alarms go out as values; bytes of an agent come in."""
-    texts = data.decode("utf-8", "surrogateescape").split("\0")
-    for text in texts:
-        line = values_line("t", {"block": text_of(_ITEM, text), "program": clean(text)})
-        if line.count("\n") != 1 or line.count("|") != 4 or "--multiline--" in line:
-            raise AssertionError(f"two values have not stayed two: {line!r}")
-        line.encode("utf-8")
-        clean(Active("FAULT", text, text).text)
-    ours, theirs = socket.socketpair()
-    with ours, theirs:
-        ours.setblocking(False)
-        link = AgentLink(ours, 10.0)
-        for at in range(0, len(data), 1000):
-            theirs.sendall(data[at : at + 1000])
-            link.read(float(at))
-            link.mind(float(at))
-    return ()
-
-
-TARGETS = (
+TARGETS: tuple[Target, ...] = (
     *FILES,
     Target(
         "serial transfer",
@@ -91,9 +64,7 @@ TARGETS = (
         _lines,
         (DriverError,),
     ),
-    Target(
-        "SHDR lines", lambda: (b"* PING\n", b'G90 X1|2\0"x"\0--multiline--\0\xff\xfe'), _shdr, (LostError,)
-    ),
+    *(target for each in of_extras("fuzz_targets") for target in each.TARGETS),
     GRBLHAL,
     CAN,
 )

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+import app.extras
+import core.extras
 import core.machine
 import drivers
 from app.compose.machine_file_page import document, main, number, references
@@ -17,6 +19,7 @@ from core.key_declaration import Field, Kind, file_key, keys_of
 from core.machine.machine_tables import TABLES_OF_A_LATHE
 from core.page_contents import anchor_of
 from core.table_schema import TableReference
+from tests.whole_product import WHOLE_PRODUCT
 
 PAGE = Path(__file__).parents[2] / "docs" / "integrator" / "machine-file.md"
 TABLES = tuple(references())
@@ -30,11 +33,13 @@ def _declared(value: object) -> tuple[Field, ...]:
 
 def _modules() -> Iterator[str]:
     yield from (f"core.machine.{each.name}" for each in pkgutil.iter_modules(core.machine.__path__))
-    for each in pkgutil.walk_packages(drivers.__path__, "drivers."):
-        if each.name.endswith(("_table", "_nodes", "_rules")):
-            yield each.name
+    for package in (drivers, app.extras, core.extras):
+        for each in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if each.name.endswith(("_table", "_tables", "_nodes", "_rules")):
+                yield each.name
 
 
+@WHOLE_PRODUCT
 def test_the_page_is_up_to_date() -> None:
     command = "python -m app.compose.machine_file_page docs/integrator/machine-file.md"
     assert PAGE.read_text("utf-8") == document(), command
@@ -95,7 +100,7 @@ def test_purposes_are_sentences() -> None:
         "| `refresh_ms` | ms | 50 to 10000 | *none* |",
         '| `safe` | – | true, false, `"keep"` | **required** |',
         '| `eol` | – | `"\\r\\n"`, `"\\n"`, `"\\r"` | `"\\r\\n"` |',
-        "| `port` | – | 1 to 65535 | 7878 |",
+        "| `seed` | – | 0 to 2147483648 | 1 |",
     ],
 )
 def test_units_ranges_and_defaults_are_those_of_the_file(row: str) -> None:

@@ -1,6 +1,6 @@
 """Pictures of the pages that a browser shows: ``python -m tests.screen.browser_pictures OUT``.
 
-The shift report and the page for the office, of a morning that this script has made up, by Chromium.
+The shift report of a morning that this script has made up, and pages of optional features, by Chromium.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
@@ -21,20 +21,10 @@ from typing import NamedTuple
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
-from app.compose.machine_files import load_machine
-from app.compose.page_server import PageServer, listening_at
-from app.compose.stored_offsets import read_offsets, setup_with
-from app.compose.workshop import office_pictures, samples
-from app.desk.kept_part import kept_part
 from app.quality.shift_figures import shift_figures
 from app.quality.shift_page import shift_html
 from app.quality.shift_times import Shift
 from app.screen.language import speak_in
-from app.shopfloor.png_file import png_of
-from app.shopfloor.status_file import Status
-from app.shopfloor.status_page import OtherDesk, StatusPage
-from core.executor.job import make_job
-from core.language.source import load_source
 from core.store.event_log import log
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
@@ -67,21 +57,6 @@ MORNING = (
 )
 ALARM = "102 FOLLOWING ERROR: X STANDS 0.31 mm OFF"
 SIZES = (0, 1, 2, 4, 6, 11, 12, 13)  # ten thousandths of an inch off, of every tenth part
-STATUS: Status = {
-    "updated": "2026-03-02T09:41:07+00:00", "machine": "GT-75", "available": True, "program": "bushing.nc",
-    "state": "RUNNING", "waiting_for": "", "line": 26, "made": 57, "time_left": 31.0, "last_cycle": 49.4,
-    "spindle_load": 35, "stop": "", "alarms": [],
-    "stops": [
-        {"at": "2026-03-02T08:57:31+00:00", "reason": "BETWEEN CYCLES", "seconds": 1500},
-        {"at": "2026-03-02T08:24:02+00:00", "reason": "FEED HOLD", "seconds": 95},
-    ],
-}  # fmt: skip
-OTHERS = (
-    OtherDesk(
-        "lathe2:8317", {"machine": "LATHE 2", "state": "FEED HOLD", "program": "grooves.nc", "made": 41}
-    ),
-    OtherDesk("LATHE 3 (lathe3:8317)", trouble="Connection refused"),
-)
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -103,8 +78,10 @@ def main(argv: list[str] | None = None) -> int:
         page = Path(folder) / "shift.html"
         page.write_text(shift_report(Path(folder)), encoding="utf-8")
         _taken(browser, page.as_uri(), args.out / "shift.png", (740, 830))
-        for address in _office():
-            _taken(browser, address, args.out / "office.png", (740, 1060))
+        for pages in sorted((Path(__file__).parents[1] / "extras").glob("*/browser_pages.py")):
+            served = import_module(f"tests.extras.{pages.parent.name}.browser_pages").served()
+            for name, address, size in served:
+                _taken(browser, address, args.out / name, size)
     del app
     return 0
 
@@ -145,21 +122,6 @@ def _fill(store: Store) -> None:
         store.write(partial(measured_parts.add_reading, row=row)).result()
     store.write(partial(tool_lives.set_limits, row=LifeRow(1, 200, 0.0, 0.9, True))).result()
     store.write(lambda c: tool_lives.set_use(c, 1, 184, 4020.0)).result()
-
-
-def _office() -> Iterator[str]:
-    """The address of the page, while it is served."""
-    machine = load_machine(None)
-    setup = setup_with(machine, read_offsets(samples() / "offsets.toml"))
-    job = make_job(load_source(samples() / "bushing.nc"), setup)
-    drawn = office_pictures(machine, dict, partial(kept_part, lambda _key: None))(job, lambda _done: None)
-    part = png_of(drawn.pixels, drawn.width, drawn.height) if drawn is not None else b""
-    page = StatusPage("GT-75", "", lambda: STATUS, lambda: OTHERS, lambda: part, lambda: b"")
-    listening = listening_at("127.0.0.1", 0)
-    server = PageServer(page, listening, lambda: None)
-    server.start()
-    yield f"http://127.0.0.1:{listening.getsockname()[1]}/"
-    server.close()
 
 
 def _taken(browser: str, address: str, path: Path, size: tuple[int, int]) -> None:

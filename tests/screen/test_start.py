@@ -20,7 +20,7 @@ print(*read)
 desk.close()
 """
 OF_LATER = (
-    *("app.editor", "app.programs.program_list", "app.quality.shift_page", "app.scope", "app.shapes"),
+    *("app.editor", "app.programs.program_list", "app.extras.quality.shift_page", "app.scope", "app.shapes"),
     *(
         "app.extras.sharing.sharing_model",
         "app.special.setup_sheet",
@@ -29,8 +29,12 @@ OF_LATER = (
     ),
     *("core.extras.drawings.profile_program", "core.interpreter.klartext", "core.interpreter.sinumerik"),
     *("core.interpreter.omniturn.loops_and_subroutines", "drivers.canopen.canopen_machine", "drivers.feeder"),
-    *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.pendant.pendant_station"),
-    *("drivers.mtconnect.mtconnect_adapter", "drivers.transfer"),
+    *(
+        "drivers.hal.hal_machine",
+        "drivers.inverter.inverter_spindle",
+        "app.extras.pendant.driver.pendant_station",
+    ),
+    *("app.extras.mtconnect.shop_floor", "app.extras.office.office", "drivers.transfer"),
     *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.extras.shapes"),
     *("ezdxf", "svgelements"),
 )

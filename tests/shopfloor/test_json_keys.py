@@ -1,33 +1,22 @@
-"""Keys of status.json, of the office page and of events are exactly those of ``docs/json.md``."""
+"""Keys of status.json are exactly those of ``docs/json.md``."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import replace
-from datetime import UTC, datetime
 from pathlib import Path
 
 from app.compose.machine_files import shipped_machine
-from app.shopfloor.announcements import Announcement
 from app.shopfloor.floor_reading import FloorReader
-from app.shopfloor.json_keys import EVENT, FILE, OFFICE
-from app.shopfloor.office_status import OfficeLook
-from app.shopfloor.status_file import Status, StatusFile, status_of
+from app.shopfloor.json_keys import FILE
+from app.shopfloor.status_file import StatusFile, status_of
 from core.alarms import CATALOGUE
 from core.executor.snapshot import Alarm, InterruptedJob, Snapshot, State
-from core.store.production.part_cycles import StopRow
 from tests.cli.json_output import declared_alone
 
 INTERRUPTED = InterruptedJob(
     "pin.nc", "job", "text", 4, 7, 7, 1, 12, ("X", "Z"), (0.0, 0.0), "E-STOP", "2026-11-23T08:00:00Z"
 )
-
-
-def office(snapshot: Snapshot) -> Status:
-    reader = FloorReader(shipped_machine("gt75"), frozenset({"Xservo", "system"}), lambda: 0.0)
-    stops = [StopRow("s", "", "pin.nc", "2026-11-23T08:00:00Z", 10.0, "FEED HOLD")]
-    now = datetime(2026, 11, 23, 9, tzinfo=UTC)
-    return OfficeLook("GT-75", reader, lambda: snapshot, lambda _: 42.0, lambda: stops, lambda: now).status()
 
 
 def shots() -> list[Snapshot]:
@@ -37,14 +26,8 @@ def shots() -> list[Snapshot]:
     return [running, replace(running, state=State.FAULT, alarms=(alarm,), interrupted=INTERRUPTED)]
 
 
-def test_the_office_page_and_events() -> None:
-    told = [office(shot) for shot in shots()]
-    declared_alone([json.loads(json.dumps(status)) for status in told], OFFICE)
-    declared_alone([json.loads(Announcement("alarm", "X", status).json()) for status in told], EVENT)
-
-
 def test_status_json(tmp_path: Path) -> None:
-    reader = FloorReader(shipped_machine("gt75"), frozenset({"Xservo", "system"}), lambda: 0.0)
+    reader = FloorReader(shipped_machine("gt75"), lambda: 0.0)
     values = []
     for number, shot in enumerate(shots()):
         path = tmp_path / f"{number}.json"

@@ -8,8 +8,8 @@ from typing import cast
 
 import pytest
 
-from app.compose.machine_files import load_machine
-from app.shopfloor.floor_reading import PLACES, FloorReader, Value
+from app.compose.machine_files import load_machine, shipped_machine
+from app.shopfloor.floor_reading import PLACES, FloorReader, Value, condition_keys
 from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import AlarmError, alarm_and_reaction, make_alarm
 from core.executor.snapshot import Alarm, Snapshot, State
@@ -45,7 +45,7 @@ AT = Snapshot(
 
 
 def values_of(snapshot: Snapshot, machine: Machine = LATHE) -> Mapping[str, Value]:
-    return FloorReader(machine, KEYS, lambda: 0.0).look(snapshot).values
+    return FloorReader(machine, lambda: 0.0).look(snapshot).values
 
 
 def test_a_machine_in_a_cycle() -> None:
@@ -127,7 +127,7 @@ def test_the_collet_is_interlocked_where_it_must_not_open_at_speed(rpm: float, t
 
 def test_of_a_silent_control_nothing_is_known() -> None:
     now = 100.0
-    reader = FloorReader(LATHE, KEYS, lambda: now)
+    reader = FloorReader(LATHE, lambda: now)
     assert reader.look(AT).available
     now += 0.9
     assert reader.look(AT).available
@@ -141,7 +141,7 @@ def test_of_a_silent_control_nothing_is_known() -> None:
 
 
 def active(snapshot: Snapshot) -> dict[str, tuple[tuple[str, str, str], ...]]:
-    reading = FloorReader(LATHE, KEYS, lambda: 0.0).look(snapshot)
+    reading = FloorReader(LATHE, lambda: 0.0).look(snapshot)
     assert set(reading.conditions) == KEYS
     return {key: found for key, found in reading.conditions.items() if found}
 
@@ -234,3 +234,13 @@ def test_of_a_machine_that_is_not_heard_the_last_figures_are_not_told() -> None:
     unheard = ("Xabs", "Zabs", "Cabs", "Srpm", "Sload", "Fact", "chuck", "door", "endbar", "part", "chuckil")
     assert [key for key in unheard if values[key] is not None] == []
     assert (values["avail"], values["program"], values["line"]) == ("AVAILABLE", "pin.nc", "7")
+
+
+@pytest.mark.parametrize(
+    ("name", "axes"),
+    [("gt75", "XZ"), ("sinumerik-linear", "XZC"), ("ac-table-mill", "XYZAC")],  # on a GT-75 the spindle is C
+)
+def test_each_axis_with_its_own_drive_has_its_own_conditions(name: str, axes: str) -> None:
+    of_machine = KEYS - {"Xtravel", "Ztravel", "Xservo", "Zservo"}
+    of_axes = {f"{axis}{kind}" for axis in axes for kind in ("travel", "servo")}
+    assert condition_keys(shipped_machine(name)) == of_machine | of_axes

@@ -50,9 +50,9 @@ class Sharing(Extra):
         return start_sharing(desk, journal)
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
-        from app.extras.sharing.share_json_keys import OUTPUTS
+        from app.extras.sharing.share_json_keys import FOLLOWS, OUTPUTS
 
-        return {"store verify --json": OUTPUTS}
+        return {FOLLOWS: OUTPUTS}
 
     def check(self, machine: Machine, answers: Answers) -> None:
         from app.extras.sharing.sharing_check import check_sharing

@@ -87,3 +87,5 @@ trouble | string | | Why the version is not published yet; empty if it is publis
     ),
 )
 OUTPUTS = (SHARE_BEGIN, SHARE_STATUS, SHARE_COMPARE, SHARE_TAKE, SHARE_KEEP)
+FOLLOWS = "store verify --json"
+"""The command that the commands of this feature follow in the reference."""

@@ -1,0 +1,314 @@
+"""The adapter of MTConnect, and the device model (``Devices.xml``) with the items that it tells.
+
+Agents come in; every agent gets the whole state and then what changes. Millimetres are sent and
+``nativeUnits`` is left out, so the agent multiplies nothing.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+import selectors
+import socket
+import threading
+import uuid
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+from app.extras.mtconnect.driver.agent_links import (
+    AgentLink,
+    AgentsState,
+    GoneError,
+    LostError,
+    Report,
+    accepted,
+    listening,
+    stamp,
+)
+from app.extras.mtconnect.driver.mtconnect_items import Component, DataItem
+from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
+from core.ports import Clock, DriverError
+
+LOOK = 0.1  # s between two looks at the machine
+MOST = 8  # agents at a time
+_AT_DOOR = 4  # that may wait for the place of one who never pinged
+ENDS = 2.0  # s that closing waits for the thread
+_log = logging.getLogger(__name__)
+
+
+@dataclass(slots=True)
+class Counts:
+    """Since the adapter was opened."""
+
+    accepted: int = 0
+    refused: int = 0  # more than there is room for
+    lost: int = 0
+    ignored: int = 0  # lines that were no PING, of agents that are gone
+
+
+def utc_now() -> datetime:
+    """The time of day of this computer."""
+    return datetime.now(UTC)
+
+
+class Adapter:
+    """``report`` is the machine now, asked ten times a second by the caller of ``turn``. Nothing waits."""
+
+    def __init__(
+        self,
+        settings: MtconnectTable,
+        items: tuple[DataItem, ...],
+        report: Callable[[], Report],
+        clock: Clock,
+        utc: Callable[[], datetime] = utc_now,
+    ) -> None:
+        self._settings, self._report, self._clock, self._utc = settings, report, clock, utc
+        self._sent = AgentsState(items)
+        self._door: socket.socket | None = None
+        self._selector = selectors.DefaultSelector()
+        self._links: list[AgentLink] = []
+        self._next_look = 0.0
+        self.counts = Counts()
+
+    @property
+    def address(self) -> tuple[str, int]:
+        """Where it listens, once it is open."""
+        assert self._door is not None
+        host, port = self._door.getsockname()[:2]
+        return host, port
+
+    @property
+    def agents(self) -> int:
+        """How many are served."""
+        return len(self._served())
+
+    def _served(self) -> list[AgentLink]:
+        return [link for link in self._links if link.waits_since is None]
+
+    def open(self) -> None:
+        """Begin to listen. Raises DriverError where it cannot."""
+        try:
+            self._door = listening(self._settings.bind, self._settings.port)
+        except DriverError:
+            self._selector.close()
+            raise
+        self._selector.register(self._door, selectors.EVENT_READ)
+        self.look()
+
+    def turn(self, patience: float = 0.0) -> None:
+        """Whatever is to be done now; waits at most ``patience`` s, or until the next look, for it."""
+        left = max(self._next_look - self._clock.now(), 0.0)
+        for key, _ in self._selector.select(min(patience, left)):
+            if key.data is None:
+                self._welcome()
+            else:
+                self._serve(key.data)
+        if self._clock.now() >= self._next_look:
+            self.look()
+
+    def close(self) -> None:
+        """Hang up on all agents: they then know by themselves that nothing is known any more."""
+        for link in self._links.copy():
+            self._forget(link)
+        if self._door is not None:
+            self._selector.unregister(self._door)
+            self._door.close()
+            self._door = None
+        self._selector.close()
+
+    def look(self) -> None:
+        """See what is new at the machine, and tell it."""
+        self._next_look = self._clock.now() + LOOK
+        changes = self._sent.changes(self._report(), stamp(self._utc())).encode("utf-8")
+        for link in self._links.copy():
+            self._tell(link, changes)
+
+    def _tell(self, link: AgentLink, data: bytes) -> None:
+        try:
+            link.mind(self._clock.now())
+            if link.waits_since is None:
+                link.put(data)
+                link.flush()
+        except LostError as lost:
+            self._lose(link, lost)
+
+    def _welcome(self) -> None:
+        assert self._door is not None
+        try:
+            wire = accepted(self._door)
+        except OSError:  # gone before it was let in, or no more files: the next turn tries again
+            return
+        if len(self._links) >= MOST + _AT_DOOR:
+            self.counts.refused += 1
+            wire.close()
+            return
+        full = len(self._served()) >= MOST
+        link = AgentLink(wire, self._settings.heartbeat, self._clock.now() if full else None)
+        self._links.append(link)
+        self._selector.register(wire, selectors.EVENT_READ, link)
+        if not full:
+            self._admit(link)
+
+    def _admit(self, link: AgentLink) -> None:
+        link.waits_since = None
+        self.counts.accepted += 1
+        self._tell(link, self._sent.whole(stamp(self._utc())).encode("utf-8"))
+
+    def _make_room(self, link: AgentLink) -> None:
+        """An agent at the door: whoever came first and never pinged gives way to it."""
+        served = self._served()
+        silent = next((other for other in served if not other.pings), None)
+        if len(served) >= MOST and silent is None:
+            self.counts.refused += 1
+            self._forget(link)
+            return
+        if len(served) >= MOST and silent is not None:
+            self._lose(
+                silent, GoneError("the agent never sent a PING, and another agent needs the connection")
+            )
+        self._admit(link)
+
+    def _serve(self, link: AgentLink) -> None:
+        try:
+            link.read(self._clock.now())
+            if link.waits_since is not None and link.pings:
+                self._make_room(link)
+            else:
+                link.flush()
+        except LostError as lost:
+            self._lose(link, lost)
+
+    def _lose(self, link: AgentLink, why: LostError) -> None:
+        self.counts.lost += 1
+        level = logging.INFO if isinstance(why, GoneError) else logging.WARNING
+        _log.log(level, "an MTConnect agent is no longer served: %s; %d lines ignored", why, link.ignored)
+        self._forget(link)
+
+    def _forget(self, link: AgentLink) -> None:
+        self.counts.ignored += link.ignored
+        self._links.remove(link)
+        self._selector.unregister(link.wire)
+        link.wire.close()
+
+
+# --- The thread in which the adapter lives.
+
+
+_BREATH = 0.005  # s between two turns: an agent that floods takes no more than that of this computer
+
+
+class AdapterThread:
+    """Turns the adapter until it is closed. Should it fail, agents are hung up on and so know it."""
+
+    def __init__(self, adapter: Adapter) -> None:
+        self._adapter = adapter
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._keep, name="mtconnect", daemon=True)
+
+    @property
+    def alive(self) -> bool:
+        """Whether it still tells."""
+        return self._thread.is_alive()
+
+    def start(self) -> None:
+        """Open the port, then begin. Raises DriverError where it cannot be opened; no thread is left then."""
+        self._adapter.open()
+        self._thread.start()
+
+    def close(self) -> None:
+        """Hang up, and end the thread; within a tenth of a second."""
+        self._closing.set()
+        if self._thread.is_alive():
+            self._thread.join(ENDS)
+
+    def _keep(self) -> None:
+        try:
+            while not self._closing.wait(_BREATH):
+                self._adapter.turn(LOOK)
+            self._adapter.look()  # how it ended is worth knowing too
+        finally:
+            if not self._closing.is_set():
+                _log.error("there is no shop-floor data any more: a mistake of the control", exc_info=True)
+            self._adapter.close()
+
+
+# --- The device model for the reference agent.
+
+
+VERSION = "2.2"
+NAMESPACE = f"urn:mtconnect.org:MTConnectDevices:{VERSION}"
+_SCHEMA = f"{NAMESPACE} http://schemas.mtconnect.org/schemas/MTConnectDevices_{VERSION}.xsd"
+_XSI = "http://www.w3.org/2001/XMLSchema-instance"
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
+
+
+def devices_xml(device: Component, described: str, at: datetime) -> str:
+    """The whole document. Raises DriverError for a device whose name no agent would take.
+
+    ``described`` is for people. The uuid comes from the device's name, so it is the same at every call.
+    """
+    if not _NAME.fullmatch(device.name):
+        raise DriverError(
+            "[mtconnect] device = {device}: use only letters, digits, ., - and _, and begin with a letter",
+            device=f"{device.name!r}",
+        )
+    root = Element("MTConnectDevices", {"xmlns": NAMESPACE, "xmlns:xsi": _XSI, "xsi:schemaLocation": _SCHEMA})
+    root.append(_header(at))
+    inner = _element(device, device.name, SubElement(root, "Devices"))
+    inner.set("uuid", str(uuid.uuid5(uuid.NAMESPACE_URL, f"urn:turndesk:{device.name}")))
+    description = Element("Description")
+    description.text = described
+    inner.insert(0, description)
+    ElementTree.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _header(at: datetime) -> Element:
+    """An agent fills it with its own figures; the schema wants it to be there."""
+    return Element(
+        "Header",
+        {
+            "creationTime": stamp(at),
+            "sender": "turndesk",
+            "instanceId": "1",
+            "version": f"{VERSION}.0.0",
+            "assetBufferSize": "1024",
+            "assetCount": "0",
+            "bufferSize": "131072",
+            "deviceModelChangeTime": stamp(at),
+        },
+    )
+
+
+def _element(component: Component, device: str, parent: Element) -> Element:
+    """A component with its items, then its parts, as the schema orders them.
+
+    Identifiers begin with the device's name: one agent may have many machines, and no two may be alike.
+    """
+    named = {"id": f"{device}_{component.kind}_{component.name}", "name": component.name}
+    element = SubElement(parent, component.kind, named)
+    if component.items:
+        items = SubElement(element, "DataItems")
+        for item in component.items:
+            SubElement(items, "DataItem", _attributes(item, device))
+    if component.parts:
+        parts = SubElement(element, "Components")
+        for part in component.parts:
+            _element(part, device, parts)
+    return element
+
+
+def _attributes(item: DataItem, device: str) -> dict[str, str]:
+    told = {
+        "category": item.category.value,
+        "id": f"{device}_{item.key}",
+        "name": item.key,
+        "type": item.type,
+        "subType": item.sub_type,
+        "units": item.units,
+        "coordinateSystem": item.frame,
+    }
+    return {name: text for name, text in told.items() if text}

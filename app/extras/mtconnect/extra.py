@@ -1,0 +1,56 @@
+"""Registers the MTConnect adapter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from app.compose.extra import Close, Extra, Tell
+
+if TYPE_CHECKING:
+    from app.compose.check_rows import Answers
+    from app.compose.journal import Journal
+    from app.desk.desk import Desk
+    from core.executor.snapshot import Snapshot
+    from core.machine.machine_model import Machine
+    from core.table_schema import Driver
+
+_TABLE = "mtconnect"  # the adapter is loaded by the machines that have this table
+
+
+class Mtconnect(Extra):
+    """The adapter for MTConnect agents, ``turndesk machine mtconnect``, and [mtconnect]."""
+
+    machine_actions = ("mtconnect",)
+    threads = {"mtconnect": "MTCONNECT"}
+    tables_follow = "setter"
+
+    def machine_tables(self) -> Sequence[Driver]:
+        from app.extras.mtconnect.driver.mtconnect_table import DRIVER
+
+        return (DRIVER,)
+
+    def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
+        if desk.lathe is None or _TABLE not in desk.lathe.hardware.tables:
+            return None
+        from app.extras.mtconnect.shop_floor import open_shop_floor
+
+        return open_shop_floor(desk.lathe, desk.snapshot, tell)
+
+    def start_headless(
+        self, machine: Machine, snapshot: Callable[[], Snapshot], tell: Tell, *, paced: bool
+    ) -> Close | None:
+        if _TABLE not in machine.hardware.tables:
+            return None
+        from app.extras.mtconnect.shop_floor import open_headless
+
+        return open_headless(machine, snapshot, tell, paced=paced)
+
+    def check(self, machine: Machine, answers: Answers) -> None:
+        if _TABLE in machine.hardware.tables:
+            from app.extras.mtconnect.mtconnect_check import check_mtconnect
+
+            check_mtconnect(machine, answers)
+
+
+EXTRA = Mtconnect()

@@ -1,0 +1,36 @@
+"""``turndesk machine mtconnect``: the device model for an MTConnect agent."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+from app.desk.command_errors import EXIT_OK, as_command_error
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+
+
+def add_parser(actions: SubParsers) -> None:
+    """Add the action to ``turndesk machine``."""
+    model = actions.add_parser(
+        "mtconnect", help="print the device model (Devices.xml) for an MTConnect agent"
+    )
+    model.add_argument("file", metavar="FILE")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write ``Devices.xml`` of a machine file to stdout. Raises CommandError."""
+    from app.compose.machine_setup import read_machine
+    from app.extras.mtconnect.shop_floor import device_model, told_to_agents
+    from core.ports import DriverError
+
+    file = args.file
+    machine = read_machine(file)
+    with as_command_error(DriverError):
+        sys.stdout.write(device_model(machine, datetime.now(UTC)))
+    if not told_to_agents(machine):
+        sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false, so no agent can find the adapter\n")
+    return EXIT_OK

@@ -1,0 +1,56 @@
+"""Registers the status page for the office, and the announcements by MQTT and web hook."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from app.compose.extra import Close, Extra, Tell
+
+if TYPE_CHECKING:
+    from app.compose.check_rows import Answers
+    from app.compose.journal import Journal
+    from app.desk.desk import Desk
+    from core.json_key import Output
+    from core.machine.machine_model import Machine
+    from core.table_schema import Driver
+
+_TABLES = frozenset({"status_page", "announce"})  # the office is loaded by the machines that have one of them
+
+
+class Office(Extra):
+    """The status page for the office, and the announcements; [status_page] and [announce]."""
+
+    threads = {
+        "status-page": "STATUS PAGE",
+        "announcer": "MQTT AND WEBHOOK",
+        "paho-mqtt-client-": "MQTT BROKER CONNECTION",  # the name that paho gives its thread
+        "web-hook": "WEBHOOK",
+    }
+    tables_follow = "setter"
+
+    def machine_tables(self) -> Sequence[Driver]:
+        from core.extras.office.shop_network_tables import DRIVER
+
+        return (DRIVER,)
+
+    def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
+        if desk.lathe is None or _TABLES.isdisjoint(desk.lathe.hardware.tables):
+            return None
+        from app.extras.office.office import open_office
+
+        return open_office(desk, desk.lathe, journal, tell)
+
+    def floor_outputs(self) -> Sequence[Output]:
+        from app.extras.office.office_reference import OUTPUTS
+
+        return OUTPUTS
+
+    def check(self, machine: Machine, answers: Answers) -> None:
+        if not _TABLES.isdisjoint(machine.hardware.tables):
+            from app.extras.office.office_check import check_office
+
+            check_office(machine, answers)
+
+
+EXTRA = Office()

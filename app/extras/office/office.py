@@ -1,0 +1,195 @@
+"""The status page for the office, and who is told of ends and stops: put together for a desk."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.compose.stored_offsets import shapes_at_hand
+from app.compose.workshop import thumbnails
+from app.desk.kept_part import kept_part
+from app.desk.prompt_line import UNDER_WAY
+from app.extras.office.office_status import OfficeLook
+from app.extras.office.page_server import PageServer, listening_at
+from app.quality.parts_watch import PartsWatch
+from app.shopfloor.floor_reading import FloorReader
+from core.extras.office.shop_network_tables import AnnounceTable, StatusPageTable
+from core.ports import DriverError
+
+if TYPE_CHECKING:
+    from app.compose.journal import Journal
+    from app.desk.desk import Desk
+    from app.extras.office.announcements import Told
+    from app.extras.office.status_page import OtherDesk
+    from app.programs.preview import DrawThumbnail
+    from core.executor.job import Job
+    from core.executor.snapshot import Snapshot
+    from core.machine.machine_model import Machine
+    from core.store.production.part_cycles import StopRow
+
+PICTURE = 600, 400  # pixels: as large as a telephone shows it
+MISSING = "{what} needs {package}, which is not installed; install turndesk[shop]"
+
+
+def open_office(
+    desk: Desk, machine: Machine, journal: Journal, tell: Callable[[str], None]
+) -> Callable[[], None]:
+    """Begin to serve and to tell, as the machine file wants it; returns how to end it.
+
+    What cannot be had is told, and the machine runs all the same.
+    """
+    look = _look(desk, machine)
+    closing: list[Callable[[], None]] = []
+    page, told = machine.hardware.table(StatusPageTable), machine.hardware.table(AnnounceTable)
+    if page is not None and page.enabled:
+        closing += _page(desk, machine, journal, page, look, tell)
+    if told is not None and (told.mqtt or told.hook):
+        closing += _announcer(told, look, tell)
+
+    def close() -> None:
+        for each in closing:
+            each()
+
+    return close
+
+
+def _look(desk: Desk, machine: Machine) -> OfficeLook:
+    reader = FloorReader(machine, time.monotonic)
+
+    def left(snapshot: Snapshot) -> float:
+        return desk.time_left(snapshot, desk.session.now)
+
+    def stops() -> Sequence[StopRow]:
+        watch = desk.attached(PartsWatch)
+        return watch.book.now.stops if watch is not None else ()
+
+    return OfficeLook(machine.name, reader, desk.snapshot, left, stops, partial(datetime.now, UTC))
+
+
+def _announcer(
+    table: AnnounceTable, look: OfficeLook, tell: Callable[[str], None]
+) -> list[Callable[[], None]]:
+    from app.extras.office.announcements import Announcer
+    from app.extras.office.web_hook import WebHook
+
+    told: list[Told] = []
+    if table.hook:
+        told.append(WebHook(table.hook, table.again))
+    if table.mqtt and find_spec("paho") is None:
+        tell(MISSING.format(what="[announce] mqtt", package="paho-mqtt"))
+    elif table.mqtt:
+        from app.extras.office.mqtt_broker import MqttBroker
+
+        told.append(MqttBroker(table))
+    announcer = Announcer(look.status, told)
+    announcer.start()
+    return [announcer.close]
+
+
+def _page(
+    desk: Desk,
+    machine: Machine,
+    journal: Journal,
+    table: StatusPageTable,
+    look: OfficeLook,
+    tell: Callable[[str], None],
+) -> list[Callable[[], None]]:
+    if find_spec("waitress") is None:
+        tell(MISSING.format(what="[status_page]", package="waitress"))
+        return []
+    from app.extras.office.agent_desk import asked_agent
+    from app.extras.office.other_desks import OtherDesks, asked
+    from app.extras.office.status_page import StatusPage
+
+    try:
+        listening = listening_at(table.bind, table.port)
+    except DriverError as error:
+        tell(str(error))
+        return []
+
+    def still() -> bool:
+        return desk.snapshot().state not in UNDER_WAY
+
+    def ask(address: str) -> OtherDesk:
+        return asked_agent(address) if address in table.told_by_agents else asked(address)
+
+    others = OtherDesks((*table.others, *table.told_by_agents), ask)
+    kept = partial(kept_part, journal.setting)
+    pictures = thumbnails(machine, shapes_at_hand, kept, size=PICTURE)
+    part = PartPicture(lambda: desk.session.now.job, still, pictures)
+    alarm = AlarmDrawing(desk.recorder.folder if desk.recorder is not None else None, still)
+
+    def draw() -> None:
+        part.look()
+        alarm.look()
+
+    page = StatusPage(machine.name, table.token, look.status, others.look, part.png, alarm.svg)
+    server = PageServer(page, listening, draw)
+    others.start()
+    server.start()
+    return [others.close, server.close]
+
+
+@dataclass(slots=True)
+class PartPicture:
+    """The part of the program on the desk as PNG, drawn once a program and never while anything runs."""
+
+    job: Callable[[], Job | None]
+    still: Callable[[], bool]  # whether drawing keeps nobody waiting
+    draw: DrawThumbnail
+    _drawn: tuple[str, bytes] = ("", b"")
+
+    def look(self) -> None:
+        """Draw the part of another program than before; now and then, by one thread."""
+        job = self.job()
+        if job is not None and job.digest != self._drawn[0] and self.still():
+            self._drawn = job.digest, self._png(job)
+
+    def png(self) -> bytes:
+        """Empty: there is no program, it makes no part, or that is not drawn yet."""
+        job, (digest, png) = self.job(), self._drawn
+        return png if job is not None and job.digest == digest else b""
+
+    def _png(self, job: Job) -> bytes:
+        from app.extras.office.png_file import png_of
+
+        found = self.draw(job, lambda _done: None)
+        return png_of(found.pixels, found.width, found.height) if found is not None else b""
+
+
+@dataclass(slots=True)
+class AlarmDrawing:
+    """The scope's newest record of an alarm as a drawing; ``folder`` None: nothing is kept."""
+
+    folder: Path | None
+    still: Callable[[], bool]
+    _drawn: tuple[str, bytes] = ("", b"")
+
+    def look(self) -> None:
+        """Draw another record than before, while nothing runs."""
+        from core.records.record_file import ENDING
+
+        names = sorted(self.folder.glob(f"*-alarm*{ENDING}")) if self.folder is not None else []
+        if names and names[-1].name != self._drawn[0] and self.still():
+            self._drawn = names[-1].name, _drawing(names[-1])
+
+    def svg(self) -> bytes:
+        """Empty: no alarm was recorded, or its record cannot be read."""
+        return self._drawn[1]
+
+
+def _drawing(record: Path) -> bytes:
+    from app.extras.office.alarm_drawing import alarm_drawing
+    from core.records.record import RecordError
+    from core.records.record_file import open_record
+
+    try:
+        return alarm_drawing(open_record(record))
+    except RecordError:
+        return b""

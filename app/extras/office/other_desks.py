@@ -1,0 +1,163 @@
+"""The desks beside this one: their status.json read every few seconds, while somebody looks at the page.
+
+Machines that an MTConnect agent tells of are asked the same way (``agent_desk.py``).
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from http import HTTPStatus
+from http.client import HTTPException
+from typing import NamedTuple
+from urllib.error import HTTPError, URLError
+from urllib.parse import urlsplit, urlunsplit
+from urllib.request import ProxyHandler
+
+from app.desk.translation import tr
+from app.extras.office.network_causes import cause_of, one_line
+from app.extras.office.status_page import NOT_YET, OtherDesk
+from app.extras.office.timed_http import timed_opener
+from core.message import Message
+
+EVERY = 3.0  # s
+LOOKED_AT = 15.0  # s after which nobody looks any more
+STALE = 10.0  # s after which what was heard is not true any more
+_PATIENCE = 2.0  # s
+_LARGEST = 1e9  # of its figures; JSON as Python reads it has Infinity and NaN
+_MOST = 100_000  # bytes
+_ASK = timed_opener(ProxyHandler({}))  # desks of one shop are not asked by way of a proxy
+
+
+def status_address(address: str) -> str:
+    """Where a desk that has its page at ``address`` says its status; the token stays in the question."""
+    parts = urlsplit(address)
+    return urlunsplit(parts._replace(path=parts.path.rstrip("/") + "/status.json", fragment=""))
+
+
+class Answer(NamedTuple):
+    """What the page shows of an answer; ``trouble``: why the machine stands, or why nothing is known."""
+
+    status: Mapping[str, object] | None
+    trouble: str = ""
+
+
+def asked(address: str) -> OtherDesk:
+    """One desk, asked now; waits for two seconds at most."""
+    return answered(address, status_address(address), _MOST, _desk_answer)
+
+
+def _desk_answer(data: bytes) -> Answer:
+    match json.loads(data):
+        case dict() as found:
+            return Answer(found)
+        case other:
+            raise ValueError(other)
+
+
+def answered(address: str, question: str, most: int, read: Callable[[bytes], Answer]) -> OtherDesk:
+    """What ``read`` makes of the answer (bytes, ``most`` of them); it raises ValueError for what is none."""
+    name = _name(address)
+    try:
+        with _ASK.open(question, timeout=_PATIENCE) as answer:
+            status, trouble = read(answer.read(most))
+    except HTTPError as error:
+        return OtherDesk(name, trouble=_refused(error))
+    except (URLError, HTTPException, OSError) as error:
+        return OtherDesk(name, trouble=cause_of(error))
+    except (ValueError, RecursionError):
+        return OtherDesk(name, trouble=tr("the server at this address is not a TurnDesk server"))
+    shown = {key: value for key, value in status.items() if _fits(key, value)} if status is not None else None
+    return OtherDesk(name, shown, one_line(trouble))
+
+
+def _refused(error: HTTPError) -> str:
+    if error.code in {HTTPStatus.FORBIDDEN, HTTPStatus.UNAUTHORIZED}:
+        return tr("access token rejected")
+    return one_line(
+        tr(Message("the server returns HTTP status {answer}", answer=f"{error.code} {error.reason}"))
+    )
+
+
+_TEXTS = frozenset({"machine", "state", "execution", "program", "stop", "waiting_for"})
+_FIGURES = frozenset({"line", "made", "time_left", "last_cycle", "spindle_load"})
+
+
+def _fits(key: str, value: object) -> bool:
+    """Whether the page can show it: nobody knows who answers there."""
+    figure = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _LARGEST
+    return (key in _TEXTS and isinstance(value, str)) or (key in _FIGURES and figure)
+
+
+class OtherDesks:
+    """``look`` tells what was heard last; each is asked by a thread while ``look`` is called.
+
+    One that hangs, or sends its answer letter by letter, keeps nobody from hearing of the others; and what
+    was heard long ago is not told as if it were so now.
+    """
+
+    def __init__(
+        self,
+        addresses: Sequence[str],
+        ask: Callable[[str], OtherDesk] = asked,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._ask, self._clock = ask, clock
+        self._names = {each: _name(each) for each in addresses}  # with that of the machine, once it is known
+        self._heard = {each: self._not_yet(each, clock()) for each in addresses}
+        self._looked = threading.Event()
+        self._closing = threading.Event()
+        self._last = -LOOKED_AT
+        self._threads = [
+            threading.Thread(target=self._keep, args=(each,), name="other-desks", daemon=True)
+            for each in addresses
+        ]
+
+    def start(self) -> None:
+        """Once; without other desks nothing is to be asked."""
+        for thread in self._threads:
+            thread.start()
+
+    def look(self) -> Sequence[OtherDesk]:
+        """What was heard of each."""
+        now = self._clock()
+        if now - self._last > LOOKED_AT:  # nobody has asked meanwhile: that is no silence of theirs
+            self._heard.update({each: self._not_yet(each, now) for each in self._heard})
+        self._last = now
+        self._looked.set()
+        return tuple(_if_fresh(desk, now - at) for at, desk in self._heard.values())
+
+    def close(self) -> None:
+        """The threads end behind the questions that are open; nobody waits for them."""
+        self._closing.set()
+        self._looked.set()
+
+    def _not_yet(self, address: str, now: float) -> tuple[float, OtherDesk]:
+        return now, OtherDesk(self._names[address], state=NOT_YET)
+
+    def _keep(self, address: str) -> None:
+        while not self._closing.is_set():
+            self._looked.wait()
+            heard = self._ask(address)
+            if heard.status is not None and (machine := heard.status.get("machine")):
+                self._names[address] = f"{machine} ({_name(address)})"
+            self._heard[address] = self._clock(), replace(heard, address=self._names[address])
+            if self._clock() - self._last > LOOKED_AT:
+                self._looked.clear()
+            self._closing.wait(EVERY)
+
+
+def _name(address: str) -> str:
+    """Without what only the two desks need to know."""
+    parts = urlsplit(address)
+    return parts.netloc.rpartition("@")[2] + parts.path.rstrip("/")
+
+
+def _if_fresh(desk: OtherDesk, age: float) -> OtherDesk:
+    """Of a desk that was not heard for ``age`` s nobody knows how it is."""
+    if age <= STALE:
+        return desk
+    return OtherDesk(desk.address, trouble=tr(Message("no response for {age} s", age=round(age))))

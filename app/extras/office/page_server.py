@@ -1,0 +1,116 @@
+"""The server of the status page: a socket that listens, and the threads that answer browsers."""
+
+from __future__ import annotations
+
+import errno
+import logging
+import math
+import socket
+import sys
+import threading
+import time
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from core.message import Message
+from core.ports import DriverError
+
+if TYPE_CHECKING:
+    from _typeshed.wsgi import WSGIApplication
+
+_THREADS = 3  # that answer browsers
+_WAITING = 100  # connections that the system holds until they are accepted
+_LONGEST = 16 * 1024  # bytes of a request
+_TURN = 0.5  # s
+ENDS = 2.0  # s that closing waits for its threads
+
+
+class PageServer:
+    """Answers browsers on a socket that listens, until it is closed."""
+
+    def __init__(
+        self,
+        page: WSGIApplication,
+        listening: socket.socket,
+        between: Callable[[], None],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """``between`` is called twice a second by the server's own thread."""
+        from waitress import wasyncore
+        from waitress.server import create_server
+        from waitress.task import ThreadedTaskDispatcher
+
+        from app.extras.office.page_connections import MOST, Connection
+
+        self._loop, self._close_all = wasyncore.loop, wasyncore.close_all
+        self._between, self._clock = between, clock
+        self._channels: dict[int, Any] = {}
+        self._workers = ThreadedTaskDispatcher()
+        self._workers.queue_logger.setLevel(logging.ERROR)  # that one browser waits for another is no warning
+        self._workers.set_thread_count(_THREADS)
+        server: Any = create_server(
+            page,
+            self._channels,
+            _dispatcher=self._workers,
+            sockets=[listening],
+            ident="",
+            connection_limit=2 * MOST,  # never reached: Connection has the limits
+            max_request_body_size=1,
+            max_request_header_size=_LONGEST,
+        )
+        self._server = server
+        server.channel_class = partial(Connection, clock=clock)
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._serve, name="status-page", daemon=True)
+
+    def start(self) -> None:
+        """Once."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """No browser is answered any more."""
+        self._closing.set()
+        self._thread.join(ENDS)
+
+    def _serve(self) -> None:
+        looked = -math.inf
+        while not self._closing.is_set():
+            self._loop(timeout=_TURN, map=self._channels, count=1)
+            for connection in tuple(self._server.active_channels.values()):
+                connection.end_if_late()
+            if self._clock() - looked >= _TURN:
+                looked = self._clock()
+                self._between()
+        self._workers.shutdown(timeout=1)  # first: an answer that is ready still needs the sockets
+        self._close_all(self._channels)
+
+
+def listening_at(bind: str, port: int) -> socket.socket:
+    """The socket on which browsers ask. Raises DriverError."""
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(bind, port, type=socket.SOCK_STREAM)[0]
+        found = socket.socket(family, kind, protocol)
+    except OSError as error:
+        raise DriverError(_why(bind, port, error)) from error
+    try:
+        if sys.platform != "win32":  # elsewhere it lets two programs listen at one port
+            found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        found.bind(address)
+        found.listen(_WAITING)
+    except OSError as error:
+        found.close()
+        raise DriverError(_why(bind, port, error)) from error
+    return found
+
+
+def _why(bind: str, port: int, error: OSError) -> str:
+    at = Message("[status_page] {bind}:{port}", bind=bind, port=port)
+    if error.errno == errno.EADDRINUSE:
+        return Message(
+            "{position}: another program already uses this port; choose a different port for this control",
+            position=at,
+        )
+    if error.errno == errno.EADDRNOTAVAIL or isinstance(error, socket.gaierror):
+        return Message("{position}: this computer does not have this address", position=at)
+    return Message("{position}: {cause}", position=at, cause=error.strerror or error)

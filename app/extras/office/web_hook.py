@@ -1,0 +1,105 @@
+"""A web hook is told: each announcement is posted to an address, until it is taken or refused."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from http import HTTPStatus
+from http.client import HTTPException
+from urllib.error import HTTPError, URLError
+from urllib.request import HTTPRedirectHandler, Request
+
+from app.extras.office.announcements import HELD, Announcement
+from app.extras.office.network_causes import Trouble, cause_of, host_of, one_line
+from app.extras.office.timed_http import Clock, timed_opener
+from app.shopfloor.status_file import Status
+from core.message import Message
+
+_PATIENCE = 5.0  # s
+_LATER = frozenset({HTTPStatus.REQUEST_TIMEOUT, HTTPStatus.TOO_MANY_REQUESTS})
+_log = logging.getLogger(__name__)
+
+
+class WebHook:
+    """Each announcement is posted as JSON, by a thread of its own, in their order.
+
+    A host that is away or has a fault of its own is asked again after ``again`` seconds. What it refuses
+    (4xx) or sends elsewhere (3xx) would be refused again: that one is given up.
+    """
+
+    def __init__(self, address: str, again: float, post: Callable[[str, bytes], None] | None = None) -> None:
+        self._address, self._again, self._post = address, again, post or posted
+        self._waiting: deque[Announcement] = deque(maxlen=HELD)
+        self._there, self._closing = threading.Event(), threading.Event()
+        self._trouble = Trouble(_log, host_of(address))
+        self._thread = threading.Thread(target=self._work, name="web-hook", daemon=True)
+        self._thread.start()
+
+    def state(self, status: Status) -> None:
+        """A web hook is told of what happens, not of every change."""
+
+    def tell(self, announcement: Announcement) -> None:
+        """Queue it."""
+        self._waiting.append(announcement)
+        self._there.set()
+
+    def close(self) -> None:
+        """What is under way goes out; nobody waits for it."""
+        self._closing.set()
+        self._there.set()
+
+    def _work(self) -> None:
+        while not self._closing.is_set():
+            self._there.wait()
+            self._there.clear()
+            while self._waiting:
+                self._until_taken(self._waiting.popleft())
+
+    def _until_taken(self, announcement: Announcement) -> None:
+        while not self._settled(announcement) and len(self._waiting) < HELD:  # else newer ones push it out
+            if self._closing.wait(self._again):
+                self._waiting.clear()
+                return
+
+    def _settled(self, announcement: Announcement) -> bool:
+        """Whether it is taken, or refused for good."""
+        try:
+            self._post(self._address, announcement.json())
+        except (URLError, HTTPException, OSError, ValueError) as error:
+            self._trouble.say(_why(error))
+            return isinstance(error, HTTPError) and error.code < 500 and error.code not in _LATER
+        self._trouble.over()
+        return True
+
+
+class _Stay(HTTPRedirectHandler):
+    """Goes nowhere else: urllib would ask there by GET, without what is to be told."""
+
+    def redirect_request(self, *_request: object, **_more: object) -> None:
+        """No other request: the answer stands as a refusal."""
+
+
+def posted(address: str, body: bytes, clock: Clock = time.monotonic) -> None:
+    """Post JSON to an address. Raises OSError, ValueError or HTTPException, also after ``_PATIENCE``."""
+    request = Request(address, body, {"Content-Type": "application/json"}, method="POST")
+    try:
+        with timed_opener(_Stay, clock=clock).open(request, timeout=_PATIENCE):
+            return
+    except HTTPError as error:
+        error.close()
+        raise
+
+
+def _why(error: Exception) -> str:
+    if isinstance(error, HTTPError):
+        to = error.headers.get("Location", "") if error.code < 400 else ""
+        where = (
+            Message(", redirected to {to}; set [announce] hook to that address", to=host_of(to)) if to else ""
+        )
+        return one_line(
+            Message("HTTP response {code} {reason}{place}", code=error.code, reason=error.reason, place=where)
+        )
+    return cause_of(error)

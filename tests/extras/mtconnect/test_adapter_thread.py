@@ -1,0 +1,97 @@
+"""The adapter's own thread: it begins, it ends, and what goes wrong in it is seen by the agents."""
+
+from __future__ import annotations
+
+import socket
+import threading
+
+import pytest
+
+from app.extras.mtconnect.driver.agent_links import Report
+from app.extras.mtconnect.driver.mtconnect_adapter import Adapter, AdapterThread
+from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
+from core.ports import DriverError
+from drivers.waiting import RealClock
+from tests.coded import raises_code
+from tests.extras.mtconnect.bench import lathe
+
+HERE = "127.0.0.1"
+
+
+class Machine:
+    """Its state, and whether asking for it fails."""
+
+    def __init__(self) -> None:
+        self.state, self.broken = "READY", threading.Event()
+
+    def report(self) -> Report:
+        if self.broken.is_set():
+            raise RuntimeError("a mistake of our own")
+        return Report({"execution": self.state}, {})
+
+
+def adapter(machine: Machine, port: int = 0) -> Adapter:
+    return Adapter(
+        MtconnectTable(bind=HERE, port=port), tuple(lathe().all_items()), machine.report, RealClock()
+    )
+
+
+def threads() -> list[str]:
+    return [thread.name for thread in threading.enumerate() if thread.name == "mtconnect"]
+
+
+def all_of(wire: socket.socket) -> str:
+    """What comes until the other side hangs up."""
+    told = b""
+    while more := wire.recv(65536):
+        told += more
+    return told.decode("utf-8")
+
+
+def test_it_tells_until_it_is_closed_and_leaves_nothing() -> None:
+    machine = Machine()
+    one = adapter(machine)
+    thread = AdapterThread(one)
+    thread.start()
+    address = one.address
+    with socket.create_connection(address, 60.0) as wire:
+        assert b"execution|READY" in wire.recv(65536)
+        machine.state = "STOPPED"  # the last word, whether a look comes before the end or not
+        thread.close()
+        assert "execution|STOPPED" in all_of(wire)
+    assert not thread.alive
+    assert threads() == []
+    with pytest.raises(ConnectionError):
+        socket.create_connection(address, 60.0)
+
+
+def test_closing_twice_is_closing_once() -> None:
+    thread = AdapterThread(adapter(Machine()))
+    thread.start()
+    thread.close()
+    thread.close()
+
+
+def test_a_port_that_is_taken_leaves_no_thread() -> None:
+    with socket.create_server((HERE, 0)) as other:
+        thread = AdapterThread(adapter(Machine(), other.getsockname()[1]))
+        with raises_code(DriverError, "driver", other.getsockname()[1]):
+            thread.start()
+        thread.close()
+    assert threads() == []
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_should_it_fail_agents_are_hung_up_on(caplog: pytest.LogCaptureFixture) -> None:
+    """Then they say UNAVAILABLE by themselves instead of showing what was true once."""
+    machine = Machine()
+    one = adapter(machine)
+    thread = AdapterThread(one)
+    thread.start()
+    with socket.create_connection(one.address, 60.0) as wire:
+        wire.recv(65536)
+        machine.broken.set()
+        all_of(wire)
+    thread.close()
+    assert not thread.alive
+    assert "RuntimeError: a mistake of our own" in caplog.text

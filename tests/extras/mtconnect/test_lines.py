@@ -1,0 +1,96 @@
+"""Lines by the rules of the C++ agent's tokenizer and mapper, letter by letter."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+
+import pytest
+
+from app.extras.mtconnect.driver.agent_links import (
+    LONGEST,
+    Active,
+    active_line,
+    clean,
+    cleared_line,
+    pong,
+    stamp,
+    text_of,
+    unknown_line,
+    values_line,
+)
+from app.extras.mtconnect.driver.mtconnect_items import Category, DataItem
+from tests.extras.mtconnect.agent import tokens
+
+AT = "2026-11-21T22:17:39.000Z"
+PLACE = DataItem("Xabs", Category.SAMPLE, "POSITION", units="MILLIMETER", digits=4)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("N10 G01 X.5", "N10 G01 X.5"),
+        ("(A|B)", "(A/B)"),
+        ("ONE\tTWO\r\nTHREE", "ONE TWO THREE"),
+        ("  BLANKS  ", "BLANKS"),
+        ("\x00\x07BELL\x1b[2J", "BELL [2J"),
+        ('"QUOTED" | REST', "'QUOTED\" / REST"),  # an opening quotation mark would end the value at the next
+        ('MSG "INSIDE"', 'MSG "INSIDE"'),
+        ("--multiline--7", "- multiline -7"),  # the agent would wait for that word to come again
+        ("----multiline----", "--- multiline ---"),
+        ("DREHTEIL Ø12", "DREHTEIL Ø12"),
+        ("BAD \udc80 BYTE \ufffe", "BAD ? BYTE"),
+        ("", ""),
+        ("|", "/"),
+        ("\n", ""),
+    ],
+)
+def test_a_value_stays_one_value(text: str, told: str) -> None:
+    assert clean(text) == told
+    assert tokens(f"{AT}|block|{clean(text)}|line|7") == [AT, "block", told, "line", "7"]
+
+
+def test_a_program_without_line_ends_makes_no_endless_line() -> None:
+    assert len(clean("X" * 100_000)) == LONGEST
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [
+        (None, "UNAVAILABLE"),
+        (-12.34567, "-12.3457"),
+        (-0.00001, "0.0000"),
+        (-0.0, "0.0000"),
+        (0, "0.0000"),
+        (1e6, "1000000.0000"),
+        ("CLOSED", "CLOSED"),
+    ],
+)
+def test_values_as_text(value: str | float | None, told: str) -> None:
+    assert text_of(PLACE, value) == told
+
+
+def test_lines() -> None:
+    assert values_line(AT, {"execution": "ACTIVE", "line": "12"}) == f"{AT}|execution|ACTIVE|line|12\n"
+    fault = Active("FAULT", "102", "X lags | 0.2\nmm")
+    assert active_line(AT, "Xservo", fault) == f"{AT}|Xservo|FAULT|102|||X lags / 0.2 mm\n"
+    assert cleared_line(AT, "Xservo", "102") == f"{AT}|Xservo|NORMAL|102|||\n"
+    assert cleared_line(AT, "Xservo") == f"{AT}|Xservo|NORMAL||||\n"
+    assert unknown_line(AT, "Xservo") == f"{AT}|Xservo|UNAVAILABLE||||\n"
+
+
+def test_times_are_utc_with_z() -> None:
+    assert stamp(datetime(2026, 3, 4, 5, 6, 7, 89_999, UTC)) == "2026-03-04T05:06:07.089Z"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [
+        (10.0, b"* PONG 10000\n"),
+        (0.001, b"* PONG 1\n"),
+        (0.0001, b"* PONG 1\n"),
+        (1800.0, b"* PONG 1799999\n"),
+    ],
+)
+def test_a_pong_has_a_time_that_the_agent_takes(seconds: float, said: bytes) -> None:
+    """It refuses 0, and half an hour itself."""
+    assert pong(seconds) == said

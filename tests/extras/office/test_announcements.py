@@ -1,0 +1,646 @@
+"""Who is told of ends and stops: what is told, in which order, and what happens where nobody answers."""
+
+from __future__ import annotations
+
+import errno
+import json
+import logging
+import os
+import shutil
+import signal
+import socket
+import ssl
+import subprocess
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from http.client import HTTPException, InvalidURL
+from http.server import BaseHTTPRequestHandler, HTTPServer
+from itertools import count
+from pathlib import Path
+from queue import SimpleQueue
+from urllib.error import URLError
+
+import paho.mqtt.client as mqtt
+import pytest
+from paho.mqtt.enums import CallbackAPIVersion
+
+from app.extras.office import mqtt_broker
+from app.extras.office.announcements import HELD, Announcement, Announcer, happened
+from app.extras.office.mqtt_broker import MqttBroker
+from app.extras.office.network_causes import Trouble, cause_of
+from app.extras.office.other_desks import asked
+from app.extras.office.web_hook import WebHook, posted
+from app.shopfloor.status_file import Status
+from core.extras.office.shop_network_tables import AnnounceTable
+from tests.free_port import free_port
+from tests.texts import text
+
+READY: Status = {
+    "state": "READY", "program": "pin.nc", "made": 3, "parts": 2, "stop": "", "waiting_for": ""
+}  # fmt: skip
+RUNNING: Status = {**READY, "state": "RUNNING"}
+
+
+def told(before: Status, now: Status) -> list[tuple[str, str]]:
+    return [(each.kind, each.text) for each in happened(before, now)]
+
+
+# --- what has happened ------------------------------------------------------------------------------
+
+
+def test_the_first_look_tells_nothing() -> None:
+    assert told({}, {**READY, "state": "ALARM"}) == []
+
+
+def test_a_part_is_done() -> None:
+    assert told(RUNNING, {**RUNNING, "made": 4, "parts": 3}) == [
+        ("part", text("shopfloor.part-done", number=4, program="pin.nc"))
+    ]
+
+
+@pytest.mark.parametrize("now", [{"program": "nut.nc", "made": 90}, {"made": 4}])
+def test_a_count_that_is_read_or_typed_is_no_part(now: Status) -> None:
+    """Of another program; of the same one, told behind its loading: so after each start of the desk."""
+    assert told(READY, {**READY, **now}) == []
+
+
+def test_a_count_put_back_is_no_part() -> None:
+    assert told(READY, {**READY, "made": 0, "parts": 0}) == []
+
+
+def test_a_stop_and_an_alarm_say_why() -> None:
+    hold: Status = {**RUNNING, "state": "FEED HOLD", "stop": "GUARD OPEN"}
+    alarm: Status = {**RUNNING, "state": "ALARM", "stop": "FOLLOWING ERROR: X"}
+    assert told(RUNNING, hold) == [("stop", "FEED HOLD: GUARD OPEN")]
+    assert told(RUNNING, alarm) == [("alarm", "ALARM: FOLLOWING ERROR: X")]
+
+
+def test_waiting_for_the_spindle_is_no_stop() -> None:
+    waits: Status = {**RUNNING, "state": "WAITING", "waiting_for": "AT SPEED"}
+    assert told(RUNNING, waits) == []
+    assert told(waits, RUNNING) == []
+
+
+def test_a_tool_at_the_end_of_its_life() -> None:
+    worn: Status = {**RUNNING, "next_barred": "T3 HAS CUT 400 PARTS"}
+    assert told(RUNNING, worn) == [("tool-life", "T3 HAS CUT 400 PARTS")]
+    assert told(worn, worn) == []
+
+
+def values_of(record: logging.LogRecord) -> tuple[str, ...]:
+    """Return who is not told and why, as the log has them beside its wording."""
+    assert isinstance(record.args, tuple)
+    return tuple(str(each) for each in record.args)
+
+
+class Heard:
+    """Somebody who is told."""
+
+    def __init__(self) -> None:
+        self.states: list[str] = []
+        self.events: list[str] = []
+
+    def state(self, status: Status) -> None:
+        self.states.append(str(status["state"]))
+
+    def tell(self, announcement: Announcement) -> None:
+        self.events.append(announcement.kind)
+
+    def close(self) -> None:
+        self.events.append("closed")
+
+
+def test_a_state_is_told_when_it_changes_and_not_with_every_second() -> None:
+    looks = iter(
+        [READY, {**RUNNING, "time_left": 9.0}, {**RUNNING, "time_left": 8.0}, {**RUNNING, "parts": 3}]
+    )
+    heard = Heard()
+    announcer = Announcer(lambda: next(looks), [heard])
+    for _ in range(4):
+        announcer.once()
+    announcer.close()
+    assert heard.states == ["READY", "RUNNING", "RUNNING"]
+    assert heard.events == ["runs", "part", "closed"]
+
+
+def test_a_part_that_is_made_while_the_control_is_silent_is_told_behind_it() -> None:
+    silent: Status = {**RUNNING, "state": "CONTROL SILENT", "made": None, "parts": None}
+    looks = iter([RUNNING, silent, silent, {**RUNNING, "made": 4, "parts": 3}, {**RUNNING, "parts": 3}])
+    heard = Heard()
+    announcer = Announcer(lambda: next(looks), [heard])
+    for _ in range(5):
+        announcer.once()
+    announcer.close()
+    assert heard.events == ["alarm", "part", "runs", "closed"]
+
+
+# --- a web hook -------------------------------------------------------------------------------------
+
+
+AT_ONCE = 0.001  # s until the next try
+
+
+@pytest.fixture
+def posts() -> Iterator[tuple[str, SimpleQueue[dict[str, object]]]]:
+    """A server that takes what is posted, and its address; other paths answer with their number."""
+    heard: SimpleQueue[dict[str, object]] = SimpleQueue()
+
+    class Taker(BaseHTTPRequestHandler):
+        def do_POST(self) -> None:
+            said = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+            number = self.path.removeprefix("/hook")
+            if number == "garbage":
+                self.wfile.write(b"\x1b[2J garbage\r\n\r\n")
+            else:
+                self.send_response(int(number or 204))
+                self.send_header("Location", "https://office/hook")
+                self.end_headers()
+            heard.put(said)
+
+        def do_GET(self) -> None:
+            heard.put({"text": "asked by GET"})
+
+        def log_message(self, *_words: object) -> None:
+            pass
+
+    server = HTTPServer(("127.0.0.1", 0), Taker)
+    thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
+    thread.start()
+    yield f"http://127.0.0.1:{server.server_port}/hook", heard
+    server.shutdown()
+    thread.join()
+    server.server_close()
+
+
+def test_a_web_hook_hears_in_order(posts: tuple[str, SimpleQueue[dict[str, object]]]) -> None:
+    address, heard = posts
+    hook = WebHook(address, AT_ONCE)
+    for number in range(5):
+        hook.tell(Announcement("part", f"part {number}", READY))
+    assert [heard.get(timeout=60)["text"] for _ in range(5)] == [f"part {n}" for n in range(5)]
+    hook.close()
+
+
+@pytest.mark.parametrize(
+    ("path", "values"),
+    [
+        ("301", ["301 Moved Permanently", "https://office;", "[announce] hook"]),
+        ("307", ["307 Temporary Redirect", "https://office;", "[announce] hook"]),
+        ("404", ["404 Not Found"]),
+    ],
+)
+def test_what_a_web_hook_refuses_is_given_up_and_told_once(
+    posts: tuple[str, SimpleQueue[dict[str, object]]],
+    path: str,
+    values: list[str],
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    address, heard = posts
+    hook = WebHook(address + path, AT_ONCE)
+    for number in range(3):
+        hook.tell(Announcement("part", f"part {number}", READY))
+    assert [heard.get(timeout=60)["text"] for _ in range(3)] == [f"part {n}" for n in range(3)]
+    hook.close()
+    ((who, why),) = [values_of(each) for each in caplog.records]
+    assert who == address.removesuffix("/hook")
+    assert all(value in why for value in values)
+
+
+@pytest.mark.parametrize(("path", "values"), [("503", ["503 Service Unavailable"]), ("garbage", ["HTTP"])])
+def test_a_host_with_a_fault_is_asked_again_and_told_of_once(
+    posts: tuple[str, SimpleQueue[dict[str, object]]],
+    path: str,
+    values: list[str],
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    address, heard = posts
+    hook = WebHook(address + path, AT_ONCE)
+    hook.tell(Announcement("alarm", "ALARM", READY))
+    assert [heard.get(timeout=60)["text"] for _ in range(3)] == ["ALARM"] * 3
+    hook.close()
+    ((who, why),) = [values_of(each) for each in caplog.records]
+    assert who == address.removesuffix("/hook")
+    assert all(value in why for value in values)
+
+
+def test_a_web_hook_that_was_away_hears_all_of_it_in_order(caplog: pytest.LogCaptureFixture) -> None:
+    asked: SimpleQueue[str] = SimpleQueue()
+    away = iter([True, True, True])
+
+    def post(_address: str, body: bytes) -> None:
+        asked.put(json.loads(body)["text"])
+        if next(away, False):
+            raise URLError(OSError(111, "Connection refused"))
+
+    hook = WebHook("http://shop/hook", AT_ONCE, post)
+    for word in ("first", "second"):
+        hook.tell(Announcement("stop", word, READY))
+    assert [asked.get(timeout=60) for _ in range(5)] == ["first"] * 4 + ["second"]
+    hook.close()
+    (said,) = [values_of(each) for each in caplog.records]
+    assert said == ("http://shop", text("shopfloor.refused"))
+
+
+def test_each_cause_is_told_once_until_somebody_was_told(caplog: pytest.LogCaptureFixture) -> None:
+    asked: SimpleQueue[str] = SimpleQueue()
+    answers = iter(["refused", "refused", "no route", "refused", "", "refused", ""])
+
+    def post(_address: str, body: bytes) -> None:
+        if why := next(answers):
+            raise OSError(1, why)
+        asked.put(json.loads(body)["text"])
+
+    hook = WebHook("http://shop/hook", AT_ONCE, post)
+    for word in ("first", "second"):
+        hook.tell(Announcement("stop", word, READY))
+        assert asked.get(timeout=60) == word
+    hook.close()
+    assert [values_of(each)[1] for each in caplog.records] == [
+        "refused", "no route", "refused"
+    ]  # fmt: skip
+
+
+def test_a_host_that_says_something_else_each_time_does_not_fill_the_log(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    trouble = Trouble(logging.getLogger("hook"), "http://shop/hook")
+    for number in range(100):
+        trouble.say(str(number))
+    assert len(caplog.records) == 10
+
+
+def test_of_more_than_a_hundred_for_a_dead_hook_the_newest_are_kept() -> None:
+    asked: SimpleQueue[int] = SimpleQueue()
+    dead, queued = threading.Event(), threading.Event()
+
+    def post(_address: str, body: bytes) -> None:
+        asked.put(int(json.loads(body)["text"]))
+        assert queued.wait(60)
+        if not dead.is_set():
+            dead.set()
+            raise OSError(113, "No route to host")
+
+    hook = WebHook("http://shop/hook", AT_ONCE, post)
+    hook.tell(Announcement("part", "0", READY))
+    assert asked.get(timeout=60) == 0
+    for number in range(1, HELD + 31):
+        hook.tell(Announcement("part", str(number), READY))
+    queued.set()
+    assert [asked.get(timeout=60) for _ in range(HELD)] == list(range(31, HELD + 31))
+    hook.close()
+
+
+class Far:
+    """The other end of one connection after the other, played by ``play`` on a thread."""
+
+    def __init__(self, play: Callable[[socket.socket], object]) -> None:
+        self._play, self._listening = play, socket.create_server(("127.0.0.1", 0))
+        self.port = self._listening.getsockname()[1]
+        self.ended: SimpleQueue[None] = SimpleQueue()  # a connection
+        self._thread = threading.Thread(target=self._serve, daemon=True)
+
+    def _serve(self) -> None:
+        with suppress(OSError):
+            while True:
+                with self._listening.accept()[0] as connection, suppress(OSError):
+                    connection.recv(1000)
+                    self._play(connection)
+                    connection.shutdown(socket.SHUT_WR)
+                    while connection.recv(4096):  # closing with unread bytes would reset it
+                        pass
+                self.ended.put(None)
+
+    def __enter__(self) -> Far:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._listening.shutdown(socket.SHUT_RDWR)
+        self._listening.close()
+        self._thread.join()
+
+
+def test_an_answer_that_comes_byte_by_byte_has_a_deadline_as_a_whole() -> None:
+    """Two seconds pass before each byte; a byte comes when the one before was read."""
+    times, reads = count(0.0, 2.0), threading.Semaphore(0)
+
+    def clock() -> float:
+        reads.release()
+        return next(times)
+
+    def drip(connection: socket.socket) -> None:
+        assert reads.acquire(timeout=60)  # of the connection itself
+        for byte in b"HTTP/1.1 204 No Content\r\n\r\n":
+            assert reads.acquire(timeout=60)
+            connection.sendall(bytes([byte]))
+
+    with Far(drip) as far:
+        with pytest.raises(TimeoutError):
+            posted(f"http://127.0.0.1:{far.port}/", b"{}", clock)
+        reads.release(100)
+
+
+def test_an_answer_in_time_is_taken() -> None:
+    with Far(lambda connection: connection.sendall(b"HTTP/1.1 204 No Content\r\n\r\n")) as far:
+        posted(f"http://127.0.0.1:{far.port}/", b"{}", lambda: 0.0)
+
+
+def not_trusted() -> ssl.SSLCertVerificationError:
+    error = ssl.SSLCertVerificationError(1, "[SSL: CERTIFICATE_VERIFY_FAILED] (_ssl.c:1)")
+    error.verify_message = "self-signed certificate"
+    return error
+
+
+@pytest.mark.parametrize(
+    ("answer", "scheme", "why"),
+    [
+        (b"", "http", "shopfloor.no-word"),
+        (b"\x15\x03\x01\x00\x02\x02\x46", "http", "shopfloor.tls-only"),
+        (b"HTTP/1.1 400 Bad Request\r\n\r\n", "https", "shopfloor.no-tls"),
+        (b"SSH-2.0-OpenSSH_9.2\r\n", "http", "shopfloor.no-http"),
+    ],
+)
+def test_what_a_host_answers_is_the_cause(answer: bytes, scheme: str, why: str) -> None:
+    with Far(lambda connection: connection.sendall(answer)) as far:
+        with pytest.raises((OSError, HTTPException)) as raised:
+            posted(f"{scheme}://127.0.0.1:{far.port}/", b"{}")
+        assert asked(f"{scheme}://127.0.0.1:{far.port}/").trouble == text(why)
+    assert cause_of(raised.value) == text(why)
+
+
+def test_a_bad_certificate_is_the_cause() -> None:
+    assert cause_of(URLError(not_trusted())) == text(
+        "shopfloor.bad-certificate", why="self-signed certificate"
+    )
+
+
+@pytest.mark.parametrize(
+    "address", ["https://hooks.shop/services/secret", "http://me:secret@shop:81/?t=secret"]
+)
+def test_the_log_has_no_token_of_an_address(address: str, caplog: pytest.LogCaptureFixture) -> None:
+    tried = threading.Event()
+
+    def post(address: str, _body: bytes) -> None:
+        tried.set()
+        raise InvalidURL(f"URL can't contain control characters. {address!r}")
+
+    hook = WebHook(address, 60.0, post)
+    hook.tell(Announcement("part", "part 1", READY))
+    assert tried.wait(60)
+    hook.close()
+    hook._thread.join(60)
+    assert len(caplog.records) == 1
+    assert "secret" not in caplog.text
+
+
+# --- an MQTT broker ---------------------------------------------------------------------------------
+
+
+def table(port: int) -> AnnounceTable:
+    return AnnounceTable(f"127.0.0.1:{port}", "shop/gt75", "", "", "", 1.0)
+
+
+def test_a_broker_that_is_away_keeps_nobody_waiting() -> None:
+    with socket.socket() as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        broker = MqttBroker(table(nobody.getsockname()[1]))
+        broker.state(READY)
+        for _ in range(300):
+            broker.tell(Announcement("part", "", READY))
+        broker.close()
+
+
+class Logged(logging.Handler):
+    """What the broker's side says, as it comes."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._said: SimpleQueue[tuple[str, ...]] = SimpleQueue()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self._said.put(values_of(record))
+
+    def empty(self) -> bool:
+        return self._said.empty()
+
+    def why(self, port: int) -> str:
+        """Why the broker at this port is not told; one of another test may say its last word yet."""
+        while not (said := self._said.get(timeout=60))[0].endswith(f" 127.0.0.1:{port}"):
+            pass
+        return said[1]
+
+
+@pytest.fixture
+def logged() -> Iterator[Logged]:
+    heard = Logged()
+    logger = logging.getLogger("app.extras.office.mqtt_broker")
+    logger.addHandler(heard)
+    yield heard
+    logger.removeHandler(heard)
+
+
+def test_a_broker_that_refuses_the_connection_is_told_so(logged: Logged) -> None:
+    with socket.socket() as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        port = nobody.getsockname()[1]
+        broker = MqttBroker(table(port))
+        assert logged.why(port) == text("shopfloor.refused")
+        broker.close()
+
+
+@pytest.mark.parametrize(
+    ("connack", "why"),
+    [
+        (b"\x20\x02\x00\x05", "shopfloor.mqtt-not-authorized"),
+        (b"\x20\x02\x00\x04", "shopfloor.mqtt-password"),
+        (b"", "shopfloor.mqtt-no-word"),
+        (b"\x15\x03\x03\x00\x02\x02\x46", "shopfloor.mqtt-no-word"),
+    ],
+)
+def test_what_a_broker_refuses_is_the_only_cause(connack: bytes, why: str, logged: Logged) -> None:
+    with Far(lambda connection: connection.sendall(connack)) as far:
+        broker = MqttBroker(table(far.port))
+        assert logged.why(far.port) == text(why)
+        for _ in range(2):
+            far.ended.get(timeout=60)
+        broker.close()
+    assert logged.empty()
+
+
+@pytest.mark.parametrize(
+    ("cause", "why"),
+    [
+        (socket.gaierror(socket.EAI_NONAME, "Name or service not known"), "Name or service not known"),
+        (OSError(errno.EHOSTUNREACH, "No route to host"), "No route to host"),
+        (TimeoutError("timed out"), text("shopfloor.no-answer")),
+        (UnicodeError("label empty or too long"), "label empty or too long"),
+    ],
+)
+def test_why_a_broker_cannot_be_reached(
+    cause: Exception, why: str, logged: Logged, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tries: SimpleQueue[None] = SimpleQueue()
+
+    def refuse(_address: object, *_more: object, **_words: object) -> socket.socket:
+        tries.put(None)
+        raise cause
+
+    monkeypatch.setattr(socket, "create_connection", refuse)
+    broker = MqttBroker(table(1883))
+    assert logged.why(1883) == why
+    tries.get(timeout=60)
+    if isinstance(cause, ValueError):
+        tries.get(timeout=60)  # paho's thread goes on, though it knows no such error
+    broker.close()
+
+
+def test_what_takes_the_connection_and_says_no_word_is_told_of(
+    logged: Logged, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE", 1)
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        broker = MqttBroker(table(port))
+        assert logged.why(port) == text("shopfloor.no-answer")
+        broker.close()
+
+
+def test_a_desk_closes_while_a_broker_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A host that swallows everything keeps paho's thread waiting, not the desk."""
+    connecting, over = threading.Event(), threading.Event()
+
+    def swallowed(_address: object, *_more: object, **_words: object) -> socket.socket:
+        connecting.set()
+        over.wait()
+        raise TimeoutError("timed out")
+
+    monkeypatch.setattr(socket, "create_connection", swallowed)
+    broker = MqttBroker(table(1883))
+    assert connecting.wait(60)
+    broker.close()
+    assert not over.is_set()
+    over.set()
+
+
+MOSQUITTO = shutil.which("mosquitto") or shutil.which("mosquitto", path="/usr/sbin")
+
+
+@pytest.fixture
+def mosquitto(tmp_path: Path) -> Iterator[tuple[int, int]]:
+    """Eclipse's broker, by its port and its process."""
+    if MOSQUITTO is None:
+        pytest.skip("mosquitto is not installed: no MQTT broker that is not ours")
+    port = free_port()
+    config = tmp_path / "mosquitto.conf"
+    config.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
+    with subprocess.Popen([MOSQUITTO, "-c", str(config)], stderr=subprocess.PIPE) as running:
+        assert running.stderr is not None
+        while b"running" not in running.stderr.readline():
+            assert running.poll() is None
+        yield port, running.pid
+        running.terminate()
+
+
+class Office:
+    """Somebody at the broker who hears all of it."""
+
+    def __init__(self, port: int) -> None:
+        self._heard: SimpleQueue[tuple[str, bytes, bool]] = SimpleQueue()
+        self.client = mqtt.Client(CallbackAPIVersion.VERSION2)
+        self.client.on_message = lambda _c, _d, message: self._heard.put(
+            (message.topic, bytes(message.payload), message.retain)
+        )
+        self.client.on_subscribe = lambda *_all: self._heard.put(("subscribed", b"", False))
+        self.client.connect("127.0.0.1", port)
+        self.client.subscribe("shop/#", 1)
+        self.client.loop_start()
+        assert self.next()[0] == "subscribed"
+
+    def next(self) -> tuple[str, bytes, bool]:
+        """Topic, what is said, whether it was retained."""
+        return self._heard.get(timeout=60)
+
+    def close(self) -> None:
+        self.client.disconnect()
+        self.client.loop_stop()
+
+
+@pytest.fixture
+def office(mosquitto: tuple[int, int]) -> Iterator[Office]:
+    office = Office(mosquitto[0])
+    yield office
+    office.close()
+
+
+def test_a_broker_hears_state_events_and_the_end(mosquitto: tuple[int, int], office: Office) -> None:
+    broker = MqttBroker(table(mosquitto[0]))
+    assert office.next() == ("shop/gt75/available", b"online", False)
+    broker.state(RUNNING)
+    topic, payload, _ = office.next()
+    assert (topic, json.loads(payload)) == ("shop/gt75/state", RUNNING)
+    broker.tell(Announcement("part", "part 4 of pin.nc is done", RUNNING))
+    topic, payload, _ = office.next()
+    assert topic == "shop/gt75/event"
+    assert json.loads(payload)["text"] == "part 4 of pin.nc is done"
+    broker.close()
+    assert office.next() == ("shop/gt75/available", b"offline", False)
+    office.client.unsubscribe("shop/#")
+    office.client.subscribe("shop/gt75/state", 1)  # who comes later sees the last state
+    while not (late := office.next())[2]:
+        pass
+    assert json.loads(late[1]) == RUNNING
+
+
+def test_a_broker_that_was_away_hears_online_state_and_the_newest_hundred(
+    mosquitto: tuple[int, int], office: Office, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    away: list[mqtt.Client] = []
+
+    def begins_later(client: mqtt.Client) -> None:
+        away.append(client)
+
+    with monkeypatch.context() as cable_out:
+        cable_out.setattr(mqtt.Client, "loop_start", begins_later)
+        broker = MqttBroker(table(mosquitto[0]))
+        broker.state(READY)
+        for number in range(HELD + 30):
+            broker.tell(Announcement("part", str(number), READY))
+    away[0].loop_start()
+    assert office.next() == ("shop/gt75/available", b"online", False)
+    assert office.next()[0] == "shop/gt75/state"
+    assert [json.loads(office.next()[1])["text"] for _ in range(HELD)] == [
+        str(number) for number in range(30, HELD + 30)
+    ]
+    broker.close()
+
+
+def test_a_broker_that_is_frozen_is_told_of(
+    mosquitto: tuple[int, int], office: Office, logged: Logged, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its computer takes each new connection, and nobody there says a word."""
+    monkeypatch.setattr(mqtt_broker, "KEEP_ALIVE", 1)
+    port, process = mosquitto
+    broker = MqttBroker(table(port))
+    assert office.next()[1] == b"online"
+    os.kill(process, signal.SIGSTOP)
+    try:
+        assert logged.why(port) == text("shopfloor.no-answer")
+    finally:
+        os.kill(process, signal.SIGCONT)
+    broker.close()
+
+
+def test_a_desk_closes_beside_a_broker_that_is_frozen(mosquitto: tuple[int, int], office: Office) -> None:
+    port, process = mosquitto
+    broker = MqttBroker(table(port))
+    assert office.next()[1] == b"online"
+    os.kill(process, signal.SIGSTOP)
+    try:
+        for number in range(HELD + 30):
+            broker.tell(Announcement("part", str(number), READY))
+        broker.close()  # raises nothing, though what waits cannot go out
+    finally:
+        os.kill(process, signal.SIGCONT)
+    assert office.next()[0] == "shop/gt75/event"  # not offline: that is its last will's
+    broker.close()

@@ -1,0 +1,647 @@
+"""The page for the office: who may look, what it shows, the desks beside; no drawing while it runs."""
+
+from __future__ import annotations
+
+import json
+import socket
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+from urllib.parse import urlsplit
+
+import numpy as np
+import pytest
+from PySide6.QtGui import QImage
+
+from app.compose.machine_answers import check_ports
+from app.compose.machine_files import load_machine, parse_machine
+from app.extras.office import other_desks
+from app.extras.office.alarm_drawing import HIGH, alarm_drawing
+from app.extras.office.office import AlarmDrawing, PartPicture
+from app.extras.office.office_status import STOPS, OfficeLook
+from app.extras.office.other_desks import OtherDesks, asked, status_address
+from app.extras.office.page_connections import DEADLINE, MOST, MOST_OF_ONE
+from app.extras.office.page_server import PageServer, listening_at
+from app.extras.office.png_file import png_of
+from app.extras.office.status_page import OtherDesk, StatusPage
+from app.programs.preview import Thumbnail
+from app.screen.language import speak_in
+from app.shopfloor.floor_reading import FloorReader
+from app.shopfloor.status_file import Status
+from core.executor.snapshot import Snapshot, State
+from core.extras.office.shop_network_tables import StatusPageTable, broker_of
+from core.ports import DriverError
+from core.records.record import Record, channels_of
+from core.store.production.part_cycles import StopRow
+from core.table_schema import MachineFileError
+from resources import machine_file
+from tests.coded import raises_code
+from tests.texts import text, text_in_spanish
+
+LATHE = load_machine(None)
+TOKEN = "gt75-word-of-ours"
+STATUS: Status = {
+    "updated": "2026-11-23T09:00:00+00:00",
+    "machine": "GT-75",
+    "available": True,
+    "program": "<b>pin</b>.nc",
+    "state": "RUNNING",
+    "waiting_for": "",
+    "line": 12,
+    "made": 7,
+    "time_left": 65.0,
+    "last_cycle": 130.0,
+    "spindle_load": 40,
+    "stop": "",
+    "stops": [{"at": "2026-11-23T08:00:00Z", "reason": "<i>hold</i>", "seconds": 61}],
+    "alarms": [{"number": 102, "code": "102", "text": "<u>X</u>", "remedy": "look & see"}],
+}
+
+
+def page(token: str = "", status: Status = STATUS, others: tuple[OtherDesk, ...] = ()) -> StatusPage:
+    return StatusPage("GT-75", token, lambda: status, lambda: others, lambda: b"", lambda: b"<svg/>")
+
+
+def get(
+    wsgi: StatusPage, path: str = "/", method: str = "GET", **more: str
+) -> tuple[str, dict[str, str], str]:
+    answer: list[Any] = []
+    environ = {"REQUEST_METHOD": method, "PATH_INFO": path, "SERVER_PORT": "8317", **more}
+
+    def begin(
+        status: str, headers: list[tuple[str, str]], _error: object = None, /
+    ) -> Callable[[bytes], object]:
+        answer.extend((status, dict(headers)))
+        return lambda _written: None
+
+    body = b"".join(wsgi(environ, begin))
+    return answer[0], answer[1], body.decode()
+
+
+@pytest.mark.skipif(not hasattr(time, "tzset"), reason="no change of the time zone here")
+def test_times_are_those_of_the_clock_in_the_shop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three hours behind UTC."""
+    monkeypatch.setenv("TZ", "<-03>3")
+    time.tzset()
+    try:
+        body = get(page())[2]
+    finally:
+        monkeypatch.undo()
+        time.tzset()
+    assert ">2026-11-23 06:00:00<" in body  # made at 09:00 UTC
+    assert ">2026-11-23 05:00</td>" in body
+
+
+# --- who may look -----------------------------------------------------------------------------------
+
+
+def test_without_the_token_nothing_is_said() -> None:
+    status, _, body = get(page(TOKEN))
+    assert status.startswith("403")
+    assert "pin" not in body
+
+
+def test_a_wrong_token_is_refused_everywhere() -> None:
+    for path in ("/", "/now", "/status.json", "/part.png", "/alarm.svg", "/page.js"):
+        assert get(page(TOKEN), path, QUERY_STRING="token=gt75-word-of-Ours")[0].startswith("403")
+
+
+@pytest.mark.parametrize(
+    "brought",
+    [
+        {"QUERY_STRING": f"token={TOKEN}"},
+        {"HTTP_AUTHORIZATION": f"Bearer {TOKEN}"},
+        {"HTTP_COOKIE": f"other=1; turndesk-8317={TOKEN}"},
+    ],
+)
+def test_the_token_opens_it(brought: dict[str, str]) -> None:
+    status, headers, body = get(page(TOKEN), **brought)
+    assert status == "200 OK"
+    assert "RUNNING" in body
+    assert "HttpOnly" in headers["Set-Cookie"]
+
+
+def test_two_desks_of_one_computer_keep_their_tokens_apart() -> None:
+    """To a browser the port is no part of where a cookie belongs."""
+    kept = get(page(TOKEN), QUERY_STRING=f"token={TOKEN}")[1]["Set-Cookie"].partition("=")[0]
+    other = get(page("another-desk-1"), QUERY_STRING="token=another-desk-1", SERVER_PORT="8318")[1]
+    assert (kept, other["Set-Cookie"].partition("=")[0]) == ("turndesk-8317", "turndesk-8318")
+
+
+def test_without_a_token_of_its_own_a_page_sets_no_cookie() -> None:
+    status, headers, _ = get(page(), QUERY_STRING="token=any;Domain=x")
+    assert status == "200 OK"
+    assert "Set-Cookie" not in headers
+
+
+@pytest.mark.parametrize("token", ["", TOKEN])
+@pytest.mark.parametrize(
+    "brought",
+    [
+        {"QUERY_STRING": "token=%ff"},
+        {"QUERY_STRING": "token=%0d%0aX:1"},
+        {"HTTP_AUTHORIZATION": "Bearer \xff"},
+        {"HTTP_COOKIE": 'turndesk-8317="\\012"'},
+    ],
+)
+def test_a_token_of_odd_bytes_is_a_bad_request(brought: dict[str, str], token: str) -> None:
+    assert get(page(token), **brought)[0].startswith("400")
+
+
+def test_a_broken_cookie_is_no_token() -> None:
+    assert get(page(TOKEN), HTTP_COOKIE="turndesk=\x01;;=")[0].startswith("403")
+
+
+@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS"])
+def test_it_takes_no_orders(method: str) -> None:
+    status, headers, _ = get(page(), method=method)
+    assert status.startswith("405")
+    assert headers["Allow"] == "GET, HEAD"
+
+
+def test_there_are_no_other_pages() -> None:
+    assert get(page(), "/../pyproject.toml")[0].startswith("404")
+    assert get(page(), "/part.png")[0].startswith("404")  # no part is drawn
+    assert get(page(), "/alarm.svg")[0] == "200 OK"
+
+
+def test_head_has_no_body() -> None:
+    status, headers, body = get(page(), method="HEAD")
+    assert (status, body) == ("200 OK", "")
+    assert int(headers["Content-Length"]) > 500
+
+
+def test_a_page_open_to_the_shop_wants_a_token() -> None:
+    text = machine_file("gt75.toml")
+    with pytest.raises(MachineFileError, match=r"status_page\.token: .*0\.0\.0\.0"):
+        parse_machine(text + '[status_page]\nbind = "0.0.0.0"\ntoken = "short"\n', "m.toml")
+    with pytest.raises(MachineFileError, match=r"status_page\.token: "):
+        parse_machine(text + '[status_page]\ntoken = "with a blank and more"\n', "m.toml")
+    with pytest.raises(MachineFileError, match=r"status_page\.desks = "):
+        parse_machine(text + '[status_page]\ndesks = ["lathe2:8317"]\n', "m.toml")
+    table = parse_machine(
+        text + f'[status_page]\nbind = "0.0.0.0"\ntoken = "{TOKEN}"\n', "m.toml"
+    ).hardware.table(StatusPageTable)
+    assert table is not None
+    assert not table.enabled
+
+
+@pytest.mark.parametrize(
+    ("line", "path"),
+    [
+        ('mqtt = "shop:broker"', "announce.mqtt"),
+        ('mqtt = ":1883"', "announce.mqtt"),
+        ('hook = "ftp://x"', "announce.hook"),
+        ('topic = "shop/#"', "announce.topic"),
+    ],
+)
+def test_a_wrong_address_of_who_is_told_is_refused(line: str, path: str) -> None:
+    with pytest.raises(MachineFileError) as told:
+        parse_machine(f"{machine_file('gt75.toml')}[announce]\n{line}\n", "m.toml")
+    assert [finding.path for finding in told.value.errors] == [path]
+
+
+def test_the_broker_has_its_usual_port() -> None:
+    assert broker_of("shop-pc") == ("shop-pc", 1883)
+    assert broker_of("shop-pc:18") == ("shop-pc", 18)
+
+
+# --- what it shows ----------------------------------------------------------------------------------
+
+
+def test_what_a_program_is_called_is_text() -> None:
+    _, headers, body = get(page())
+    for harm in ("<b>", "<i>", "<u>"):
+        assert harm not in body
+    assert "&lt;b&gt;pin" in body
+    assert "look &amp; see" in body
+    assert "default-src 'none'" in headers["Content-Security-Policy"]
+    assert "1:05" in body  # 65 s left
+    assert "2:10" in body  # 130 s the last cycle
+
+
+def test_the_page_says_which_picture_belongs_to_what_it_shows() -> None:
+    """Else that of the program before would stand beside another name for as long as it is not asked for."""
+    pictures = [b""]
+    shown = StatusPage("GT-75", "", lambda: STATUS, lambda: (), lambda: pictures[0], lambda: b"")
+    assert '<figure id="part" hidden>' in get(shown)[2]
+    assert 'data-part=""' in get(shown, "/now")[2]
+    marks = []
+    for pictures[0] in (b"a pin", b"a nut", b"a pin"):
+        marks.append(get(shown, "/now")[2].partition('data-part="')[2].partition('"')[0])
+        assert f'src="part.png?{marks[-1]}"' in get(shown)[2]
+    assert marks[0] == marks[2] != marks[1]
+
+
+def test_what_happened_today_has_no_date() -> None:
+    now = datetime.now().astimezone()
+    told: Status = {**STATUS, "stops": [{"at": now.isoformat(), "reason": "FEED HOLD", "seconds": 5}]}
+    assert f'<td class="time">{now:%H:%M:%S}</td>' in get(page(status=told))[2]
+
+
+def test_the_page_is_read_in_the_language_of_the_screen() -> None:
+    speak_in("es")
+    try:
+        body, told = get(page(status={**STATUS, "stop": "GUARD OPEN"}))[2], get(page(), "/status.json")[2]
+    finally:
+        speak_in("en")
+    assert '<html lang="es">' in body
+    assert ">EN MARCHA<" in body
+    assert f">{text_in_spanish('shopfloor.time-remaining')}<" in body
+    assert ">RUNNING<" not in body
+    assert json.loads(told) == STATUS  # which programs read
+
+
+def test_an_alarm_is_told_once_and_without_an_empty_line() -> None:
+    text = "AXIS SENT, ITS ENCODER DOES NOT COUNT: X"
+    alarm = {"number": 117, "code": "117", "text": text, "remedy": "look where the slide stands"}
+    bare = {"number": None, "code": "interrupted", "text": "pin.nc line 52", "remedy": ""}
+    body = get(page(status={**STATUS, "state": "ALARM", "stop": text, "alarms": [alarm, bare]}))[2]
+    assert body.count(text) == 1
+    assert "<br>look where the slide stands" in body
+    assert '<p class="alarm">interrupted pin.nc line 52</p>' in body
+    held = get(page(status={**STATUS, "state": "FEED HOLD", "stop": "GUARD OPEN"}))[2]
+    assert '<p class="why">GUARD OPEN</p>' in held
+
+
+def test_the_same_for_a_script() -> None:
+    assert json.loads(get(page(), "/status.json")[2]) == STATUS
+
+
+def looking(**snapshot: Any) -> Status:
+    reader = FloorReader(LATHE, lambda: 0.0)
+    stops = [StopRow(str(i), "", "pin.nc", f"2026-11-23T08:0{i}:00Z", 10.0 + i, "H") for i in range(9)]
+    now = datetime(2026, 11, 23, 9, tzinfo=UTC)
+    shot = Snapshot(**snapshot)
+    return OfficeLook("GT-75", reader, lambda: shot, lambda _: 42.04, lambda: stops, lambda: now).status()
+
+
+def test_a_running_part_has_its_time_left_and_the_newest_stops() -> None:
+    told = looking(state=State.RUN, program="/p/pin.nc", counts=True, made=3, line=9)
+    assert (told["state"], told["program"], told["made"], told["line"]) == ("RUNNING", "pin.nc", 3, 9)
+    assert told["time_left"] == 42.0
+    stops = told["stops"]
+    assert isinstance(stops, list)
+    assert [each["seconds"] for each in stops] == [18, 17, 16, 15, 14, 13][:STOPS]
+
+
+def test_what_does_not_run_has_no_time_left() -> None:
+    assert looking(state=State.IDLE)["time_left"] is None
+
+
+def test_a_message_to_the_operator_is_why_it_stands() -> None:
+    told = looking(state=State.PROGRAM_STOP, message="TURN THE PART ROUND")
+    assert told["stop"] == "TURN THE PART ROUND"
+
+
+def test_of_a_silent_control_nothing_else_is_said() -> None:
+    seconds = iter((0.0, 10.0, 20.0, 30.0))
+    reader = FloorReader(LATHE, lambda: next(seconds))
+    look = OfficeLook("GT-75", reader, Snapshot, lambda _: 1.0, lambda: (), lambda: datetime.now(UTC))
+    look.status()
+    told = look.status()
+    assert (told["state"], told["available"], told["made"]) == (text("shopfloor.control-silent"), False, None)
+
+
+# --- the desks beside -------------------------------------------------------------------------------
+
+
+@contextmanager
+def served(wsgi: StatusPage, clock: Callable[[], float] = time.monotonic) -> Iterator[str]:
+    """A page on a real socket."""
+    listening = listening_at("127.0.0.1", 0)
+    server = PageServer(wsgi, listening, lambda: None, clock)
+    server.start()
+    try:
+        yield f"http://127.0.0.1:{listening.getsockname()[1]}/"
+    finally:
+        server.close()
+
+
+def connected(address: str, source: str = "127.0.0.1") -> socket.socket:
+    host = urlsplit(address)
+    return socket.create_connection((host.hostname, host.port), 60, source_address=(source, 0))
+
+
+def test_browsers_that_ask_half_a_question_keep_nobody_waiting() -> None:
+    """More than there may be, of one address; without a token, as anybody in the network could."""
+    with served(page()) as address, ExitStack() as half:
+        for _ in range(150):
+            half.enter_context(connected(address)).sendall(b"GET /?tok")
+        assert asked(address).trouble == ""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="one loopback address only")
+def test_connections_have_a_limit_in_all() -> None:
+    with served(page()) as address, ExitStack() as half:
+        askers = [half.enter_context(connected(address, f"127.0.0.{2 + n // 10}")) for n in range(MOST + 1)]
+        assert askers[0].recv(1) == b""
+        assert asked(address).trouble == ""
+
+
+def test_connections_of_one_address_have_a_limit_and_the_oldest_ends() -> None:
+    with served(page()) as address, ExitStack() as half:
+        askers = [half.enter_context(connected(address)) for _ in range(MOST_OF_ONE + 1)]
+        assert askers[0].recv(1) == b""
+        askers[1].sendall(b"GET /status.json HTTP/1.0\r\n\r\n")
+        assert askers[1].recv(12) == b"HTTP/1.0 200"
+
+
+def test_a_request_has_a_deadline_as_a_whole() -> None:
+    """Bytes that go on coming do not put it off."""
+    now = [100.0]
+    with served(page(), lambda: now[0]) as address, connected(address) as drips:
+        drips.sendall(b"GET /?tok")
+        assert asked(address).trouble == ""
+        now[0] += DEADLINE - 1.0
+        drips.sendall(b"e")
+        assert asked(address).trouble == ""
+        now[0] += 2.0
+        assert drips.recv(1) == b""
+
+
+@pytest.mark.parametrize(
+    "request_bytes",
+    [b"GET http://[ HTTP/1.1\r\n\r\n", b"GET / HTTP/1.1\r\nContent-Length: %s\r\n\r\n" % (b"1" * 5000)],
+)
+def test_bytes_that_are_no_request_get_a_plain_refusal(
+    request_bytes: bytes, caplog: pytest.LogCaptureFixture
+) -> None:
+    with served(page()) as address, connected(address) as odd:
+        odd.sendall(request_bytes)
+        assert odd.recv(12) == b"HTTP/1.0 400"
+    assert caplog.records == []
+
+
+def test_a_request_without_end_is_refused() -> None:
+    with served(page()) as address, connected(address) as odd:
+        odd.sendall(b"GET /?" + b"a" * 20_000)
+        assert odd.recv(12) == b"HTTP/1.0 431"
+
+
+def test_browsers_that_wait_for_each_other_are_not_told_to_the_log(caplog: pytest.LogCaptureFixture) -> None:
+    go_on, under_way = threading.Event(), threading.Semaphore(0)
+
+    def slow() -> Status:
+        under_way.release()
+        go_on.wait(60)
+        return STATUS
+
+    waits = StatusPage("GT-75", "", slow, lambda: (), lambda: b"", lambda: b"")
+    with served(waits) as address, ExitStack() as open_ones:
+        host = urlsplit(address)
+        for _ in range(6):
+            asking = open_ones.enter_context(socket.create_connection((host.hostname, host.port)))
+            asking.sendall(b"GET /status.json HTTP/1.0\r\n\r\n")
+        for _ in range(3):
+            assert under_way.acquire(timeout=60)
+        go_on.set()
+        for _ in range(3):
+            assert under_way.acquire(timeout=60)
+    assert caplog.records == []
+
+
+def test_a_desk_shows_another_one() -> None:
+    with served(page(TOKEN)) as address:
+        heard = asked(f"{address}?token={TOKEN}")
+    assert heard.trouble == ""
+    assert heard.status is not None
+    assert heard.status["program"] == "<b>pin</b>.nc"
+    shown = get(page(others=(heard,)))[2]
+    assert shown.count("&lt;b&gt;pin") == 2
+    assert TOKEN not in shown
+
+
+def test_another_desk_that_wants_another_token_says_so() -> None:
+    with served(page(TOKEN)) as address:
+        assert asked(address).trouble == text("shopfloor.other-token")
+
+
+def test_a_desk_that_is_off_does_not_answer() -> None:
+    with socket.socket() as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        heard = asked(f"http://127.0.0.1:{nobody.getsockname()[1]}")
+    assert heard.status is None
+    assert "refused" in heard.trouble
+    assert text("shopfloor.no-answer-shown") in get(page(others=(heard,)))[2]
+
+
+def test_what_another_desk_says_is_not_believed() -> None:
+    odd: Status = {**STATUS, "time_left": "soon", "program": ["x"], "line": {"a": 1}, "state": "<hr>"}
+    with served(page(status=odd)) as address:
+        heard = asked(address)
+    shown = get(page(others=(heard,)))[2]
+    assert "soon" not in shown
+    assert "<hr>" not in shown
+
+
+@pytest.mark.parametrize("odd", [float("inf"), float("nan"), -float("inf"), 10**400, True])
+def test_a_figure_that_is_none_is_left_out(odd: float) -> None:
+    with served(page(status={**STATUS, "time_left": odd, "last_cycle": odd})) as address:
+        heard = asked(address)
+    assert heard.status is not None
+    assert heard.status.keys() & {"time_left", "last_cycle"} == set()
+    assert "RUNNING" in get(page(others=(heard,)))[2]
+
+
+def test_the_address_of_the_status() -> None:
+    assert status_address("http://a:1/?token=x") == "http://a:1/status.json?token=x"
+    assert status_address("http://a:1/desk") == "http://a:1/desk/status.json"
+
+
+def test_other_desks_are_asked_while_somebody_looks() -> None:
+    heard = OtherDesk("lathe2", {"state": "READY"})
+    asking = OtherDesks(("http://lathe2:8317",), lambda _address: heard)
+    assert (asking.look()[0].state, asking.look()[0].trouble) == ("…", "")
+    asking.start()
+    while asking.look()[0].status != heard.status:
+        pass
+    asking.close()
+
+
+def test_an_older_desk_shows_what_it_says_and_a_dead_one_that_it_is_dead() -> None:
+    """Side by side: one that knows no counts and times yet, one that was killed, one as new as this."""
+    older: Status = {key: STATUS[key] for key in ("machine", "state", "program", "line")}
+    with served(page(status=older)) as old, served(page(status=STATUS)) as new, socket.socket() as dead:
+        dead.bind(("127.0.0.1", 0))
+        heard = [asked(each) for each in (old, f"http://127.0.0.1:{dead.getsockname()[1]}", new)]
+    assert [each.status is not None for each in heard] == [True, False, True]
+    shown = get(page(others=tuple(heard)))[2]
+    cards = shown[shown.index('class="others"') :].split("<article>")[1:]
+    assert [(text("shopfloor.no-answer-shown") in card, ">PARTS<" in card.upper()) for card in cards] == [
+        (False, False),
+        (True, False),
+        (False, True),
+    ]
+
+
+def test_a_desk_that_hangs_keeps_nobody_from_hearing_of_the_others() -> None:
+    hangs, healthy = threading.Event(), OtherDesk("lathe3", {"state": "READY"})
+
+    def ask(address: str) -> OtherDesk:
+        if "lathe2" in address:
+            hangs.wait()
+        return healthy
+
+    asking = OtherDesks(("http://lathe2:8317", "http://lathe3:8317"), ask)
+    asking.look()
+    asking.start()
+    try:
+        while asking.look()[1].status is not healthy.status:
+            pass
+        assert asking.look()[0].state == "…"
+    finally:
+        hangs.set()
+        asking.close()
+
+
+def test_what_was_heard_long_ago_is_not_told_as_of_now() -> None:
+    now = [0.0]
+    asking = OtherDesks(("http://lathe2:8317",), lambda _address: OtherDesk("lathe2"), lambda: now[0])
+    asking.look()
+    asking._heard["http://lathe2:8317"] = 0.0, OtherDesk("lathe2", {"state": "RUNNING"})
+    now[0] = 10.0
+    assert asking.look()[0].status == {"state": "RUNNING"}
+    now[0] = 10.5
+    assert (asking.look()[0].status, asking.look()[0].trouble) == (None, text("shopfloor.silent-for", age=10))
+
+
+def test_a_desk_that_never_answers_is_told_behind_a_while() -> None:
+    now = [100.0]
+    asking = OtherDesks(("http://lathe2:8317",), lambda _address: OtherDesk("lathe2"), lambda: now[0])
+    assert asking.look()[0].state == "…"
+    now[0] = 110.5
+    assert (asking.look()[0].state, asking.look()[0].trouble) == (
+        text("shopfloor.no-answer-shown"),
+        text("shopfloor.silent-for", age=10),
+    )
+
+
+def test_a_desk_that_dies_keeps_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(other_desks, "EVERY", 0.001)
+    dies, answers = threading.Event(), iter([OtherDesk("lathe2", {"machine": "LATHE 2", "state": "READY"})])
+
+    def ask(_address: str) -> OtherDesk:
+        if (heard := next(answers, None)) is not None:
+            return heard
+        dies.wait()
+        return OtherDesk("lathe2", trouble="Connection refused")
+
+    asking = OtherDesks(("http://lathe2:8317",), ask)
+    asking.look()
+    asking.start()
+    while asking.look()[0].status is None:
+        pass
+    dies.set()
+    while asking.look()[0].status is not None:
+        pass
+    asking.close()
+    shown = get(page(others=tuple(asking.look())))[2]
+    assert "<h2>LATHE 2 (lathe2:8317)</h2>" in shown
+    assert "Connection refused" in shown
+
+
+def test_who_looks_after_a_night_sees_no_desk_that_is_dead_because_nobody_asked() -> None:
+    now = [0.0]
+    asking = OtherDesks(("http://lathe2:8317",), lambda _address: OtherDesk("lathe2"), lambda: now[0])
+    asking.look()
+    asking._heard["http://lathe2:8317"] = 0.0, OtherDesk("lathe2", {"state": "RUNNING"})
+    now[0] = 30_000.0
+    assert (asking.look()[0].status, asking.look()[0].state) == (None, "…")
+
+
+def test_a_port_that_is_taken_is_told() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        port = other.getsockname()[1]
+        with raises_code(DriverError, "driver", f"[status_page] 127.0.0.1:{port}: "):
+            listening_at("127.0.0.1", port)
+    with raises_code(DriverError, "driver", "[status_page] 192.0.2.1:8317: "):
+        listening_at("192.0.2.1", 8317)
+
+
+def test_machine_check_has_a_row_for_the_page_and_for_the_broker() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as there, socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        taken, away = there.getsockname()[1], free.getsockname()[1]
+        tables = (
+            f'[status_page]\nenabled = true\nport = {taken}\n[announce]\nmqtt = "127.0.0.1:{taken}"\n',
+            f'[status_page]\nenabled = true\nport = {taken + 1}\n[announce]\nmqtt = "127.0.0.1:{away}"\n',
+        )
+        told = [
+            check_ports(parse_machine(machine_file("gt75.toml") + each, "m.toml")).rows for each in tables
+        ]
+    states = [{row.name: row.state for row in rows} for rows in told]
+    assert (states[0]["status_page"], states[0]["announce"]) == ("fault", "ok")
+    assert states[1]["announce"] == text("shopfloor.no-answer")
+
+
+# --- pictures ---------------------------------------------------------------------------------------
+
+
+def test_no_part_is_drawn_while_one_is_made() -> None:
+    runs, drawn = [True], []
+    job: Any = SimpleNamespace(digest="a")
+
+    def draw(_job: object, _watch: object) -> Thumbnail:
+        drawn.append(1)
+        return Thumbnail(b"\xff" * 16, 2, 2)
+
+    picture = PartPicture(lambda: job, lambda: not runs[0], draw)
+    picture.look()
+    assert (picture.png(), drawn) == (b"", [])
+    runs[0] = False
+    picture.look()
+    picture.look()
+    assert picture.png().startswith(b"\x89PNG")
+    assert drawn == [1]
+    job.digest = "b"
+    assert picture.png() == b""  # of another program
+
+
+def test_a_png_is_what_qt_reads() -> None:
+    colours = [0xFF102030, 0x80FFFFFF, 0x00000000, 0xFF00FF00, 0xFFFF0000, 0xFF0000FF]
+    image = QImage.fromData(png_of(np.array(colours, dtype=np.uint32).tobytes(), 3, 2))
+    assert [image.pixel(x, y) for y in range(2) for x in range(3)] == colours
+
+
+def record_of(error: Any) -> Record:
+    channels = channels_of({"X": False, "C": True}, (), ())
+    times = np.arange(len(error)) / 1000.0 + 50.0
+    columns = {each.name: np.full(len(error), np.nan) for each in channels}
+    columns |= {"X following error": np.asarray(error), "C following error": np.ones(len(error))}
+    about = {"alarm": "102 FOLLOWING ERROR: <X>", "alarm time": "52.5"}
+    return Record(channels, times, columns, 0.0, 1000.0, about)
+
+
+def test_an_alarm_is_drawn_with_its_peak() -> None:
+    error = np.zeros(5000)
+    error[2500] = 0.25  # one sample of 5 000, at the alarm
+    svg = alarm_drawing(record_of(error)).decode()
+    assert "±0.2500 mm" in svg
+    assert "&lt;X&gt;" in svg
+    assert svg.count("<polyline") == 1  # C is no slide
+    points = [tuple(map(float, each.split(","))) for each in svg.split('points="')[1].split('"')[0].split()]
+    peak = min(points, key=lambda point: point[1])
+    assert peak[1] == pytest.approx(24.0)  # the top of the drawing's room
+    assert peak[0] == pytest.approx(8 + 2500 / 4999 * 624, abs=0.1)
+    assert max(y for _, y in points) < HIGH
+
+
+def test_a_record_without_samples_is_not_drawn() -> None:
+    assert alarm_drawing(record_of(np.array([]))) == b""
+    assert alarm_drawing(record_of(np.full(10, np.nan))) == b""
+    assert alarm_drawing(replace(record_of(np.zeros(10)), about={})) == b""
+
+
+def test_a_record_that_is_damaged_is_not_drawn(tmp_path: Path) -> None:
+    (tmp_path / "20261123-alarm102.scope").write_bytes(b"PK damaged")
+    drawing = AlarmDrawing(tmp_path, lambda: True)
+    drawing.look()
+    assert drawing.svg() == b""

@@ -1,0 +1,457 @@
+"""What a pendant's events do to buttons and counts, and everything that must not count."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+import pytest
+
+from app.extras.pendant.driver.input_devices import AxisRange, InputEvent, Packet, Packets
+from app.extras.pendant.driver.pendant_station import (
+    LOST,
+    Pendant,
+    PendantButtons,
+    PendantIO,
+    PendantStation,
+)
+from app.extras.pendant.driver.pendant_table import STOPS, wheel_of
+from core.ports import DriverError, StationState
+from tests.coded import raises_code
+from tests.extras.pendant.made import (
+    ABS,
+    ABS_HAT0X,
+    BOUND,
+    BTN_0,
+    BTN_A,
+    BTN_B,
+    DROPPED,
+    EVENT,
+    HAT,
+    KEY,
+    REL,
+    REL_DIAL,
+    SYN,
+    WHEEL,
+    Peer,
+)
+
+ABS_WHEEL = 8  # of the kernel's header
+
+
+class Bench:
+    """A pendant and its device; time is moved by hand."""
+
+    def __init__(self, *, place: bool = False, pressed: tuple[int, ...] = ()) -> None:
+        self.t = 100.0
+        self.peer: Peer | None = None
+        self.plug(*pressed)
+        self.rung = 0
+        self.pendant = Pendant(
+            BOUND, frozenset(STOPS), WHEEL, self._find, lambda: self.t, place=place, ring=self._ring
+        )
+        self.look()
+
+    def _ring(self) -> None:
+        self.rung += 1
+
+    def plug(self, *pressed: int) -> Peer:
+        self.peer = Peer(HAT)
+        self.peer.now = self.t
+        self.peer.pressed |= set(pressed)
+        return self.peer
+
+    def _find(self) -> list[Peer]:
+        if self.peer is None:
+            raise DriverError("the pendant Knob is not plugged in")
+        return [self.peer]
+
+    def go(self, seconds: float) -> None:
+        self.t += seconds
+        if self.peer is not None:
+            self.peer.now = self.t
+
+    def look(self) -> None:
+        self.pendant.look(0.0)
+
+    @property
+    def device(self) -> Peer:
+        assert self.peer is not None
+        return self.peer
+
+    @property
+    def held(self) -> set[str]:
+        return {name for name, on in self.pendant.state().inputs.items() if on}
+
+    @property
+    def counts(self) -> int:
+        return self.pendant.state().counts
+
+
+def test_the_struct_is_the_kernels() -> None:
+    """Of 64 bits: 16 bytes of time, 2 of type, 2 of code, 4 of value."""
+    data = bytes.fromhex(
+        "0a00000000000000 20a1070000000000 0200 0700 ffffffff 0b00000000000000 0000000000000000"
+    )
+    data += bytes.fromhex("0000 0000 00000000")
+    if EVENT.size != 24:
+        pytest.skip("a long has four bytes here")
+    (packet,) = Packets().feed(data)
+    (event,) = packet.events
+    assert event == (10.5, REL, REL_DIAL, -1)
+
+
+def test_a_packet_in_pieces_counts_once_it_is_whole() -> None:
+    packets = Packets()
+    data = EVENT.pack(1, 0, REL, REL_DIAL, 3) + EVENT.pack(1, 0, SYN, 0, 0)
+    assert [packet for i in range(len(data) - 1) for packet in packets.feed(data[i : i + 1])] == []
+    (packet,) = packets.feed(data[-1:])
+    assert packet.events[0].value == 3
+
+
+def test_a_button_is_held_until_it_comes_up() -> None:
+    bench = Bench()
+    bench.device.key(BTN_A, True)
+    bench.look()
+    assert bench.held == {"jog_x_plus"}
+    bench.device.send((KEY, BTN_A, 2))  # it repeats by itself
+    bench.look()
+    assert bench.held == {"jog_x_plus"}
+    bench.device.key(BTN_A, False)
+    bench.look()
+    assert bench.held == set()
+
+
+def test_a_hat_is_two_buttons() -> None:
+    bench = Bench()
+    for value, names in ((1, {"jog_z_plus"}), (-1, {"jog_z_minus"}), (0, set())):
+        bench.device.send((ABS, ABS_HAT0X, value))
+        bench.look()
+        assert bench.held == names
+
+
+def test_the_wheel_counts() -> None:
+    bench = Bench()
+    for counts in (1, 1, -3, 2):
+        bench.device.turn(counts)
+    bench.look()
+    assert bench.counts == 1
+
+
+def test_a_second_report_of_the_same_turning_in_finer_steps_counts_nothing() -> None:
+    bench = Bench()
+    bench.device.send((REL, REL_DIAL, 1), (REL, 12, 120))
+    bench.look()
+    assert bench.counts == 1
+
+
+def test_a_dial_that_tells_its_place_moves_nothing_by_a_report_of_the_same_place() -> None:
+    """A Shuttle tells the place of its dial with every button, and never 0."""
+    bench = Bench(place=True)
+    for place in (200, 200, 201, 201):
+        bench.device.turn(place)
+    bench.look()
+    assert bench.counts == 1
+    for place in (254, 255, 1, 2):  # 53 on, and round: 255, 0 untold, 1
+        bench.device.turn(place)
+    bench.look()
+    assert bench.counts == 1 + (254 - 201) + 1 + 2 + 1
+    bench.device.turn(254)
+    bench.look()
+    assert bench.counts == 1 + (254 - 201)
+
+
+# --- what does not count --------------------------------------------------------------------------------
+
+
+def test_what_is_down_when_it_is_plugged_in_counts_from_the_next_press_on() -> None:
+    bench = Bench(pressed=(BTN_A,))
+    assert bench.held == set()
+    bench.device.send((KEY, BTN_A, 2))
+    bench.device.send((KEY, BTN_A, 1))
+    bench.look()
+    assert bench.held == set()
+    bench.device.key(BTN_A, False)
+    bench.device.key(BTN_A, True)
+    bench.look()
+    assert bench.held == {"jog_x_plus"}
+
+
+def test_a_stop_that_is_down_when_it_is_plugged_in_stops() -> None:
+    assert Bench(pressed=(BTN_B,)).held == {"hold"}
+
+
+def test_a_late_press_moves_nothing_and_a_late_release_and_a_late_stop_count() -> None:
+    bench = Bench()
+    bench.device.key(BTN_A, True, ago=0.11)
+    bench.look()
+    assert bench.held == set()
+    bench.device.key(BTN_A, False)
+    bench.device.key(BTN_A, True, ago=0.09)
+    bench.look()
+    assert bench.held == {"jog_x_plus"}
+    bench.device.key(BTN_A, False, ago=5.0)
+    bench.device.key(BTN_B, True, ago=5.0)
+    bench.look()
+    assert bench.held == {"hold"}
+
+
+def test_late_counts_are_dropped() -> None:
+    bench = Bench()
+    bench.device.turn(5, ago=0.2)
+    bench.device.turn(1)
+    bench.look()
+    assert bench.counts == 1
+
+
+def test_a_late_place_moves_nothing_and_the_next_counts_from_it() -> None:
+    bench = Bench(place=True)
+    bench.device.turn(10)
+    bench.device.turn(40, ago=0.2)
+    bench.device.turn(41)
+    bench.look()
+    assert bench.counts == 1
+
+
+def test_dropped_events_let_everything_go_and_take_the_wheel_away() -> None:
+    bench = Bench()
+    bench.device.key(BTN_A, True)
+    bench.look()
+    bench.device.send((REL, REL_DIAL, 7), (SYN, DROPPED, 0), (REL, REL_DIAL, 9))
+    bench.look()
+    assert bench.held == set()  # though it is still down: it must be let go first
+    assert bench.counts == 0
+    station = PendantStation(Inner(), bench.pendant, stops=True, wheel=True)
+    assert station.snapshot().wheel_trouble == LOST
+    assert station.snapshot().trouble == ""
+    bench.go(0.31)
+    bench.look()
+    assert station.snapshot().wheel_trouble == ""
+    bench.device.key(BTN_A, False)
+    bench.device.key(BTN_A, True)
+    bench.look()
+    assert bench.held == {"jog_x_plus"}
+
+
+def test_a_key_that_came_up_in_what_was_dropped_is_up() -> None:
+    bench = Bench()
+    bench.device.key(BTN_B, True)
+    bench.look()
+    bench.device.pressed.clear()
+    bench.device.send((SYN, DROPPED, 0))
+    bench.look()
+    assert bench.held == set()
+
+
+# --- unplugged ------------------------------------------------------------------------------------------
+
+
+class Inner:
+    """The machine's own station and terminals."""
+
+    state = StationState(handwheel=4)
+
+    def snapshot(self) -> StationState:
+        return self.state
+
+    def inputs(self) -> dict[str, bool]:
+        return {"estop": False, "start": False}
+
+    def outputs(self) -> dict[str, bool]:
+        return {"coolant": True}
+
+    def write(self, name: str, on: bool) -> None:
+        raise DriverError(f"{name} {on}")
+
+    def safe(self) -> None:
+        raise DriverError("safe")
+
+
+def test_unplugged_everything_is_let_go_and_it_is_told() -> None:
+    bench = Bench()
+    bench.device.key(BTN_A, True)
+    bench.device.key(BTN_0, True)
+    bench.look()
+    assert bench.held == {"jog_x_plus", "wheel_x"}
+    bench.device.pull()
+    bench.peer = None
+    bench.look()
+    assert bench.held == set()
+    assert "unplugged" in bench.pendant.state().away
+    station = PendantStation(Inner(), bench.pendant, stops=True, wheel=True)
+    bench.go(10.0)
+    bench.look()
+    assert "not plugged in" in station.snapshot().trouble  # as long as its stop is away
+    assert "not plugged in" in station.snapshot().wheel_trouble
+
+
+def test_one_without_a_stop_holds_once_and_is_not_missed() -> None:
+    bench = Bench()
+    station = PendantStation(Inner(), bench.pendant, stops=False, wheel=True)
+    bench.device.pull()
+    bench.peer = None
+    bench.look()
+    assert "unplugged" in station.snapshot().trouble
+    bench.go(0.4)
+    bench.look()
+    assert station.snapshot().trouble == ""
+    assert "not plugged in" in station.snapshot().wheel_trouble
+
+
+def test_plugged_in_again_it_is_back_and_nothing_moves_by_itself() -> None:
+    bench = Bench()
+    bench.device.turn(3)
+    bench.look()
+    bench.device.pull()
+    bench.look()
+    bench.plug(BTN_A)
+    bench.look()
+    assert bench.pendant.state().away == ""
+    assert bench.held == set()
+    assert bench.counts == 3
+    bench.device.turn(1)
+    bench.look()
+    assert bench.counts == 4
+
+
+def test_a_reader_that_has_stopped_holds_nothing() -> None:
+    bench = Bench()
+    bench.device.key(BTN_A, True)
+    bench.look()
+    bench.go(0.31)  # and nobody looks
+    assert bench.held == set()
+    assert "has stopped" in bench.pendant.state().away
+
+
+def test_it_adds_to_the_station_and_can_start_nothing() -> None:
+    bench = Bench()
+    bench.device.turn(2)
+    bench.device.key(BTN_B, True)
+    bench.look()
+    state = PendantStation(Inner(), bench.pendant, stops=True, wheel=True).snapshot()
+    assert state == dataclasses.replace(Inner.state, handwheel=6, hold=True)
+    io = PendantIO(Inner(), bench.pendant)
+    assert io.inputs()["hold"]
+    assert not io.inputs()["start"]
+    assert io.outputs() == {"coolant": True}
+    with raises_code(DriverError, "driver", "coolant False"):
+        io.write("coolant", False)
+    with raises_code(DriverError, "driver", "safe"):
+        io.safe()
+
+
+def test_its_thread_reads_and_ends() -> None:
+    bench = Bench()
+    bench.pendant.start()
+    bench.pendant.close()
+    assert bench.device.closed
+    assert bench.held == set()
+
+
+def test_a_control_at_rest_hears_at_once_that_something_was_pressed_turned_or_unplugged() -> None:
+    bench = Bench()
+    acts: tuple[Callable[[], None], ...] = (
+        lambda: bench.device.key(BTN_A, True),
+        lambda: bench.device.turn(1),
+        bench.device.pull,
+    )
+    for act in acts:
+        before = bench.rung
+        bench.look()
+        assert bench.rung == before  # nothing has happened
+        act()
+        bench.look()
+        assert bench.rung > before
+    before = bench.rung
+    bench.plug()
+    bench.look()
+    assert bench.rung > before
+
+
+# --- wheels and sticks that tell a place --------------------------------------------------------------------
+
+
+class Said:
+    """Buttons without a device: what is told goes straight in."""
+
+    def __init__(self, wheel: str, ranges: dict[int, AxisRange], keys: tuple[int, ...] = ()) -> None:
+        self.buttons = PendantButtons(BOUND, frozenset(STOPS), wheel_of(wheel))
+        self.buttons.begin(keys, ranges)
+
+    def tell(self, kind: int, code: int, value: int, ago: float = 0.0) -> None:
+        self.buttons.take(Packet((InputEvent(10.0 - ago, kind, code, value),)), 10.0)
+
+
+def test_an_absolute_wheel_counts_from_where_it_stands_and_round_its_end() -> None:
+    """0 to 255: from 250 to 5 are eleven on, back to 255 six the other way; a late one moves its place."""
+    said = Said("ABS_WHEEL", {ABS_WHEEL: AxisRange(0, 255, 250)})
+    counts = []
+    for value, ago in ((5, 0.0), (255, 0.0), (200, 5.0), (201, 0.0)):
+        said.tell(ABS, ABS_WHEEL, value, ago)
+        counts.append(said.buttons.counts)
+    assert counts == [11, 5, 5, 6]
+
+
+def test_an_absolute_wheel_without_a_range_counts_nothing() -> None:
+    said = Said("ABS_WHEEL", {ABS_WHEEL: AxisRange(3, 3, 3)})
+    for value in (4, 9, 3):
+        said.tell(ABS, ABS_WHEEL, value)
+    assert said.buttons.counts == 0
+
+
+@pytest.mark.parametrize("ranges", [{}, {ABS_HAT0X: AxisRange(0, 0, 0)}])
+def test_a_stick_of_which_the_range_is_not_known_is_never_held(ranges: dict[int, AxisRange]) -> None:
+    said = Said("REL_DIAL", ranges)
+    for value in (1, 255, -32768):
+        said.tell(ABS, ABS_HAT0X, value)
+        assert said.buttons.down == set()
+
+
+def test_a_stick_is_held_to_one_side_until_it_is_back() -> None:
+    said = Said("REL_DIAL", {ABS_HAT0X: AxisRange(0, 200, 100)})
+    seen = []
+    for value in (140, 190, 140, 105, 10):
+        said.tell(ABS, ABS_HAT0X, value)
+        seen.append(set(said.buttons.down))
+    assert seen == [set(), {"jog_z_plus"}, {"jog_z_plus"}, set(), {"jog_z_minus"}]
+
+
+def test_a_late_report_of_a_button_that_is_held_changes_nothing() -> None:
+    said = Said("REL_DIAL", {})
+    said.tell(KEY, BTN_A, 1)
+    said.tell(KEY, BTN_A, 1, ago=5.0)
+    assert said.buttons.down == {"jog_x_plus"}
+    said.buttons.gone()
+    assert said.buttons.down == set()
+
+
+# --- the reader ---------------------------------------------------------------------------------------------
+
+
+class Pulled(Peer):
+    """Found, and gone before it says what is pressed."""
+
+    def keys(self) -> frozenset[int]:
+        raise OSError(19, "No such device")
+
+
+def test_one_that_goes_while_it_is_opened_is_let_go_and_looked_for_again() -> None:
+    bench = Bench()
+    bench.device.pull()
+    bench.look()
+    gone = Pulled()
+    bench.peer = gone
+    bench.look()
+    assert gone.closed
+    assert "unplugged" in bench.pendant.state().away
+    bench.plug()
+    bench.look()
+    assert bench.pendant.state().away == ""
+
+
+def test_a_pendant_that_was_never_started_is_let_go() -> None:
+    bench = Bench()
+    device = bench.device
+    bench.pendant.close()
+    assert device.closed
+    assert bench.pendant.state().away == "TurnDesk has stopped reading the pendant"
