@@ -531,23 +531,6 @@ out_of_tolerance[].at | string | UTC | Time of the reading.
         ),
     ),
 )
-JOBS = Output(
-    "jobs list --json",
-    "One object.",
-    keys(
-        """
-jobs | list | | The job queue, in order.
-jobs[].place | integer | | Position, from 1.
-jobs[].program | string | | File name of the program.
-jobs[].parts | integer | | Parts to make.
-jobs[].made | integer | | Parts made.
-jobs[].left | integer | | Parts that remain to be made.
-jobs[].state | string | | waiting, in progress or done.
-jobs[].note | string | | Note.
-jobs[].added | string | UTC | Time at which the job was added.
-"""
-    ),
-)
 STORE_VERIFY = Output(
     "store verify --json",
     "One object.",
@@ -690,7 +673,7 @@ left_out.* | integer | | Number, by kind.
 )
 _OWN_OUTPUTS = (
     *(PROVE, EXPAND_OMNITURN, EXPAND_SINUMERIK, EXPAND_KLARTEXT, TRACE, RUN, MACHINE_CHECK, MACHINE_HAL),
-    *(ALARMS, OFFSETS_SHOW, OFFSETS_HISTORY, PARTS, SHIFT, JOBS, STORE_VERIFY),
+    *(ALARMS, OFFSETS_SHOW, OFFSETS_HISTORY, PARTS, SHIFT, STORE_VERIFY),
     *(SHAPES, SHAPES_LIST, SCOPE, ACCESS_LIST, ACCESS_TABLE, PROFILE, PROFILE_LIST),
 )
 OUTPUTS = tuple(

@@ -36,7 +36,6 @@ COMMANDS = (
     "serial",
     "alarms",
     "parts",
-    "jobs",
     "shift",
     "scope",
     "setup",

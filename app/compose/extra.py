@@ -17,12 +17,16 @@ if TYPE_CHECKING:
     from app.compose.check_rows import Answers
     from app.compose.journal import Journal
     from app.desk.desk import Desk
+    from app.desk.latest import Latest
     from app.desk.page_description import PageEntry
+    from app.desk.persistence import Persistence
+    from app.desk.program_loading import LoadingSteps
+    from app.special.special_functions import SpecialFunction
     from core.json_key import Output
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-NAMES = ("sharing",)
+NAMES = ("jobs", "sharing")
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -47,8 +51,17 @@ class Extra:
         """Return the tables that this feature adds to the machine file."""
         return ()
 
-    def attach(self, desk: Desk, machine: Machine, journal: Journal | None) -> None:
-        """Attach the models of this feature to the desk; without a ``journal`` nothing is saved."""
+    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
+        """Attach the models of this feature to the desk; without a ``journal`` nothing is saved.
+
+        ``work`` reads and proves programs with the offsets of this moment, and saves nothing.
+        """
+
+    def special_functions(
+        self, desk: Desk, machine: Machine, persistence: Persistence, worker: Latest
+    ) -> Sequence[tuple[SpecialFunction, str]]:
+        """Return the special functions (F10) of this feature, each with the name of the one it follows."""
+        return ()
 
     def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
         """Start the threads of this feature, and return a function that ends them.

@@ -16,7 +16,6 @@ from app.compose.desk_functions import furnish
 from app.compose.desk_quality import give_quality
 from app.compose.error_log import Log
 from app.compose.extra import extras
-from app.compose.jobs_desk import give_jobs
 from app.compose.journal import Journal
 from app.compose.kinematics_chain import kinematics_of
 from app.compose.machine_in_use import remember_machine
@@ -336,9 +335,8 @@ def _desk(
     give_searchto(desk, machine)
     give_quality(desk, machine, journal)
     alone = workshop(machine, offsets, left=left, pictures=False)
-    give_jobs(desk, machine, alone, shapes_at_hand, kept, journal)
     for extra in extras().values():
-        extra.attach(desk, machine, journal)
+        extra.attach(desk, machine, journal, alone)
     return desk
 
 

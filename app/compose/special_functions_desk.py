@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from app.compose.extra import extras, insert_after
 from app.compose.program_transfer import PLAIN, SerialLines, proving
 from app.desk.data_folder import BACKUPS, data_folder
 from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps
-from app.jobs.jobs_function import JobsFunction
 from app.quality.parts_function import MeasuredPartsFunction
 from app.quality.shift_function import ShiftReport
 from app.scope.scope_function import ScopeFunction
@@ -91,10 +91,14 @@ def special_functions(
     functions.append(_setup_sheet(desk, machine, persistence, worker))
     functions.append(ScopeFunction(desk))
     functions.append(MeasuredPartsFunction(desk))
-    functions.append(JobsFunction(desk))
     functions.append(ShiftReport(desk, machine.name, worker, data_folder() / "sheets"))
     functions.append(LampsAndSound(desk, machine, sounds))
     functions.append(AccessLevels(desk, persistence))
     if machine.language == Dialect.SINUMERIK:
         functions.append(RParameters(desk, persistence, worker))
-    return SpecialFunctions(functions, worker)
+    added = [
+        pair
+        for extra in extras().values()
+        for pair in extra.special_functions(desk, machine, persistence, worker)
+    ]
+    return SpecialFunctions(insert_after(functions, lambda function: function.name, added), worker)

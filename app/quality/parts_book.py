@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import Future
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
@@ -15,7 +15,6 @@ from core.access.access_table import Act
 from core.message import Message
 from core.quality.measured_feature import CorrectedBy, Feature, FeatureKind
 from core.store import measured_parts, part_cycles, tool_lives
-from core.store.job_queue import JobRow
 from core.store.measured_parts import FeatureRow, ReadingRow
 from core.store.part_cycles import CorrectionRow, CycleRow, CycleTime, StopRow
 from core.store.store import Store
@@ -26,6 +25,8 @@ from core.store.tool_lives import LifeRow
 
 NONE_KEPT = "MEASURED PARTS CANNOT BE SAVED: NO DATA STORE"
 _DAYS = timedelta(days=2)
+Read = Callable[[Store, str], Any]
+"""What an optional feature reads of the store for a program, on the worker. Raises StoreError."""
 NEWEST = 1000  # readings, cycles and stops that are looked at
 
 
@@ -42,7 +43,7 @@ class PartsData:
     stops: tuple[StopRow, ...] = ()
     corrections: tuple[CorrectionRow, ...] = ()
     day: tuple[CycleTime, ...] = ()  # when all programs ran, as long ago as a shift may be
-    jobs: tuple[JobRow, ...] = ()  # the queue
+    more: Mapping[str, Any] = field(default_factory=dict)  # what features have read, by their names
 
     @property
     def whole_cycles(self) -> tuple[CycleRow, ...]:
@@ -101,7 +102,6 @@ def parts_data(store: Store, program: str, limit: int = NEWEST, tools: Kind = Ki
 
     Takes its time. Raises StoreError.
     """
-    jobs = store.jobs()
     with store.read() as connection:
         return PartsData(
             program,
@@ -113,7 +113,6 @@ def parts_data(store: Store, program: str, limit: int = NEWEST, tools: Kind = Ki
             part_cycles.stops(connection, None, limit),
             part_cycles.corrections(connection, program, limit),
             part_cycles.times_since(connection, utc(datetime.now(UTC) - _DAYS)),
-            jobs,
         )
 
 
@@ -136,6 +135,7 @@ class PartsBook:
     access: Access = field(default_factory=Access)  # who changes, and whether he may
     trouble: str = ""  # why the last reading or writing failed
     loads: int = 0  # how often ``now`` was read
+    readers: dict[str, Read] = field(default_factory=dict)  # of optional features
     worker: Latest = field(default_factory=lambda: Latest("measured-parts"))
     _stale: bool = True
     _reading: bool = False
@@ -159,12 +159,11 @@ class PartsBook:
         self.worker.poll()
         self._look_at_writing()
         if program != self.now.program:
-            self.now, self._stale = PartsData(program, lives=self.now.lives, jobs=self.now.jobs), True
+            self.now, self._stale = PartsData(program, lives=self.now.lives, more=self.now.more), True
         store = self.store
         if store is not None and not self.worker.busy and self._written(store):
             self._reading = True
-            tools = self.tools
-            self.worker.ask(lambda _watch: parts_data(store, program, tools=tools), self._read, self._failed)
+            self.worker.ask(lambda _watch: self._data(store, program), self._read, self._failed)
 
     def _written(self, store: Store) -> bool:
         """Whether something is to be read anew, and the writer has come to what was posted before."""
@@ -178,6 +177,11 @@ class PartsBook:
             return False
         self._behind = None
         return True
+
+    def _data(self, store: Store, program: str) -> PartsData:
+        """On the worker. Raises StoreError."""
+        more = {name: read(store, program) for name, read in self.readers.items()}
+        return replace(parts_data(store, program, tools=self.tools), more=more)
 
     def _read(self, found: PartsData) -> None:
         self.now, self.trouble, self._reading = found, "", False

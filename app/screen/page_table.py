@@ -17,7 +17,7 @@ TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS
 ZERO, MILL_TOOLS, PRESETS = "ZERO OFFSETS", "TOOL TABLE", "PRESETS"
 PROGRAMS, SHAPE, PART = "PROGRAMS", "TOOL SHAPE", "PART"
 SCOPE, ANALYSES, DRIVE_TEST = "SCOPE", "ANALYSES", "DRIVE TEST"
-MEASURED, JOBS = "MEASURED PARTS", "JOBS"
+MEASURED = "MEASURED PARTS"
 
 
 _OMNITURN = frozenset({"omniturn"})
@@ -147,14 +147,6 @@ _OWN_PAGES = (
         "MEASURED",
         "features, readings, charts, trends",
         later=("app.quality.plots_view.PlotsPane", "app.compose.desk_quality_sections.sections"),
-    ),
-    PageEntry(
-        JOBS,
-        "app.jobs.jobs_view.JobsPage",
-        "app.jobs.jobs_model.JobsModel",
-        "J",
-        "JOBS",
-        "next job, number of parts, setup requirements",
     ),
     PageEntry(
         ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses", later=_ANALYSIS

@@ -52,7 +52,6 @@ ROOMS = (
         "app/automatic",
         "app/desk",
         "app/editor",
-        "app/jobs",
         "app/jog",
         "app/mdi",
         "app/offsets",
@@ -88,8 +87,7 @@ APART = frozenset(
             "run_without_screen.py",
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
-        *("shared_database.py", "sharing/version_record.py", "share_command.py", "place_answer.py"),
-        *("sharing_table.py", "sharing_check.py", "sharing/extra.py"),
+        *("shared_database.py", "sharing/version_record.py", "place_answer.py", "sharing_table.py"),
         *("screen/pdf_pages.py", "shapes/sinumerik_lines.py", "shapes/bar_lines.py"),
         *("shapes/live_lines.py", "shapes/sinumerik_live_lines.py"),
         *(
@@ -105,6 +103,8 @@ APART = frozenset(
         ),  # see _of_books
     }
 )
+# Of optional features: what their commands print.
+APART_IN_EXTRAS = ("_command.py", "_check.py", "_json_keys.py")
 # Read by somebody, and not to be told from names by their looks.
 ALSO = (
     "the server does not support TLS; use an address that begins with http://",
@@ -284,6 +284,8 @@ def console_texts(shown: Container[str]) -> dict[str, str]:
 
 def _is_apart(path: Path, room: str) -> bool:
     named = {path.name, f"{path.parent.name}/{path.name}"}
+    if room == "app/extras" and path.name.endswith(APART_IN_EXTRAS):
+        return True
     return bool(named & APART) or (room == COMPOSING and path.name not in COMPOSED)
 
 

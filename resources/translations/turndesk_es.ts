@@ -4790,11 +4790,6 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
-      <source>PROGRAM SHARING</source>
-      <translation>COMPARTICIÓN DE PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
       <source>SCOPE RECORDER</source>
       <translation>GRABADOR DEL OSCILOSCOPIO</translation>
     </message>
@@ -4832,21 +4827,6 @@
       <location filename="app/compose/screen_desk.py" />
       <source>{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK</source>
       <translation>{what}: DETENIDO. GUARDE LA BITÁCORA Y REINICIE TURNDESK</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>PROGRAMS NOT SHARED: {why}</source>
-      <translation>PROGRAMAS SIN COMPARTIR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>{name} WAS CHANGED ON {machine}. F1, X: SHOW CHANGES</source>
-      <translation>{name} SE CAMBIÓ EN {machine}. F1, X: MOSTRAR LOS CAMBIOS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>{path} cannot be used: {error}</source>
-      <translation>{path} no se puede usar: {error}</translation>
     </message>
     <message>
       <location filename="app/compose/stored_offsets.py" />
@@ -6899,274 +6879,444 @@
       <translation>{size} bytes</translation>
     </message>
     <message>
-      <location filename="app/jobs/job_setup.py" />
-      <source>no offset set: touch off the tool</source>
-      <translation>sin corrector: tome referencia de la herramienta</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/job_setup.py" />
-      <source>remaining tool life covers {left} of {parts} parts</source>
-      <translation>la vida restante de la herramienta alcanza para {left} de {parts} piezas</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/job_setup.py" />
-      <source>since the last run ({when}), the tool tip has changed from R {was}, {was_tip}, to R {radius}, {tip}</source>
-      <translation>desde la última corrida ({when}), la punta cambió de R {was}, {was_tip}, a R {radius}, {tip}</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/job_setup.py" />
-      <source>tip quadrant {quadrant}</source>
-      <translation>cuadrante de punta {quadrant}</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/job_setup.py" />
-      <source>tool life used up, {words}: change the insert</source>
-      <translation>vida de la herramienta agotada, {words}: cambie la plaquita</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_function.py" />
-      <source>ENTER: OPEN JOBS   ESC: BACK TO THE LIST</source>
-      <translation>ENTER: ABRIR TRABAJOS   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_function.py" />
-      <source>IN PROGRESS</source>
-      <translation>EN CURSO</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/extra.py" />
       <source>JOBS</source>
       <translation>TRABAJOS</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_function.py" />
-      <source>Press Enter to open the JOBS page. Shift+F6 opens it from any page, and J opens it from the main menu.</source>
-      <translation>Pulse Enter para abrir la página TRABAJOS. Mayús+F6 la abre desde cualquier página, y J desde el menú principal.</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_function.py" />
-      <source>WAITING</source>
-      <translation>ESPERANDO</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/extra.py" />
       <source>next job, number of parts, setup requirements</source>
       <translation>trabajo siguiente, número de piezas, lo necesario para la preparación</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
-      <source>ADD</source>
-      <translation>SUMAR</translation>
+      <location filename="app/extras/jobs/job_setup.py" />
+      <source>no offset set: touch off the tool</source>
+      <translation>sin corrector: tome referencia de la herramienta</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/job_setup.py" />
+      <source>remaining tool life covers {left} of {parts} parts</source>
+      <translation>la vida restante de la herramienta alcanza para {left} de {parts} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/job_setup.py" />
+      <source>since the last run ({when}), the tool tip has changed from R {was}, {was_tip}, to R {radius}, {tip}</source>
+      <translation>desde la última corrida ({when}), la punta cambió de R {was}, {was_tip}, a R {radius}, {tip}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/job_setup.py" />
+      <source>tip quadrant {quadrant}</source>
+      <translation>cuadrante de punta {quadrant}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/job_setup.py" />
+      <source>tool life used up, {words}: change the insert</source>
+      <translation>vida de la herramienta agotada, {words}: cambie la plaquita</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_desk.py" />
+      <source>{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST</source>
+      <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, LUEGO F6: REVISE LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_function.py" />
+      <source>ENTER: OPEN JOBS   ESC: BACK TO THE LIST</source>
+      <translation>ENTER: ABRIR TRABAJOS   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_function.py" />
+      <source>IN PROGRESS</source>
+      <translation>EN CURSO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_function.py" />
+      <source>Press Enter to open the JOBS page. Shift+F6 opens it from any page, and J opens it from the main menu.</source>
+      <translation>Pulse Enter para abrir la página TRABAJOS. Mayús+F6 la abre desde cualquier página, y J desde el menú principal.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_function.py" />
+      <source>WAITING</source>
+      <translation>ESPERANDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>CANNOT LOAD: MACHINE MOVING OR PROGRAM RUNNING. ESC: BACK</source>
       <translation>NO SE PUEDE CARGAR: MÁQUINA O PROGRAMA EN MARCHA. ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>CLEAR</source>
       <translation>BORRAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>DONE</source>
       <translation>HECHO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>F1, THEN F2: LOAD PROGRAM   F1, F6, THEN F10: ADD JOB</source>
       <translation>F1, LUEGO F2: CARGAR PROGRAMA   F1, F6, LUEGO F10: AÑADIR TRABAJO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>F2: LOAD JOB ONLY   CYCLE START: RUN   ESC: AUTOMATIC</source>
       <translation>F2: SOLO CARGAR TRABAJO   ARRANQUE DE CICLO: CORRER   ESC: AUTOMÁTICO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>HOW MANY PARTS OF {program}?</source>
       <translation>¿CUÁNTAS PIEZAS DE {program}?</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>JOB DONE, PROGRAM STILL LOADED</source>
       <translation>TRABAJO HECHO, PROGRAMA AÚN CARGADO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
-      <source>JOBS CANNOT BE SAVED: NO DATA STORE</source>
-      <translation>NO SE PUEDEN GUARDAR TRABAJOS: NO HAY ALMACÉN DE DATOS</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_model.py" />
-      <source>LINE {line}</source>
-      <translation>LÍNEA {line}</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>MADE</source>
       <translation>HECHAS</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>NO FINISHED JOBS TO CLEAR</source>
       <translation>NO HAY TRABAJOS TERMINADOS QUE VACIAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, THEN F10: ADD JOB</source>
       <translation>SIN TRABAJOS. F3: AÑADIR PROGRAMA CARGADO   F1, F6, LUEGO F10: AÑADIR TRABAJO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>NO NOTES DURING A CYCLE: LETTER KEYS WOULD STOP THE MACHINE</source>
       <translation>SIN NOTAS DURANTE UN CICLO: LAS LETRAS PARARÍAN LA MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>NOTE TOO LONG: {maximum} CHARACTERS AT MOST</source>
       <translation>NOTA DEMASIADO LARGA: {maximum} CARACTERES COMO MÁXIMO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>PROGRAM LOADED. SEE ERRORS AND WARNINGS ON PART PAGE (B)</source>
       <translation>PROGRAMA CARGADO. VEA ERRORES Y AVISOS EN LA PÁGINA PIEZA (B)</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>PROOF</source>
       <translation>COMPROBACIÓN</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>PROVING …</source>
       <translation>COMPROBANDO …</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>QUANTITY</source>
       <translation>CANTIDAD</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
-      <source>REMOVE</source>
-      <translation>QUITAR</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>SETUP SHEET</source>
       <translation>HOJA DE PREPARACIÓN</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>STATE</source>
       <translation>ESTADO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
-      <source>STOCK</source>
-      <translation>MATERIAL EN BRUTO</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_model.py" />
-      <source>TIME</source>
-      <translation>TIEMPO</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL</source>
       <translation>ESCRIBA EL DATO   ENTER: ACEPTAR   ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>Y: REMOVE {count} FINISHED JOBS FROM THE QUEUE   N: KEEP THEM</source>
       <translation>Y: QUITAR {count} TRABAJOS TERMINADOS DE LA COLA   N: CONSERVARLOS</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>finished jobs removed from the job queue</source>
       <translation>trabajos terminados quitados de la cola de trabajos</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>job {program} added: {expected} parts</source>
       <translation>trabajo {program} añadido: {expected} piezas</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>job {program} removed</source>
       <translation>trabajo {program} quitado</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>job {program}: moved to position {to}</source>
       <translation>trabajo {program}: movido a la posición {to}</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>job {program}: quantity changed: {expected} → {expected2} parts</source>
       <translation>trabajo {program}: cantidad cambiada: {expected} → {expected2} piezas</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>job {program}: {text}</source>
       <translation>trabajo {program}: {text}</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>ready</source>
       <translation>lista</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>{program}: {made} OF {wanted} MADE. Y: REMOVE FROM QUEUE   N: KEEP</source>
       <translation>{program}: {made} DE {wanted} HECHAS. Y: QUITAR DE LA COLA   N: CONSERVAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>ALL TOOLS READY</source>
       <translation>TODAS LAS HERRAMIENTAS LISTAS</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>JOB DONE: {count} OF {expected} PARTS OF {program}.</source>
       <translation>TRABAJO HECHO: {count} DE {expected} PIEZAS DE {program}.</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>NEXT: {program}, {left} PARTS</source>
       <translation>SIGUE: {program}, {left} PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>NO MORE JOBS WAITING.</source>
       <translation>NO HAY MÁS TRABAJOS EN ESPERA.</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
-      <source>NOT PROVED YET</source>
-      <translation>AÚN NO COMPROBADO</translation>
-    </message>
-    <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>THE PROGRAM HAS ERRORS</source>
       <translation>EL PROGRAMA TIENE ERRORES</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>job {program} started</source>
       <translation>trabajo {program} empezado</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>{count} SETUP ITEMS NOT READY</source>
       <translation>{count} PUNTOS DE PREPARACIÓN SIN TERMINAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
-      <source>{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST</source>
-      <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, LUEGO F6: REVISE LA LISTA</translation>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>PROGRAM SHARING</source>
+      <translation>COMPARTICIÓN DE PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>SHARED</source>
+      <translation>COMPART.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>SHARED PROGRAMS</source>
+      <translation>PROGRAMAS COMPARTIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>programs from other TurnDesk controls; newer versions are copied on request</source>
+      <translation>programas de otros controles TurnDesk; las versiones nuevas se copian si se pide</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/program_files.py" />
+      <source>the file is larger than {most_bytes} MB</source>
+      <translation>el archivo es mayor de {most_bytes} MB</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/program_files.py" />
+      <source>the name of another program on this control differs from the name of this program only in upper and lower case: rename one of the programs</source>
+      <translation>el nombre de otro programa de este control difiere del nombre de este programa solo en mayúsculas y minúsculas: cambie el nombre de uno de los programas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>copied from {machine}</source>
+      <translation>copiado de {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>no decision is necessary, because no other control has changed this program</source>
+      <translation>no hace falta decidir, porque ningún otro control ha cambiado este programa</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>shared by {machine}</source>
+      <translation>compartido por {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>the text of {program} differs from the saved version; save the program again</source>
+      <translation>el texto de {program} difiere de la versión guardada; guarde el programa otra vez</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>{program} is already the selected version</source>
+      <translation>{program} ya es la versión elegida</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_desk.py" />
+      <source>PROGRAMS NOT SHARED: {why}</source>
+      <translation>PROGRAMAS SIN COMPARTIR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_desk.py" />
+      <source>{name} WAS CHANGED ON {machine}. F1, X: SHOW CHANGES</source>
+      <translation>{name} SE CAMBIÓ EN {machine}. F1, X: MOSTRAR LOS CAMBIOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_desk.py" />
+      <source>{path} cannot be used: {error}</source>
+      <translation>{path} no se puede usar: {error}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>AVAILABLE ON</source>
+      <translation>DISPONIBLE EN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>AVAILABLE ON {desks}</source>
+      <translation>DISPONIBLE EN {desks}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>CHANGED HERE AND ON ANOTHER CONTROL</source>
+      <translation>CAMBIADO AQUÍ Y EN OTRO CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>CHANGES IF YOU USE THE SELECTED VERSION</source>
+      <translation>CAMBIOS SI USA LA VERSIÓN ELEGIDA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>CHECKING …</source>
+      <translation>COMPROBANDO …</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>F2: USE SELECTED VERSION   F3: KEEP LOCAL VERSION   ESC: BACK</source>
+      <translation>F2: USAR LA VERSIÓN ELEGIDA   F3: CONSERVAR LA LOCAL   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>F2: USE SELECTED VERSION (ASKS FIRST)   ESC: AUTOMATIC</source>
+      <translation>F2: USAR LA VERSIÓN ELEGIDA (PREGUNTA ANTES)   ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>KEEP</source>
+      <translation>CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NEWER VERSION ON ANOTHER CONTROL</source>
+      <translation>VERSIÓN MÁS NUEVA EN OTRO CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM</source>
+      <translation>NO HACE FALTA DECIDIR: NINGÚN OTRO CONTROL HA CAMBIADO ESTE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER OR A DATABASE UNDER [sharing] IN THE MACHINE FILE</source>
+      <translation>NO HAY UBICACIÓN PARA PROGRAMAS COMPARTIDOS. INDIQUE UNA CARPETA O UNA BASE DE DATOS EN [sharing] DEL ARCHIVO DE MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NO OTHER CONTROL HAS A NEWER VERSION</source>
+      <translation>NINGÚN OTRO CONTROL TIENE UNA VERSIÓN MÁS NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NOT ON THIS CONTROL</source>
+      <translation>NO ESTÁ EN ESTE CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER</source>
+      <translation>AÚN NO SE COMPARTE NADA. LA PRÓXIMA ACTUALIZACIÓN COMPARTE LA CARPETA DE PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>SAME TEXT AS ON THIS CONTROL</source>
+      <translation>EL MISMO TEXTO QUE EN ESTE CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>UP TO DATE</source>
+      <translation>AL DÍA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC</source>
+      <translation>ARRIBA/ABAJO: SELECCIONAR PROGRAMA   F5: ACTUALIZAR   ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>VERSION</source>
+      <translation>VERSIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>Y: KEEP LOCAL {name}, STORE OTHER VERSIONS   N: CANCEL</source>
+      <translation>Y: CONSERVAR {name} LOCAL, GUARDAR LAS OTRAS VERSIONES   N: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>Y: USE {name} FROM {desk} (LOCAL VERSION STAYS STORED)   N: CANCEL</source>
+      <translation>Y: USAR {name} DE {desk} (LA VERSIÓN LOCAL QUEDA GUARDADA)   N: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>program {name}: local version retained</source>
+      <translation>programa {name}: versión local conservada</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>program {program}: version from {machine} now in use</source>
+      <translation>programa {program}: se usa ahora la versión de {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{count} WAITING TO BE SHARED</source>
+      <translation>{count} POR COMPARTIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{name} IS NOW THE VERSION FROM {machine}</source>
+      <translation>{name} ES AHORA LA VERSIÓN DE {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{name}: LOCAL VERSION RETAINED</source>
+      <translation>{name}: VERSIÓN LOCAL CONSERVADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{name}: NO RESPONSE FOR {seconds} S. PROGRAMS STAY LOCAL FOR NOW</source>
+      <translation>{name} NO RESPONDE HACE {seconds} S. POR AHORA LOS PROGRAMAS QUEDAN AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_view.py" />
+      <source>VERSIONS ON OTHER CONTROLS</source>
+      <translation>VERSIONES EN OTROS CONTROLES</translation>
     </message>
     <message>
       <location filename="app/jog/drive_test_model.py" />
@@ -9155,6 +9305,11 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
+      <source>ADD</source>
+      <translation>SUMAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>TOOL OFFSETS</source>
       <translation>CORRECTORES DE HERRAMIENTA</translation>
     </message>
@@ -9330,6 +9485,11 @@
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
+      <source>STOCK</source>
+      <translation>MATERIAL EN BRUTO</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
       <source>STOCK DATA DELETED</source>
       <translation>DATOS DEL MATERIAL BORRADOS</translation>
     </message>
@@ -9470,6 +9630,11 @@
     </message>
     <message>
       <location filename="app/part/part_tables.py" />
+      <source>NOT PROVED YET</source>
+      <translation>AÚN NO COMPROBADO</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
       <source>REASON FOR TURNING OFF THE {check} CHECK?</source>
       <translation>¿MOTIVO PARA DESACTIVAR LA COMPROBACIÓN {check}?</translation>
     </message>
@@ -9562,6 +9727,11 @@
       <location filename="app/path/measuring.py" />
       <source>TO Z</source>
       <translation>A LA Z</translation>
+    </message>
+    <message>
+      <location filename="app/path/part_bar_view.py" />
+      <source>LINE {line}</source>
+      <translation>LÍNEA {line}</translation>
     </message>
     <message>
       <location filename="app/path/path_aspects.py" />
@@ -10365,6 +10535,11 @@
     </message>
     <message>
       <location filename="app/quality/features_section.py" />
+      <source>REMOVE</source>
+      <translation>QUITAR</translation>
+    </message>
+    <message>
+      <location filename="app/quality/features_section.py" />
       <source>SECONDARY OFFSET</source>
       <translation>CORRECTOR SECUNDARIO</translation>
     </message>
@@ -10750,6 +10925,11 @@
     </message>
     <message>
       <location filename="app/quality/shift_function.py" />
+      <source>JOBS CANNOT BE SAVED: NO DATA STORE</source>
+      <translation>NO SE PUEDEN GUARDAR TRABAJOS: NO HAY ALMACÉN DE DATOS</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_function.py" />
       <source>LATER</source>
       <translation>DESPUÉS</translation>
     </message>
@@ -10897,6 +11077,11 @@
       <location filename="app/quality/shift_page.py" />
       <source>Stops by reason</source>
       <translation>Paros por motivo</translation>
+    </message>
+    <message>
+      <location filename="app/quality/shift_page.py" />
+      <source>TIME</source>
+      <translation>TIEMPO</translation>
     </message>
     <message>
       <location filename="app/quality/shift_page.py" />
@@ -12340,16 +12525,6 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
-      <source>SHARED</source>
-      <translation>COMPART.</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>SHARED PROGRAMS</source>
-      <translation>PROGRAMAS COMPARTIDOS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
       <source>SPECIAL FUNCTIONS</source>
       <translation>FUNCIONES ESPECIALES</translation>
     </message>
@@ -12397,11 +12572,6 @@
       <location filename="app/screen/page_table.py" />
       <source>program findings, stock, checks turned off</source>
       <translation>hallazgos del programa, material en bruto, comprobaciones desactivadas</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>programs from other TurnDesk controls; newer versions are copied on request</source>
-      <translation>programas de otros controles TurnDesk; las versiones nuevas se copian si se pide</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -13282,176 +13452,6 @@
       <location filename="app/shapes/shapes_view.py" />
       <source>SHAPES  ·  IN THIS PROGRAM, BY LINE</source>
       <translation>FORMAS  ·  EN ESTE PROGRAMA, POR LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/program_files.py" />
-      <source>the file is larger than {most_bytes} MB</source>
-      <translation>el archivo es mayor de {most_bytes} MB</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/program_files.py" />
-      <source>the name of another program on this control differs from the name of this program only in upper and lower case: rename one of the programs</source>
-      <translation>el nombre de otro programa de este control difiere del nombre de este programa solo en mayúsculas y minúsculas: cambie el nombre de uno de los programas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>copied from {machine}</source>
-      <translation>copiado de {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>no decision is necessary, because no other control has changed this program</source>
-      <translation>no hace falta decidir, porque ningún otro control ha cambiado este programa</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>shared by {machine}</source>
-      <translation>compartido por {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>the text of {program} differs from the saved version; save the program again</source>
-      <translation>el texto de {program} difiere de la versión guardada; guarde el programa otra vez</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>{program} is already the selected version</source>
-      <translation>{program} ya es la versión elegida</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>AVAILABLE ON</source>
-      <translation>DISPONIBLE EN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>AVAILABLE ON {desks}</source>
-      <translation>DISPONIBLE EN {desks}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>CHANGED HERE AND ON ANOTHER CONTROL</source>
-      <translation>CAMBIADO AQUÍ Y EN OTRO CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>CHANGES IF YOU USE THE SELECTED VERSION</source>
-      <translation>CAMBIOS SI USA LA VERSIÓN ELEGIDA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>CHECKING …</source>
-      <translation>COMPROBANDO …</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>F2: USE SELECTED VERSION   F3: KEEP LOCAL VERSION   ESC: BACK</source>
-      <translation>F2: USAR LA VERSIÓN ELEGIDA   F3: CONSERVAR LA LOCAL   ESC: VOLVER</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>F2: USE SELECTED VERSION (ASKS FIRST)   ESC: AUTOMATIC</source>
-      <translation>F2: USAR LA VERSIÓN ELEGIDA (PREGUNTA ANTES)   ESC: AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>KEEP</source>
-      <translation>CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NEWER VERSION ON ANOTHER CONTROL</source>
-      <translation>VERSIÓN MÁS NUEVA EN OTRO CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM</source>
-      <translation>NO HACE FALTA DECIDIR: NINGÚN OTRO CONTROL HA CAMBIADO ESTE PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER OR A DATABASE UNDER [sharing] IN THE MACHINE FILE</source>
-      <translation>NO HAY UBICACIÓN PARA PROGRAMAS COMPARTIDOS. INDIQUE UNA CARPETA O UNA BASE DE DATOS EN [sharing] DEL ARCHIVO DE MÁQUINA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NO OTHER CONTROL HAS A NEWER VERSION</source>
-      <translation>NINGÚN OTRO CONTROL TIENE UNA VERSIÓN MÁS NUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NOT ON THIS CONTROL</source>
-      <translation>NO ESTÁ EN ESTE CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER</source>
-      <translation>AÚN NO SE COMPARTE NADA. LA PRÓXIMA ACTUALIZACIÓN COMPARTE LA CARPETA DE PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>SAME TEXT AS ON THIS CONTROL</source>
-      <translation>EL MISMO TEXTO QUE EN ESTE CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>UP TO DATE</source>
-      <translation>AL DÍA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC</source>
-      <translation>ARRIBA/ABAJO: SELECCIONAR PROGRAMA   F5: ACTUALIZAR   ESC: AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>VERSION</source>
-      <translation>VERSIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>Y: KEEP LOCAL {name}, STORE OTHER VERSIONS   N: CANCEL</source>
-      <translation>Y: CONSERVAR {name} LOCAL, GUARDAR LAS OTRAS VERSIONES   N: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>Y: USE {name} FROM {desk} (LOCAL VERSION STAYS STORED)   N: CANCEL</source>
-      <translation>Y: USAR {name} DE {desk} (LA VERSIÓN LOCAL QUEDA GUARDADA)   N: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>program {name}: local version retained</source>
-      <translation>programa {name}: versión local conservada</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>program {program}: version from {machine} now in use</source>
-      <translation>programa {program}: se usa ahora la versión de {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{count} WAITING TO BE SHARED</source>
-      <translation>{count} POR COMPARTIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{name} IS NOW THE VERSION FROM {machine}</source>
-      <translation>{name} ES AHORA LA VERSIÓN DE {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{name}: LOCAL VERSION RETAINED</source>
-      <translation>{name}: VERSIÓN LOCAL CONSERVADA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{name}: NO RESPONSE FOR {seconds} S. PROGRAMS STAY LOCAL FOR NOW</source>
-      <translation>{name} NO RESPONDE HACE {seconds} S. POR AHORA LOS PROGRAMAS QUEDAN AQUÍ</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_view.py" />
-      <source>VERSIONS ON OTHER CONTROLS</source>
-      <translation>VERSIONES EN OTROS CONTROLES</translation>
     </message>
     <message>
       <location filename="app/shopfloor/agent_desk.py" />
@@ -18252,6 +18252,96 @@
       <location filename="core/executor/watchdog.py" />
       <source>the software thread of the control is stuck</source>
       <translation>el hilo de software del control está atorado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/connection_string.py" />
+      <source>{named} (TLS certificate not verified)</source>
+      <translation>{named} (certificado TLS sin verificar)</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_folder.py" />
+      <source>{mark} is damaged</source>
+      <translation>{mark} está dañado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_place.py" />
+      <source>the database {address}</source>
+      <translation>la base de datos {address}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_place.py" />
+      <source>the folder {folder}</source>
+      <translation>la carpeta {folder}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>[sharing] postgresql is not a valid connection string; put a value that contains spaces in quotation marks, and write / and @ in the password of an address as %2F and %40</source>
+      <translation>[sharing] postgresql no es una cadena de conexión válida; ponga entre comillas un valor que contenga espacios, y escriba / y @ en la contraseña de una dirección como %2F y %40</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]</source>
+      <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in [sharing] postgresql to the certificate of its issuer</source>
+      <translation>el certificado de {place} no se puede verificar ({why}); indique en [sharing] postgresql sslrootcert=FILE con el certificado de su emisor</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>the disk of {place} is full; free up space on that disk</source>
+      <translation>el disco de {place} está lleno; libere espacio en ese disco</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>this user does not have permission for this action in {place} ({why}); ask the administrator for permission</source>
+      <translation>este usuario no tiene permiso para esta acción en {place} ({why}); pida el permiso al administrador</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} accepts only TLS connections ({why}); remove sslmode from [sharing] postgresql</source>
+      <translation>{place} solo acepta conexiones TLS ({why}); quite sslmode de [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} contains no shared programs; check that it is mounted and that its name is right. To set up a new location, run: turndesk share begin</source>
+      <translation>{place} no contiene programas compartidos; revise que esté montado y que su nombre sea correcto. Para preparar una ubicación nueva, ejecute: turndesk share begin</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} does not respond ({why}); this control continues to work, and will share programs again when the connection is restored</source>
+      <translation>{place} no responde ({why}); este control sigue trabajando, y volverá a compartir programas cuando se restablezca la conexión</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} does not support TLS ({why}); turn on TLS at that server, or, on a network where you trust every user, write sslmode=disable in [sharing] postgresql</source>
+      <translation>{place} no ofrece TLS ({why}); active TLS en ese servidor o, en una red en la que confía en todos los usuarios, escriba sslmode=disable en [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} is not set up for shared programs ({why}); specify another location</source>
+      <translation>{place} no está preparado para programas compartidos ({why}); indique otra ubicación</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} rejects the user name or the password ({why}); correct the user name or the password in [sharing] postgresql</source>
+      <translation>{place} rechaza el nombre de usuario o la contraseña ({why}); corrija el nombre de usuario o la contraseña en [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} was not found ({why}); check that it is mounted and that its name is right</source>
+      <translation>no se encontró {place} ({why}); revise que esté montado y que su nombre sea correcto</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} was set up by a newer TurnDesk (format {why}); update TurnDesk on this control</source>
+      <translation>{place} fue preparado por un TurnDesk más nuevo (formato {why}); actualice TurnDesk en este control</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place}: another control is also named {why}; give this control a name that no other control uses (desk in [sharing]) or, if the other computer no longer exists, run: turndesk share publish --claim</source>
+      <translation>{place}: otro control también se llama {why}; dé a este control un nombre que no use ningún otro (desk en [sharing]) o, si la otra computadora ya no existe, ejecute: turndesk share publish --claim</translation>
     </message>
     <message>
       <location filename="core/geometry/area_clearing.py" />
@@ -31247,96 +31337,6 @@
       <location filename="core/shapes/usual_fields.py" />
       <source>S{revolutions} is more than the {maximum} rpm limit of this spindle: enter {maximum2} or less.</source>
       <translation>S{revolutions} es más que el límite de {maximum} rpm de este husillo: introduzca {maximum2} o menos.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/connection_string.py" />
-      <source>{named} (TLS certificate not verified)</source>
-      <translation>{named} (certificado TLS sin verificar)</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/shared_folder.py" />
-      <source>{mark} is damaged</source>
-      <translation>{mark} está dañado</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/shared_place.py" />
-      <source>the database {address}</source>
-      <translation>la base de datos {address}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/shared_place.py" />
-      <source>the folder {folder}</source>
-      <translation>la carpeta {folder}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>[sharing] postgresql is not a valid connection string; put a value that contains spaces in quotation marks, and write / and @ in the password of an address as %2F and %40</source>
-      <translation>[sharing] postgresql no es una cadena de conexión válida; ponga entre comillas un valor que contenga espacios, y escriba / y @ en la contraseña de una dirección como %2F y %40</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]</source>
-      <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in [sharing] postgresql to the certificate of its issuer</source>
-      <translation>el certificado de {place} no se puede verificar ({why}); indique en [sharing] postgresql sslrootcert=FILE con el certificado de su emisor</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>the disk of {place} is full; free up space on that disk</source>
-      <translation>el disco de {place} está lleno; libere espacio en ese disco</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>this user does not have permission for this action in {place} ({why}); ask the administrator for permission</source>
-      <translation>este usuario no tiene permiso para esta acción en {place} ({why}); pida el permiso al administrador</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} accepts only TLS connections ({why}); remove sslmode from [sharing] postgresql</source>
-      <translation>{place} solo acepta conexiones TLS ({why}); quite sslmode de [sharing] postgresql</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} contains no shared programs; check that it is mounted and that its name is right. To set up a new location, run: turndesk share begin</source>
-      <translation>{place} no contiene programas compartidos; revise que esté montado y que su nombre sea correcto. Para preparar una ubicación nueva, ejecute: turndesk share begin</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} does not respond ({why}); this control continues to work, and will share programs again when the connection is restored</source>
-      <translation>{place} no responde ({why}); este control sigue trabajando, y volverá a compartir programas cuando se restablezca la conexión</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} does not support TLS ({why}); turn on TLS at that server, or, on a network where you trust every user, write sslmode=disable in [sharing] postgresql</source>
-      <translation>{place} no ofrece TLS ({why}); active TLS en ese servidor o, en una red en la que confía en todos los usuarios, escriba sslmode=disable en [sharing] postgresql</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} is not set up for shared programs ({why}); specify another location</source>
-      <translation>{place} no está preparado para programas compartidos ({why}); indique otra ubicación</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} rejects the user name or the password ({why}); correct the user name or the password in [sharing] postgresql</source>
-      <translation>{place} rechaza el nombre de usuario o la contraseña ({why}); corrija el nombre de usuario o la contraseña en [sharing] postgresql</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} was not found ({why}); check that it is mounted and that its name is right</source>
-      <translation>no se encontró {place} ({why}); revise que esté montado y que su nombre sea correcto</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} was set up by a newer TurnDesk (format {why}); update TurnDesk on this control</source>
-      <translation>{place} fue preparado por un TurnDesk más nuevo (formato {why}); actualice TurnDesk en este control</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place}: another control is also named {why}; give this control a name that no other control uses (desk in [sharing]) or, if the other computer no longer exists, run: turndesk share publish --claim</source>
-      <translation>{place}: otro control también se llama {why}; dé a este control un nombre que no use ningún otro (desk en [sharing]) o, si la otra computadora ya no existe, ejecute: turndesk share publish --claim</translation>
     </message>
     <message>
       <location filename="core/store/backup.py" />

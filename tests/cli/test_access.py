@@ -338,14 +338,6 @@ def test_an_old_hash_is_made_anew_on_the_command_line(
     assert [each[0] for each in hashes(home / "turndesk.db")] == [4, 5]
 
 
-def test_jobs_are_the_operators_and_have_the_name(say: Say, people: None, home: Path) -> None:
-    (home / "programs").mkdir()
-    (home / "programs" / "pin.nc").write_text("M30\n")
-    assert say("jobs", "add", "pin.nc", "20")[0] == 0
-    with Store.open(home) as store:
-        assert [(row.text, row.who) for row in store.events("jobs")] == [
-            ("jobs: pin.nc, 20 parts, is job 1", "shop")
-        ]
 
 
 def test_stock_is_kept_from_setup_on(

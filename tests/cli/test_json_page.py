@@ -29,12 +29,14 @@ from tests.cli.conftest import Turndesk
 from tests.cli.json_output import declared_alone, whole
 from tests.cli.test_profile import SHEET
 from tests.drawings.hand import chain, dxf
+from tests.extras.features import all_installed
 
 PAGE = Path(__file__).parents[2] / "docs" / "json.md"
 PROGRAMS = Path(resources.__file__).parent / "programs"
 HEAD = "G90G94F300\nM03S600\nT1\n"
 
 
+@all_installed
 def test_the_page_is_up_to_date() -> None:
     assert PAGE.read_text("utf-8") == document(), "python -m app.cli.json_page docs/json.md"
 
@@ -242,11 +244,6 @@ def test_shift(turndesk: Turndesk, filled: Path) -> None:
     first, last = (f"{now + timedelta(days=days):%Y-%m-%d %H:%M}" for days in (-2, 2))
     found = whole(turndesk("shift", "--from", first, "--to", last, "--json"))
     declared_alone([found], json_keys.SHIFT.keys)
-
-
-def test_jobs(turndesk: Turndesk, home: Path) -> None:
-    assert turndesk("jobs", "add", "pin.nc", "5").status == 0
-    declared_alone([whole(turndesk("jobs", "list", "--json"))], json_keys.JOBS.keys)
 
 
 def test_store_verify(turndesk: Turndesk, filled: Path) -> None:

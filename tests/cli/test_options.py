@@ -102,11 +102,8 @@ COVERED = {
     ("machine hal", "--json"): "tests/cli/test_machine_hal.py",
     ("alarms", "--json"): "tests/cli/test_alarms.py",
     ("parts", "--csv"): "tests/cli/test_parts.py",
-    ("jobs list", "--json"): "tests/cli/test_jobs.py",
     **{("shift", option): "tests/quality/test_shift_figures.py"
        for option in ("--back", "--from", "--to", "--report", "--json", "--metric")},
-    ("jobs add", "--note"): "tests/cli/test_jobs.py",
-    ("jobs clear", "--all"): "tests/cli/test_jobs.py",
     ("parts", "--json"): "tests/cli/test_parts.py",
     ("scope", "--csv"): "tests/cli/test_scope.py",
     ("scope", "--json"): "tests/cli/test_scope.py",
@@ -125,9 +122,8 @@ COVERED = {
     ("setup desktop", "--remove"): "tests/cli/test_setup.py",
     **{(command, "--as"): "tests/cli/test_access.py"
        for command in ("prove", "run", "offsets set", "offsets clear", "offsets undo", "store restore",
-                       "store import", "setup load", "machine accept", "jobs add", "jobs move", "jobs remove",
-                       "jobs clear", "access add", "access pin", "access remove", "serial receive",
-                       "profile", "shapes")},
+                       "store import", "setup load", "machine accept", "access add",
+                       "access pin", "access remove", "serial receive", "profile", "shapes")},
     **{("access " + action, "--json"): "tests/cli/test_access.py" for action in ("list", "table")},
     ("access add", "--level"): "tests/cli/test_access.py",
     ("serial receive", "--out"): "tests/drivers/transfer",
@@ -135,8 +131,11 @@ COVERED = {
     ("serial send", "--wait"): "tests/drivers/transfer",
     ("serial send", "--leader"): "tests/drivers/transfer",
 }  # fmt: skip
+REST: dict[str, list[str]] = {}  # arguments that commands of optional features need
 for each in sorted((Path(__file__).parents[1] / "extras").glob("*/options.py")):
-    COVERED |= import_module(f"tests.extras.{each.parent.name}.options").COVERED
+    module = import_module(f"tests.extras.{each.parent.name}.options")
+    COVERED |= module.COVERED
+    REST |= module.REST
 
 
 def test_every_option_of_every_command_is_in_the_table() -> None:
@@ -162,9 +161,7 @@ def test_an_option_before_a_command_acts_or_is_refused(
         "offsets clear": ["D"],
         "machine peer": ["gt75-bench"],
         "setup completion": ["bash"],
-        "jobs add": ["pin", "2"],
-        "jobs move": ["1", "2"],
-        "jobs remove": ["1"],
+        **REST,
     }
     bare = {
         "show",

@@ -327,7 +327,7 @@ SCENES = (
     Scene("charts", "F1 W 3"),
     Scene("life", "F1 W 4"),
     Scene("trends", "F1 W 5 Enter Down Down"),
-    Scene("jobs", "Jobs Down"),
+    Scene("jobs", "Shift+F6 Down"),
     Scene("sharing", "F1 X"),
     Scene("speed", 'F10 1 Enter "1500'),
     Scene("parts", "F10 2 Enter"),

@@ -86,4 +86,4 @@ trouble | string | | Why the version is not published yet; empty if it is publis
 """
     ),
 )
-OUTPUTS = (SHARE_BEGIN, SHARE_STATUS, SHARE_COMPARE, SHARE_TAKE, SHARE_KEEP)
+OUTPUTS = {"store verify --json": (SHARE_BEGIN, SHARE_STATUS, SHARE_COMPARE, SHARE_TAKE, SHARE_KEEP)}

@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from app.compose.desk_part import KeptOfProgram, PartDesk, Shapes
+from app.compose.desk_part import PartDesk
 from app.compose.journal import Journal
+from app.compose.stored_offsets import shapes_at_hand
 from app.desk.desk import Desk
+from app.desk.kept_part import kept_part
 from app.desk.latest import Watch
+from app.desk.page_description import ProgramKey
+from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps
 from app.desk.translation import tr
-from app.jobs.job_setup import ProvedJob
-from app.jobs.jobs_model import JobsModel
-from app.jobs.jobs_watch import JobsWatch
-from app.jobs.next_job import JobProofs
+from app.extras.jobs.job_setup import ProvedJob
+from app.extras.jobs.jobs_model import JobsModel
+from app.extras.jobs.jobs_watch import FEATURE, JobProofs, JobsWatch
 from app.quality.parts_watch import PartsWatch
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -25,24 +28,21 @@ Before = Callable[[str], tuple[str, dict[int, ToolRow]]]
 """When a program was started last, and its tools as they were then; on the worker."""
 
 
-def give_jobs(
-    desk: Desk,
-    machine: Machine,
-    steps: LoadingSteps,
-    shapes: Shapes,
-    kept: KeptOfProgram,
-    journal: Journal | None,
-) -> None:
-    """``steps`` keep nothing of what they prove."""
+def attach_jobs(desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
+    """Give the desk the queue and its page, and the list of programs its key."""
     parts = desk.attached(PartsWatch)
     if parts is None:
         return
-    of_part = PartDesk(machine, shapes, kept, steps.read)
+    kept = partial(kept_part, (journal or Persistence()).setting)
+    of_part = PartDesk(machine, shapes_at_hand, kept, work.read)
     before = journal.tools_of_last_run if journal is not None else _never
-    watch = JobsWatch(desk, parts, JobProofs(partial(_proved, desk, machine, steps, of_part, before)))
+    parts.book.readers[FEATURE] = lambda store, _program: store.jobs()
+    watch = JobsWatch(desk, parts, JobProofs(partial(_proved, desk, machine, work, of_part, before)))
     desk.attach(watch)
     desk.watches.append(watch)
-    desk.attach(JobsModel(desk, watch))
+    model = JobsModel(desk, watch)
+    desk.attach(model)
+    desk.program_keys["F10"] = ProgramKey("JOB", "JOBS", model.add_program)
     desk.offered = watch.notice
 
 

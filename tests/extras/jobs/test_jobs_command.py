@@ -7,9 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from core.store import job_queue
+from app.extras.jobs.jobs_json_keys import JOBS
+from core.access.access_table import Level
+from core.access.pins import hashed
+from core.store import job_queue, people
 from core.store.store import Store
 from tests.cli.conftest import Turndesk
+from tests.cli.json_output import declared_alone, whole
 
 
 @pytest.fixture
@@ -75,3 +79,24 @@ def test_a_desk_that_runs_has_the_queue_to_itself(turndesk: Turndesk, home: Path
         told = turndesk("jobs", "add", "cap", 5)
         assert (told.status, told.code) == (2, "in-use")
         assert turndesk("jobs", "list").status == 0
+
+
+@pytest.mark.usefixtures("programs")
+def test_jobs_are_the_operators_and_have_the_name(
+    turndesk: Turndesk, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("getpass.getuser", lambda: "shop")
+    monkeypatch.delenv("SSH_CONNECTION", raising=False)
+    with Store.open(home) as store:
+        ann = people.PersonRow("ANN", Level.SERVICE, *hashed("1234"))
+        store.write(lambda c: people.keep_person(c, ann)).result(60)
+    assert turndesk("jobs", "add", "cap", 20).status == 0
+    with Store.open(home) as store:
+        assert [(row.text, row.who) for row in store.events("jobs")] == [
+            ("jobs: cap.nc, 20 parts, is job 1", "shop")
+        ]
+
+
+def test_the_list_has_the_declared_keys(turndesk: Turndesk, home: Path) -> None:
+    assert turndesk("jobs", "add", "pin.nc", "5").status == 0
+    declared_alone([whole(turndesk("jobs", "list", "--json"))], JOBS.keys)

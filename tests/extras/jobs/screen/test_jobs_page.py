@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.jobs.job_setup import ProvedJob
-from app.jobs.jobs_model import JobsModel
-from app.jobs.jobs_view import JobsPage
-from app.jobs.jobs_watch import JobsWatch
+from app.extras.jobs.job_setup import ProvedJob
+from app.extras.jobs.jobs_model import JobsModel
+from app.extras.jobs.jobs_view import JobsPage
+from app.extras.jobs.jobs_watch import JobsWatch
 from app.programs.programs_view import ProgramsPage
 from app.screen import page_table
 from app.screen.window_layout import FINGER
@@ -58,7 +58,7 @@ def watch(day: Day) -> JobsWatch:
 
 def opened(day: Day) -> None:
     day.key(Key.Key_F6, modifier=SHIFT)
-    day.sees(lambda: day.page == page_table.JOBS)
+    day.sees(lambda: day.page == "JOBS")
 
 
 def added(day: Day, program: str, parts: str) -> None:
@@ -71,7 +71,7 @@ def added(day: Day, program: str, parts: str) -> None:
     assert isinstance(page, ProgramsPage)
     day.sees(lambda: program in "".join(row.cells[0] for row in page.model.sheet().rows))
     day.key(Key.Key_F10)
-    assert day.page == page_table.JOBS
+    assert day.page == "JOBS"
     assert model(day).sheet(day.shot).question == wording("screen.how-many-parts", program=program)
     day.enter(parts)
     day.sees(lambda: len(watch(day).jobs) == before + 1)
@@ -214,7 +214,7 @@ def test_while_a_program_runs_no_job_comes_on_the_desk(day: Day) -> None:
     day.reaches(State.RUN)
     opened(day)
     day.key(Key.Key_F2)
-    assert day.page == page_table.JOBS
+    assert day.page == "JOBS"
     assert day.prompt == wording("screen.program-runs-no-other")
     day.key(Key.Key_F8)
     assert begins(day.prompt, "screen.notes-between-cycles")

@@ -1,18 +1,22 @@
-"""The queue of jobs in every frame: what is under way, when its count is reached, what comes next."""
+"""The queue of jobs in every frame: what is under way, when its count is reached, what comes next.
+
+The next job is proved while another one runs, on a worker of the desk and never in the executor's way.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from app.desk.desk import Desk
 from app.desk.interrupted_notice import NoticeRow
+from app.desk.latest import Latest, Watch
 from app.desk.program_loading import Loaded
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
-from app.jobs.job_setup import ProvedJob, missing
-from app.jobs.next_job import JobProofs
+from app.extras.jobs.job_setup import ProvedJob, missing
 from app.quality.parts_watch import PartsWatch
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
@@ -21,7 +25,55 @@ from core.quality.tool_life import ToolLife
 from core.store import job_queue
 from core.store.job_queue import JobRow
 
-KEY = "Jobs"  # its name in app.screen.keys
+Prove = Callable[[str, Watch], ProvedJob]
+"""A program by its name, with the offsets of now; on the worker. Raises ValueError with a sentence."""
+KEPT = 20
+
+
+@dataclass(slots=True)
+class JobProofs:
+    """``want`` and ``of`` never wait. A proof is of a program and the offsets that it was made with."""
+
+    prove: Prove
+    worker: Latest = field(default_factory=lambda: Latest("editing-jobs"))
+    _made: dict[tuple[str, int], ProvedJob | str] = field(default_factory=dict)
+    _asked: tuple[str, int] | None = None
+
+    def want(self, programs: Sequence[str], offsets: int) -> None:
+        """Once a frame: these are to be proved, the first one first; ``offsets`` tells one state of tables
+        from another. What is being proved and is wanted no longer is given up.
+        """
+        self.worker.poll()
+        keys = [(program, offsets) for program in programs[:KEPT]]
+        wanted = next((key for key in keys if key not in self._made), None)
+        if wanted is None or wanted == self._asked:
+            return
+        self._asked = wanted
+        done = partial(self._keep, wanted)
+        self.worker.ask(partial(self.prove, wanted[0]), done, done)
+
+    def of(self, program: str, offsets: int) -> ProvedJob | str | None:
+        """What is known of it: its proof, why there is none, None: it is not proved yet."""
+        return self._made.get((program, offsets))
+
+    def anew(self) -> None:
+        """Files and shapes may have changed: everything is proved again."""
+        self._made.clear()
+        self._asked = None
+
+    def _keep(self, key: tuple[str, int], made: ProvedJob | str) -> None:
+        self._made[key] = made
+        self._asked = None
+        while len(self._made) > KEPT:
+            del self._made[next(iter(self._made))]
+
+    def close(self) -> None:
+        """Give up what is being proved and end the worker."""
+        self.worker.close()
+
+
+FEATURE = "jobs"  # name of the queue in the book
+KEY = "Shift+F6"  # its name in app.screen.keys
 
 
 @dataclass(slots=True)
@@ -40,7 +92,8 @@ class JobsWatch:
     @property
     def jobs(self) -> tuple[JobRow, ...]:
         """The queue as it is kept."""
-        return self.parts.book.now.jobs
+        jobs: tuple[JobRow, ...] = self.parts.book.now.more.get(FEATURE, ())
+        return jobs
 
     @property
     def under_way(self) -> JobRow | None:

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.machine_status import MachineStatus
 from app.desk.program_loading import Loaded
 from app.desk.sheet import Key
-from app.jobs.jobs_model import JobsModel
+from app.extras.jobs.jobs_model import JobsModel
 from app.screen import page_table
 from app.screen.entry_panel import KeyPad
 from app.screen.letter_keys import LetterPad
@@ -25,7 +25,7 @@ PAD, LETTERS, QUEUE = 28.4, 24.0, 0.5  # units; share of the height
 class JobsPage(ListPage):
     """The model decides; this shows it and hands the keys on."""
 
-    NAME = page_table.JOBS
+    NAME = "JOBS"
     model: JobsModel
 
     def __init__(self, host: Host, model: JobsModel, parent: QWidget) -> None:

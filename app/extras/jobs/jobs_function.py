@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.desk.formats import NOTHING
 from app.desk.sheet import Row
 from app.desk.translation import tr
-from app.jobs.jobs_watch import JobsWatch
+from app.extras.jobs.jobs_watch import JobsWatch
 from app.special.special_functions import PageFunction
 
 PAGE = "JOBS"  # its name in app.screen.page_table
