@@ -402,6 +402,7 @@ class Driver:
     can be stopped at an angle. ``count_rate`` the counts
     per second that it takes on an axis. ``terminal`` makes two ways to write one terminal equal, None for
     what is no address of this driver; ``inputs`` are the addresses that an input may have, in their order.
+    ``after``: of an optional feature, the table that its tables follow in the reference.
     """
 
     tables: tuple[DriverTable, ...]
@@ -411,6 +412,7 @@ class Driver:
     count_rate: float = inf
     terminal: Callable[[FileReading, str], object] | None = None
     inputs: Callable[[], Iterator[str]] | None = None
+    after: str = ""
 
 
 def expected_table(path: str, raw: object) -> Finding:

@@ -11,6 +11,10 @@ import pytest
 from app.cli import main
 from app.compose import extra
 from app.compose.extra import NAMES, command_modules, extras, insert_after
+from app.special.special_functions import SpecialFunctions
+from tests.attached import attached
+from tests.screen.desks import desk_on
+from tests.screen.fake import FakeMachine
 
 HOUSE = Path(__file__).parents[1]
 
@@ -43,6 +47,16 @@ def test_an_addition_follows_the_item_that_it_names() -> None:
 
 def test_an_addition_whose_item_is_absent_is_the_last() -> None:
     assert insert_after("ab", str, [("x", "gone")]) == ["a", "b", "x"]
+
+
+@pytest.mark.usefixtures("no_features")
+def test_without_features_f10_has_the_tool_lives_of_a_lathe(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    names = {each.name for each in attached(desk_on(FakeMachine()), SpecialFunctions).functions}
+    assert "TOOL LIFE" in names
+    assert "JOBS" not in names
 
 
 @pytest.mark.usefixtures("no_features")

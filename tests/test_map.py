@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.extras.features import all_installed
+
 HOUSE = Path(__file__).parents[1]
 MAP = HOUSE / "docs" / "architecture.md"
 ROOMS = ("app", "core", "drivers")
@@ -148,6 +150,7 @@ def test_the_documents_name_only_files_that_are_there() -> None:
     assert [each for each in named if _absent(each[1])] == []
 
 
+@all_installed
 def test_the_records_name_files_by_names_that_are_there() -> None:
     """In a record a file often stands alone, without its folder."""
     there = {path.name for room in (*ROOMS, "resources", "tests") for path in (HOUSE / room).rglob("*.py")}

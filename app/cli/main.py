@@ -35,8 +35,6 @@ COMMANDS = (
     "machine",
     "serial",
     "alarms",
-    "parts",
-    "shift",
     "scope",
     "setup",
     "shapes",

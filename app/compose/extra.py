@@ -7,7 +7,7 @@ No module outside a feature imports it. If its folders are deleted, TurnDesk wor
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
 
-NAMES = ("jobs", "sharing")
+NAMES = ("quality", "jobs", "sharing")
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -39,13 +39,16 @@ class Extra:
 
     ``commands`` maps each subcommand to the subcommand that it follows in the help. Its module is
     ``app.extras.NAME.SUBCOMMAND_command``. ``threads`` maps each supervised thread to what an operator
-    misses when the thread ends. ``needs`` names the features without which this feature is left out.
+    misses when the thread ends. ``own_functions`` names the special functions that
+    a page of the feature shows, so that F10 does not. ``needs`` names the features without which this
+    feature is left out.
     """
 
     needs: Sequence[str] = ()
     commands: Mapping[str, str] = {}
     pages: Sequence[PageEntry] = ()
     threads: Mapping[str, str] = {}
+    own_functions: Collection[str] = ()
 
     def machine_tables(self) -> Sequence[Driver]:
         """Return the tables that this feature adds to the machine file."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.compose.extra import extras
+from app.compose.extra import extras, insert_after
 from core.machine import backup_table, machine_file, serial_table, setter_table, shop_network_tables
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -18,7 +18,7 @@ from drivers.simulated import simulated_table
 
 # What each driver adds to the file, in the order in which a machine file's owner is told of them. The module
 # that puts a backend together stands in ``backend_entry``, where no table has to be loaded for it.
-DRIVERS: tuple[Driver, ...] = (
+_OWN_DRIVERS: tuple[Driver, ...] = (
     simulated_table.DRIVER,
     canopen_table.DRIVER,
     inverter_table.DRIVER,
@@ -31,7 +31,13 @@ DRIVERS: tuple[Driver, ...] = (
     mtconnect_table.DRIVER,
     shop_network_tables.DRIVER,
     backup_table.DRIVER,
-    *(table for extra in extras().values() for table in extra.machine_tables()),
+)
+DRIVERS = tuple(
+    insert_after(
+        _OWN_DRIVERS,
+        lambda driver: driver.tables[-1].path if driver.tables else "",
+        [(each, each.after) for extra in extras().values() for each in extra.machine_tables()],
+    )
 )
 
 

@@ -17,7 +17,7 @@ from app.compose.stored_offsets import shapes_at_hand
 from app.compose.workshop import office_pictures
 from app.desk.kept_part import kept_part
 from app.desk.prompt_line import UNDER_WAY
-from app.quality.parts_watch import PartsWatch
+from app.production.parts_watch import PartsWatch
 from app.shopfloor.floor_reading import FloorReader
 from app.shopfloor.office_status import OfficeLook
 from core.machine.shop_network_tables import AnnounceTable, StatusPageTable

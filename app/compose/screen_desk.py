@@ -13,7 +13,6 @@ from app.compose.accepted_machine import file_changes, guarded
 from app.compose.backend_entry import NO_PRIORITY, Connected, has_inverter, played
 from app.compose.backends import connect
 from app.compose.desk_functions import furnish
-from app.compose.desk_quality import give_quality
 from app.compose.error_log import Log
 from app.compose.extra import extras
 from app.compose.journal import Journal
@@ -22,6 +21,7 @@ from app.compose.machine_in_use import remember_machine
 from app.compose.machine_setup import read_machine
 from app.compose.machine_status import AGENTS, keep_status
 from app.compose.office import open_office
+from app.compose.production_desk import give_production
 from app.compose.scope_desk import give_scope
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import (
@@ -333,7 +333,7 @@ def _desk(
     give_part(desk, machine, keep)
     desk.attach_later("app.shapes.shapes_model.Shapes", partial(_shapes, desk, machine))
     give_searchto(desk, machine)
-    give_quality(desk, machine, journal)
+    give_production(desk, machine, journal)
     alone = workshop(machine, offsets, left=left, pictures=False)
     for extra in extras().values():
         extra.attach(desk, machine, journal, alone)

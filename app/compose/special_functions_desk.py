@@ -12,8 +12,7 @@ from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps
-from app.quality.parts_function import MeasuredPartsFunction
-from app.quality.shift_function import ShiftReport
+from app.production.parts_watch import PartsWatch
 from app.scope.scope_function import ScopeFunction
 from app.special.access_levels import AccessLevels
 from app.special.backup_and_restore import BackupAndRestore
@@ -28,6 +27,7 @@ from app.special.r_parameters import RParameters
 from app.special.setup_sheet_function import SetupSheetFunction
 from app.special.special_functions import SpecialFunction, SpecialFunctions
 from app.special.spindle_limit import SpindleSpeedLimit
+from app.special.tool_life_function import ToolLifeFunction
 from app.transfer.serial_transfer import SerialTransfer
 from core.language.source import Dialect, usual_ending
 from core.machine.backup_table import BackupTable
@@ -90,12 +90,15 @@ def special_functions(
     functions.append(_transfer(desk, machine, persistence, workshop, own))
     functions.append(_setup_sheet(desk, machine, persistence, worker))
     functions.append(ScopeFunction(desk))
-    functions.append(MeasuredPartsFunction(desk))
-    functions.append(ShiftReport(desk, machine.name, worker, data_folder() / "sheets"))
+    watch = desk.attached(PartsWatch)
+    if watch is not None and machine.kind == "lathe":
+        functions.append(ToolLifeFunction(desk, watch))
     functions.append(LampsAndSound(desk, machine, sounds))
     functions.append(AccessLevels(desk, persistence))
     if machine.language == Dialect.SINUMERIK:
         functions.append(RParameters(desk, persistence, worker))
+    elsewhere = {name for extra in extras().values() for name in extra.own_functions}
+    functions = [each for each in functions if each.name not in elsewhere]
     added = [
         pair
         for extra in extras().values()

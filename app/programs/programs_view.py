@@ -129,7 +129,7 @@ class ProgramsPage(ListPage):
         """The function keys of the list, or of the chooser over it."""
         keys = self.page_keys()
         added = {name: partial(self._use, key) for name, key in self.desk.program_keys.items()}
-        own = {} if self.model.transfer.open else {"F3": self._edit, **added}
+        own: KeyActions = {} if self.model.transfer.open else {"F3": self._edit, **added}
         return {**own, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:

@@ -10,13 +10,14 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
+from app.desk.page_description import PageEntry
 from app.desk.page_entry import editor_barred, mdi_barred
 from app.desk.program_loading import Loaded
 from app.screen import page_table
 from app.screen.keys import OF_MENU
 from app.screen.look import CENTRE, Look, Painter
 from app.screen.page_base import Host, KeyActions, Page
-from app.screen.page_table import PageEntry, menu_keys, menu_of
+from app.screen.page_table import menu_keys, menu_of
 from app.screen.panel import Panel, Shown
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot

@@ -17,7 +17,6 @@ TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS
 ZERO, MILL_TOOLS, PRESETS = "ZERO OFFSETS", "TOOL TABLE", "PRESETS"
 PROGRAMS, SHAPE, PART = "PROGRAMS", "TOOL SHAPE", "PART"
 SCOPE, ANALYSES, DRIVE_TEST = "SCOPE", "ANALYSES", "DRIVE TEST"
-MEASURED = "MEASURED PARTS"
 
 
 _OMNITURN = frozenset({"omniturn"})
@@ -138,15 +137,6 @@ _OWN_PAGES = (
         "SCOPE",
         "axis and spindle plots: following error, speed, load",
         later=("app.scope.scope_chart_view.ScopeChart",),
-    ),
-    PageEntry(
-        MEASURED,
-        "app.quality.quality_view.MeasuredPartsPage",
-        "app.quality.quality_functions.QualityFunctions",
-        "W",
-        "MEASURED",
-        "features, readings, charts, trends",
-        later=("app.quality.plots_view.PlotsPane", "app.compose.desk_quality_sections.sections"),
     ),
     PageEntry(
         ANALYSES, "app.scope.analyses_view.AnalysesPage", "app.scope.analyses.Analyses", later=_ANALYSIS

@@ -12,9 +12,10 @@ from functools import partial
 
 from app.desk.desk import Desk
 from app.desk.latest import Latest
+from app.desk.page_description import PageEntry
 from app.desk.program_loading import Phase
 from app.screen.page_base import Page
-from app.screen.page_table import PageEntry, class_of, load, pages_of
+from app.screen.page_table import class_of, load, pages_of
 
 APART = 0.05  # s at least from one slice to the next: a frame between them has nothing of it
 _LOADING = frozenset({Phase.READING, Phase.PROVING, Phase.DRAWING, Phase.PART})

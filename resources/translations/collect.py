@@ -39,7 +39,6 @@ COMPOSING = "app/compose"
 COMPOSED = (
     "accepted_machine.py",
     "desk_part.py",
-    "gauge_wire.py",
     "journal.py",
     "screen_desk.py",
     "simulated_backend.py",
@@ -58,14 +57,14 @@ ROOMS = (
         "app/part",
         "app/path",
         "app/programs",
-        "app/quality",
+        "app/production",
     ),
     *("app/scope", "app/screen", "app/searchto", "app/shapes", "app/extras"),
     *("app/special", "app/transfer"),
     "app/working_plane",
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
-    *("core/drawings", "core/quality", "core/records", "core/shapes", "core/extras", "core/access"),
+    *("core/drawings", "core/production", "core/records", "core/shapes", "core/extras", "core/access"),
     "app/shopfloor",
 )
 # Where much is told to programs: what is marked alone.

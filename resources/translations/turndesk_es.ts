@@ -4689,31 +4689,6 @@
       <translation>El material en bruto indicado no se puede usar ({why}). En su lugar se emplea uno supuesto.</translation>
     </message>
     <message>
-      <location filename="app/compose/gauge_wire.py" />
-      <source>GAUGE: {why}. F5: LISTEN AGAIN</source>
-      <translation>CALIBRADOR: {why}. F5: ESCUCHAR OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/compose/gauge_wire.py" />
-      <source>GAUGE: {why}. MEASURE AGAIN</source>
-      <translation>CALIBRADOR: {why}. MIDA DE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/compose/gauge_wire.py" />
-      <source>Listening to the gauge: {count} readings.</source>
-      <translation>Calibrador a la escucha: {count} lecturas.</translation>
-    </message>
-    <message>
-      <location filename="app/compose/gauge_wire.py" />
-      <source>No reading from the gauge for {minutes} min. Check its switch and cable.</source>
-      <translation>Sin lecturas del calibrador desde hace {minutes} min. Revise su interruptor y su cable.</translation>
-    </message>
-    <message>
-      <location filename="app/compose/gauge_wire.py" />
-      <source>Not listening to the gauge. Press F5 to start.</source>
-      <translation>Calibrador sin escuchar. Pulse F5 para empezar.</translation>
-    </message>
-    <message>
       <location filename="app/compose/journal.py" />
       <source>loaded to run</source>
       <translation>cargado para correr</translation>
@@ -6885,6 +6860,11 @@
     </message>
     <message>
       <location filename="app/extras/jobs/extra.py" />
+      <source>MEASURED PARTS</source>
+      <translation>PIEZAS MEDIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/extra.py" />
       <source>next job, number of parts, setup requirements</source>
       <translation>trabajo siguiente, número de piezas, lo necesario para la preparación</translation>
     </message>
@@ -6975,6 +6955,11 @@
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_model.py" />
+      <source>JOBS CANNOT BE SAVED: NO DATA STORE</source>
+      <translation>NO SE PUEDEN GUARDAR TRABAJOS: NO HAY ALMACÉN DE DATOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>MADE</source>
       <translation>HECHAS</translation>
     </message>
@@ -7020,6 +7005,11 @@
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_model.py" />
+      <source>REMOVE</source>
+      <translation>QUITAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>SETUP SHEET</source>
       <translation>HOJA DE PREPARACIÓN</translation>
     </message>
@@ -7027,6 +7017,11 @@
       <location filename="app/extras/jobs/jobs_model.py" />
       <source>STATE</source>
       <translation>ESTADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/jobs_model.py" />
+      <source>TIME</source>
+      <translation>TIEMPO</translation>
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_model.py" />
@@ -7112,6 +7107,946 @@
       <location filename="app/extras/jobs/jobs_watch.py" />
       <source>{count} SETUP ITEMS NOT READY</source>
       <translation>{count} PUNTOS DE PREPARACIÓN SIN TERMINAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS</source>
+      <translation>FLECHAS: ELEGIR CARACTERÍSTICA. A TRAZOS: LÍMITES DE CONTROL, PUNTOS: TOLERANCIA, CÍRCULOS: REGLAS INCUMPLIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>AVERAGE</source>
+      <translation>PROMEDIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>CONTROL CHARTS</source>
+      <translation>GRÁFICAS DE CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>CONTROL CHARTS  ·  {program}</source>
+      <translation>GRÁFICAS DE CONTROL  ·  {program}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>DRIFT</source>
+      <translation>DERIVA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>FEATURE NOT MEASURED YET</source>
+      <translation>CARACTERÍSTICA AÚN SIN MEDIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>INDIVIDUALS</source>
+      <translation>VALORES INDIVIDUALES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>MEAN {mode}</source>
+      <translation>MEDIA {mode}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>MOVING RANGE</source>
+      <translation>RANGO MÓVIL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>RANGE</source>
+      <translation>RANGO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>READINGS</source>
+      <translation>LECTURAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>limits, Cpk, drift</source>
+      <translation>límites, Cpk, deriva</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>no drift; Cpk is at least {minimum} (95 % confidence)</source>
+      <translation>sin deriva; Cpk es al menos {minimum} (confianza del 95 %)</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/correction_effect.py" />
+      <source>PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}</source>
+      <translation>NO SE PUEDEN COMPARAR LAS PIEZAS CON CORRECTORES VIEJOS Y NUEVOS: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/correction_effect.py" />
+      <source>{name}: {change} FROM NEXT PART</source>
+      <translation>{name}: {change} DESDE LA PRÓXIMA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/extra.py" />
+      <source>MEASURED</source>
+      <translation>MEDIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/extra.py" />
+      <source>TOOL LIFE</source>
+      <translation>VIDA ÚTIL DE HERRAMIENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/extra.py" />
+      <source>features, readings, charts, trends</source>
+      <translation>características, lecturas, gráficas, tendencias</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>CHANGE</source>
+      <translation>CAMBIAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>CORRECTED BY</source>
+      <translation>SE CORRIGE CON</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>EFFECT OF LARGER OFFSET ON SIZE</source>
+      <translation>EFECTO DE MÁS CORRECTOR EN LA MEDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>ENTER: CHANGE FEATURE   F2: NEW FEATURE   ESC: BACK TO LIST</source>
+      <translation>ENTER: CAMBIAR CARACTERÍSTICA   F2: NUEVA   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>Enter accepts the entry and goes to the next field. F6 saves the feature, Esc discards the changes.</source>
+      <translation>Enter acepta lo escrito y pasa al campo siguiente. F6 guarda la característica, Esc descarta los cambios.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>F2 adds a feature, Enter changes the selected feature, F5 sets whether the next part waits until the required parts are measured.</source>
+      <translation>F2 añade una característica, Enter cambia la seleccionada, F5 define si la próxima pieza espera hasta que se midan las piezas requeridas.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>FEATURES</source>
+      <translation>CARACTERÍSTICAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>FEATURES  ·  {program}</source>
+      <translation>CARACTERÍSTICAS  ·  {program}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>FILL IN THE FIELDS. F6: SAVE   ESC: CANCEL</source>
+      <translation>RELLENE LOS CAMPOS. F6: GUARDAR   ESC: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>LARGER</source>
+      <translation>MAYOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>LOWER DEVIATION</source>
+      <translation>DESVIACIÓN INFERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>MEASURE EVERY N PARTS (0: NEVER)</source>
+      <translation>MEDIR CADA N PIEZAS (0: NUNCA)</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NEW</source>
+      <translation>NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NEXT PART DOES NOT WAIT FOR REQUIRED MEASUREMENTS</source>
+      <translation>LA PIEZA SIGUIENTE NO ESPERA LAS MEDICIONES REQUERIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NEXT PART WAITS FOR REQUIRED MEASUREMENTS</source>
+      <translation>LA PIEZA SIGUIENTE ESPERA LAS MEDICIONES REQUERIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NO WAIT</source>
+      <translation>NO ESPERAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NOMINAL</source>
+      <translation>NOMINAL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NOMINAL {mode}</source>
+      <translation>NOMINAL {mode}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>OFFSET</source>
+      <translation>CORRECTOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>PARTS PER SAMPLE</source>
+      <translation>PIEZAS POR MUESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>PRESS ENTER TO SWITCH TO THE OTHER VALUE</source>
+      <translation>PULSE ENTER PARA PASAR AL OTRO VALOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>SECONDARY OFFSET</source>
+      <translation>CORRECTOR SECUNDARIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>SMALLER</source>
+      <translation>MENOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>STOP MEASURING {name}? READINGS STAY STORED. Y: STOP   N: CONTINUE</source>
+      <translation>¿DEJAR DE MEDIR {name}? LAS LECTURAS QUEDAN GUARDADAS. Y: DEJAR   N: SEGUIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>TOLERANCE</source>
+      <translation>TOLERANCIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>TOOL OR OFFSET NUMBER</source>
+      <translation>NÚMERO DE HERRAMIENTA O CORRECTOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>TOOL WEAR</source>
+      <translation>DESGASTE DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>UPPER DEVIATION</source>
+      <translation>DESVIACIÓN SUPERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>WAIT</source>
+      <translation>ESPERAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>every {count} parts</source>
+      <translation>cada {count} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>feature {row} saved</source>
+      <translation>característica {row} guardada</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>measured features of {program}: {change}</source>
+      <translation>características medidas de {program}: {change}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>nominal dimension, tolerance, sampling plan</source>
+      <translation>medida nominal, tolerancia, plan de muestreo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>{name} REMOVED</source>
+      <translation>{name} ELIMINADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>{name} SAVED</source>
+      <translation>{name} GUARDADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>{row} removed</source>
+      <translation>{row} eliminado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>{value} is not a whole number</source>
+      <translation>{value} no es un número entero</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_line.py" />
+      <source>NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …</source>
+      <translation>NO HAY CALIBRADOR EN EL ARCHIVO DE MÁQUINA. AÑADA [gauge] port = …</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_line.py" />
+      <source>No gauge is configured: enter its serial port under [gauge] in the machine file.</source>
+      <translation>Ningún calibrador configurado: indique su puerto serie en [gauge] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_line.py" />
+      <source>the gauge is not connected or is switched off</source>
+      <translation>el calibrador no está conectado o está apagado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_line.py" />
+      <source>the gauge sent unreadable data</source>
+      <translation>el calibrador envió datos ilegibles</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>GAUGE: {why}. F5: LISTEN AGAIN</source>
+      <translation>CALIBRADOR: {why}. F5: ESCUCHAR OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>GAUGE: {why}. MEASURE AGAIN</source>
+      <translation>CALIBRADOR: {why}. MIDA DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>Listening to the gauge: {count} readings.</source>
+      <translation>Calibrador a la escucha: {count} lecturas.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>No reading from the gauge for {minutes} min. Check its switch and cable.</source>
+      <translation>Sin lecturas del calibrador desde hace {minutes} min. Revise su interruptor y su cable.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>Not listening to the gauge. Press F5 to start.</source>
+      <translation>Calibrador sin escuchar. Pulse F5 para empezar.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/parts_function.py" />
+      <source>ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST</source>
+      <translation>ENTER: ABRIR PIEZAS MEDIDAS   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/parts_function.py" />
+      <source>MEASUREMENT DUE</source>
+      <translation>MEDICIÓN PENDIENTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/parts_function.py" />
+      <source>Press Enter to open the page, or press W in the main menu.</source>
+      <translation>Pulse Enter para abrir la página, o W en el menú principal.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/plots_view.py" />
+      <source>NOTHING TO DRAW YET</source>
+      <translation>AÚN NO HAY NADA QUE DIBUJAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MAIN MENU, F8/F9</source>
+      <translation>NO SE PUEDE DESHACER: HAY UN CAMBIO POSTERIOR. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>CORRECT</source>
+      <translation>CORREGIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>CORRECTION UNDONE</source>
+      <translation>CORRECCIÓN DESHECHA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>DEVIATION</source>
+      <translation>DESVIACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>Enter the deviation in DL and DR of the tool table (F8 of the main menu).</source>
+      <translation>Introduzca la desviación en DL y DR de la tabla de herramientas (F8 del menú principal).</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>F8 proposes a correction, F4 undoes the last correction.</source>
+      <translation>F8 propone una corrección, F4 deshace la última corrección.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>GAUGE OFF</source>
+      <translation>CALIBR. NO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>GAUGE ON</source>
+      <translation>CALIBR. SÍ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>GAUGE READING IGNORED. OPEN READINGS, THEN MEASURE AGAIN</source>
+      <translation>LECTURA IGNORADA. ABRA LECTURAS Y MIDA DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>GOOD</source>
+      <translation>BUENA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>MEASURED {name} OF PART {part}?</source>
+      <translation>¿{name} MEDIDO EN LA PIEZA {part}?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MAIN MENU, F8/F9</source>
+      <translation>SIN CORRECCIONES EN ESTA PÁGINA. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>NOT MEASURED YET</source>
+      <translation>AÚN SIN MEDIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>PART +</source>
+      <translation>PIEZA +</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>PART −</source>
+      <translation>PIEZA −</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>PRESS Y TO REMOVE READING {size} FROM PART {part}, N TO KEEP IT</source>
+      <translation>PULSE Y PARA QUITAR LA LECTURA {size} DE LA PIEZA {part}, N PARA CONSERVARLA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>READING REMOVED</source>
+      <translation>LECTURA QUITADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>READINGS  ·  {program}</source>
+      <translation>LECTURAS  ·  {program}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>STILL READING STORED DATA. PRESS F8 AGAIN</source>
+      <translation>AÚN SE LEEN LOS DATOS GUARDADOS. PULSE F8 OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>TOO LARGE</source>
+      <translation>GRANDE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>TOO SMALL</source>
+      <translation>PEQUEÑA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST</source>
+      <translation>ESCRIBA LA MEDIDA Y PULSE ENTER. ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>measure a part and see the correction needed</source>
+      <translation>medir una pieza y ver la corrección necesaria</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>program {program}, part {part}: reading of {feature} ({last} mm) removed</source>
+      <translation>programa {program}, pieza {part}: lectura de {feature} ({last} mm) quitada</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>program {program}, part {part}: {feature} measured as {taken} mm</source>
+      <translation>programa {program}, pieza {part}: {feature} medido, {taken} mm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>{name} {size} FAR OUT OF TOLERANCE. Y: SAVE   N: MEASURE AGAIN</source>
+      <translation>{name} {size} MUY FUERA DE TOLERANCIA. Y: GUARDAR   N: MEDIR DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>{name}, PART {part}: {size} SAVED</source>
+      <translation>{name}, PIEZA {part}: {size} GUARDADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>{row} must be more than 0; type the measured size, not the deviation</source>
+      <translation>{row} debe ser mayor que 0; escriba la medida, no la desviación</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>{words}. Y: APPLY   N: DO NOT APPLY</source>
+      <translation>{words}. Y: APLICAR   N: NO APLICAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>{words}; APPLIES FROM NEXT PART</source>
+      <translation>{words}; VALE DESDE LA PRÓXIMA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/sample_plan.py" />
+      <source>MEASURE PART {part}: {names}</source>
+      <translation>MIDA LA PIEZA {part}: {names}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/sample_plan.py" />
+      <source>part {part} must be measured before the next part starts: {names}</source>
+      <translation>hay que medir la pieza {part} antes de que empiece la siguiente: {names}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/sample_plan.py" />
+      <source>program {program}: the next part can start before the required parts are measured</source>
+      <translation>programa {program}: la pieza siguiente puede empezar antes de medir las piezas requeridas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/sample_plan.py" />
+      <source>program {program}: the next part cannot start before the required parts are measured</source>
+      <translation>programa {program}: la pieza siguiente no puede empezar antes de medir las piezas requeridas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/section.py" />
+      <source>NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2</source>
+      <translation>AÚN NO HAY CARACTERÍSTICAS. AÑADA UNA CARACTERÍSTICA EN LA SECCIÓN 1 CON F2</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/section.py" />
+      <source>SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES</source>
+      <translation>SELECCIONE ANTES UN PROGRAMA. CADA PROGRAMA TIENE SUS PROPIAS CARACTERÍSTICAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>No part was started in this period.</source>
+      <translation>En este período no se empezó ninguna pieza.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>The clock was set back after {time}, so times of day overlap at that point, but durations are correct.</source>
+      <translation>El reloj se atrasó después de {time}, por lo que en ese punto las horas se solapan, pero las duraciones son correctas.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>The clock was set back by {time} during the shift, so the shift was longer by the same amount.</source>
+      <translation>El reloj se atrasó {time} durante el turno, que por ello fue ese tiempo más largo.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>The clock was set forward by {time} during the shift, so the shift was shorter by the same amount.</source>
+      <translation>El reloj se adelantó {time} durante el turno, que por ello fue ese tiempo más corto.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>The shift has not started.</source>
+      <translation>El turno no ha empezado.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>The shift is still running; this report covers it up to {time}.</source>
+      <translation>El turno sigue en curso; este informe lo cubre hasta las {time}.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>Creating the report …</source>
+      <translation>Creando el informe …</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>EARLIER</source>
+      <translation>ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>ENTER: SAVE REPORT HERE   F4: RESCAN FOR USB STICKS</source>
+      <translation>ENTER: GUARDAR INFORME AQUÍ   F4: BUSCAR OTRA VEZ MEMORIAS USB</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>Enter saves the report as HTML in the selected location.</source>
+      <translation>Enter guarda el informe como HTML en la ubicación elegida.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK</source>
+      <translation>F2, F3: OTRO TURNO   F6: GUARDAR INFORME COMO HTML   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>LATER</source>
+      <translation>DESPUÉS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>NO EARLIER SHIFT IS AVAILABLE</source>
+      <translation>NO HAY TURNOS ANTERIORES DISPONIBLES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>PLACE</source>
+      <translation>LUGAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>REPORT IS NOT READY YET. WAIT A MOMENT</source>
+      <translation>EL INFORME AÚN NO ESTÁ LISTO. ESPERE UN MOMENTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>SHIFT REPORT</source>
+      <translation>INFORME DE TURNO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>SHIFT REPORT  ·  SAVE TO:</source>
+      <translation>INFORME DE TURNO  ·  GUARDAR EN:</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>THIS IS THE LATEST SHIFT</source>
+      <translation>ESTE ES EL ÚLTIMO TURNO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>parts, times, stops and alarms, for printing</source>
+      <translation>piezas, tiempos, paros y alarmas, para imprimir</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW</source>
+      <translation>{name} GUARDADO. SI USÓ UNA MEMORIA USB, YA PUEDE RETIRARLA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Alarms and E-stops</source>
+      <translation>Alarmas y paros de emergencia</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>All stops</source>
+      <translation>Todos los paros</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Availability</source>
+      <translation>Disponibilidad</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>CYCLES WITHOUT A PART</source>
+      <translation>CICLOS SIN PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Inserts changed in this shift</source>
+      <translation>Plaquitas cambiadas en este turno</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>LIFE USED</source>
+      <translation>VIDA USADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>LIMITS</source>
+      <translation>LÍMITES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>LONGEST</source>
+      <translation>MÁS LARGO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>MEAN</source>
+      <translation>MEDIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Not recorded</source>
+      <translation>Sin registrar</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>OCCURRENCES</source>
+      <translation>VECES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Offsets changed</source>
+      <translation>Correctores cambiados</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Out of tolerance</source>
+      <translation>Fuera de tolerancia</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Parts</source>
+      <translation>Piezas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Parts by program</source>
+      <translation>Piezas por programa</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>REASON</source>
+      <translation>MOTIVO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>SHARE</source>
+      <translation>PARTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>SHORTEST</source>
+      <translation>MÁS CORTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>START TIME</source>
+      <translation>HORA DE INICIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Stops</source>
+      <translation>Paros</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Stops by reason</source>
+      <translation>Paros por motivo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Tool life used so far</source>
+      <translation>Vida de herramienta usada hasta ahora</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>USAGE</source>
+      <translation>USO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>USED</source>
+      <translation>USADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>WHO</source>
+      <translation>QUIÉN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>and {count} more</source>
+      <translation>y {count} más</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>green: cycles; amber: stops; red: alarms</source>
+      <translation>verde: ciclos; ámbar: paros; rojo: alarmas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>shift from {first} to {last}</source>
+      <translation>turno de {first} a {last}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>wear</source>
+      <translation>desgaste</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>{bad} of {count} readings</source>
+      <translation>{bad} de {count} lecturas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>{parts} parts, {time}</source>
+      <translation>{parts} piezas, {time}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>{share} %: in cycle for {run} of {planned}</source>
+      <translation>{share} %: en ciclo {run} de {planned}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>{unit} mm</source>
+      <translation>{unit} mm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>ARROWS: SELECT TREND   ESC: BACK TO LIST</source>
+      <translation>FLECHAS: ELEGIR TENDENCIA   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>AVAILABILITY</source>
+      <translation>DISPONIBILIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>CYCLE TIME</source>
+      <translation>TIEMPO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>CYCLE TIME, s</source>
+      <translation>TIEMPO DE CICLO, s</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>IN CYCLE</source>
+      <translation>EN CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>MINUTES BY REASON, WITH CUMULATIVE PERCENTAGE</source>
+      <translation>MINUTOS POR MOTIVO, CON PORCENTAJE ACUMULADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>MINUTES OF THE SHIFT</source>
+      <translation>MINUTOS DEL TURNO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>NOT IN CYCLE</source>
+      <translation>FUERA DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>SHIFT HOURS, FOR EXAMPLE 6-14?</source>
+      <translation>¿HORAS DEL TURNO, POR EJEMPLO 6-14?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>SPINDLE LOAD</source>
+      <translation>CARGA DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>SPINDLE LOAD, %</source>
+      <translation>CARGA DEL HUSILLO, %</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>STOPS</source>
+      <translation>PAROS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>TRENDS</source>
+      <translation>TENDENCIAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>TRENDS  ·  {program}</source>
+      <translation>TENDENCIAS  ·  {program}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>cycle times, stops, availability</source>
+      <translation>tiempos de ciclo, paros, disponibilidad</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>enter the start and end hour of the shift, such as 6-14</source>
+      <translation>escriba la hora de inicio y la de fin del turno, como 6-14</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>last cycle {last}, shortest {best}, mean {mean} of {count} parts</source>
+      <translation>último ciclo {last}, menor {best}, media {mean} de {count} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>last load {last} %, highest load {maximum} %</source>
+      <translation>última carga {last} %, carga mayor {maximum} %</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>no drive on this machine reports its load</source>
+      <translation>ningún accionamiento de esta máquina informa su carga</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>no part made yet</source>
+      <translation>aún no se ha hecho ninguna pieza</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>no stops yet</source>
+      <translation>aún sin paros</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>no wear correction yet</source>
+      <translation>aún sin correcciones de desgaste</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>parts</source>
+      <translation>piezas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>shift hours: {first} to {last}</source>
+      <translation>horas del turno: {first} a {last}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>{count} corrections; last correction: {offset} by X {x} Z {z} after part {part}</source>
+      <translation>{count} correcciones; última corrección: {offset} en X {x} Z {z} tras la pieza {part}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>{count} stops, on average {mean} apart; longest total: {reason}, {time}</source>
+      <translation>{count} paros, {mean} entre ellos de media; mayor total: {reason}, {time}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>{first}–{last}: the shift has not started</source>
+      <translation>{first}–{last}: el turno no ha empezado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>{first}–{last}: {share} %, in cycle for {run} of {planned}</source>
+      <translation>{first}–{last}: {share} %, en ciclo {run} de {planned}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/wear_correction.py" />
+      <source>NO OFFSETS SET FOR T{number}</source>
+      <translation>T{number} NO TIENE CORRECTORES DEFINIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/wear_correction.py" />
+      <source>{name} measured: the mean of {count} readings is {mean}, offset change {change}</source>
+      <translation>{name} medido: la media de {count} lecturas es {mean}, cambio del corrector {change}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/wear_correction.py" />
+      <source>{row}: none of the parts started since the last change of {name} has been measured yet</source>
+      <translation>{row}: aún no se ha medido ninguna de las piezas empezadas desde el último cambio de {name}</translation>
     </message>
     <message>
       <location filename="app/extras/sharing/extra.py" />
@@ -9849,6 +10784,71 @@
       <translation>Paso adelante</translation>
     </message>
     <message>
+      <location filename="app/production/cycle_recorder.py" />
+      <source>BETWEEN CYCLES</source>
+      <translation>ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/production/cycle_recorder.py" />
+      <source>RESTARTED</source>
+      <translation>REANUDADO</translation>
+    </message>
+    <message>
+      <location filename="app/production/parts_book.py" />
+      <source>MEASURED PARTS CANNOT BE SAVED: NO DATA STORE</source>
+      <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: NO HAY ALMACÉN DE DATOS</translation>
+    </message>
+    <message>
+      <location filename="app/production/parts_book.py" />
+      <source>MEASURED PARTS CANNOT BE SAVED: {away}</source>
+      <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: {away}</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>TOOL {number} LIFE USED UP: {words}</source>
+      <translation>VIDA DE HERRAMIENTA {number} AGOTADA: {words}</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>TOOL {number} LIFE: {words} USED</source>
+      <translation>VIDA DE HERRAMIENTA {number}: {words} USADOS</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>T{number} SAVED</source>
+      <translation>T{number} GUARDADA</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>T{number} tool life is used up ({life}): change the insert and confirm the change in TOOL LIFE</source>
+      <translation>la vida de T{number} se ha agotado ({life}): cambie la plaquita y confirme el cambio en VIDA ÚTIL</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>T{number} tool life is used up ({life}): {method}</source>
+      <translation>la vida de T{number} se ha agotado ({life}): {method}</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>T{number}: NEW INSERT, TOOL LIFE STARTS AT ZERO</source>
+      <translation>T{number}: PLAQUITA NUEVA, LA VIDA EMPIEZA EN CERO</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>T{number}: NEW TOOL, TOOL LIFE STARTS AT ZERO</source>
+      <translation>T{number}: HERRAMIENTA NUEVA, LA VIDA EMPIEZA EN CERO</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>cutting time of T{number} set to {seconds} min</source>
+      <translation>tiempo de corte de T{number} fijado en {seconds} min</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>fit a new tool and set its CUR.TIME to 0 in the tool table (F8)</source>
+      <translation>ponga una herramienta nueva y su CUR.TIME a 0 en la tabla de herramientas (F8)</translation>
+    </message>
+    <message>
       <location filename="app/programs/copy_rename_delete.py" />
       <source>COPIED AS {name}</source>
       <translation>COPIADO COMO {name}</translation>
@@ -10334,1096 +11334,6 @@
       <translation>NO SE PUEDE ESCRIBIR {target}: {cause}</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS</source>
-      <translation>FLECHAS: ELEGIR CARACTERÍSTICA. A TRAZOS: LÍMITES DE CONTROL, PUNTOS: TOLERANCIA, CÍRCULOS: REGLAS INCUMPLIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>AVERAGE</source>
-      <translation>PROMEDIO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>CONTROL CHARTS</source>
-      <translation>GRÁFICAS DE CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>CONTROL CHARTS  ·  {program}</source>
-      <translation>GRÁFICAS DE CONTROL  ·  {program}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>DRIFT</source>
-      <translation>DERIVA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>FEATURE NOT MEASURED YET</source>
-      <translation>CARACTERÍSTICA AÚN SIN MEDIR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>INDIVIDUALS</source>
-      <translation>VALORES INDIVIDUALES</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>MEAN {mode}</source>
-      <translation>MEDIA {mode}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>MOVING RANGE</source>
-      <translation>RANGO MÓVIL</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>RANGE</source>
-      <translation>RANGO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>READINGS</source>
-      <translation>LECTURAS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>limits, Cpk, drift</source>
-      <translation>límites, Cpk, deriva</translation>
-    </message>
-    <message>
-      <location filename="app/quality/charts_section.py" />
-      <source>no drift; Cpk is at least {minimum} (95 % confidence)</source>
-      <translation>sin deriva; Cpk es al menos {minimum} (confianza del 95 %)</translation>
-    </message>
-    <message>
-      <location filename="app/quality/correction_effect.py" />
-      <source>NOW</source>
-      <translation>AHORA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/correction_effect.py" />
-      <source>PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}</source>
-      <translation>NO SE PUEDEN COMPARAR LAS PIEZAS CON CORRECTORES VIEJOS Y NUEVOS: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/correction_effect.py" />
-      <source>{name}: {change} FROM NEXT PART</source>
-      <translation>{name}: {change} DESDE LA PRÓXIMA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/cycle_recorder.py" />
-      <source>BETWEEN CYCLES</source>
-      <translation>ENTRE CICLOS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/cycle_recorder.py" />
-      <source>RESTARTED</source>
-      <translation>REANUDADO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>CHANGE</source>
-      <translation>CAMBIAR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>CORRECTED BY</source>
-      <translation>SE CORRIGE CON</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>EFFECT OF LARGER OFFSET ON SIZE</source>
-      <translation>EFECTO DE MÁS CORRECTOR EN LA MEDIDA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>ENTER: CHANGE FEATURE   F2: NEW FEATURE   ESC: BACK TO LIST</source>
-      <translation>ENTER: CAMBIAR CARACTERÍSTICA   F2: NUEVA   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>Enter accepts the entry and goes to the next field. F6 saves the feature, Esc discards the changes.</source>
-      <translation>Enter acepta lo escrito y pasa al campo siguiente. F6 guarda la característica, Esc descarta los cambios.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>F2 adds a feature, Enter changes the selected feature, F5 sets whether the next part waits until the required parts are measured.</source>
-      <translation>F2 añade una característica, Enter cambia la seleccionada, F5 define si la próxima pieza espera hasta que se midan las piezas requeridas.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>FEATURES</source>
-      <translation>CARACTERÍSTICAS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>FEATURES  ·  {program}</source>
-      <translation>CARACTERÍSTICAS  ·  {program}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>FILL IN THE FIELDS. F6: SAVE   ESC: CANCEL</source>
-      <translation>RELLENE LOS CAMPOS. F6: GUARDAR   ESC: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>LARGER</source>
-      <translation>MAYOR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>LOWER DEVIATION</source>
-      <translation>DESVIACIÓN INFERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>MEASURE EVERY N PARTS (0: NEVER)</source>
-      <translation>MEDIR CADA N PIEZAS (0: NUNCA)</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>MEASURED</source>
-      <translation>MEDIDO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>NEW</source>
-      <translation>NUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>NEXT PART DOES NOT WAIT FOR REQUIRED MEASUREMENTS</source>
-      <translation>LA PIEZA SIGUIENTE NO ESPERA LAS MEDICIONES REQUERIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>NEXT PART WAITS FOR REQUIRED MEASUREMENTS</source>
-      <translation>LA PIEZA SIGUIENTE ESPERA LAS MEDICIONES REQUERIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>NO WAIT</source>
-      <translation>NO ESPERAR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>NOMINAL</source>
-      <translation>NOMINAL</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>NOMINAL {mode}</source>
-      <translation>NOMINAL {mode}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>OFFSET</source>
-      <translation>CORRECTOR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>PARTS PER SAMPLE</source>
-      <translation>PIEZAS POR MUESTRA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>PRESS ENTER TO SWITCH TO THE OTHER VALUE</source>
-      <translation>PULSE ENTER PARA PASAR AL OTRO VALOR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>REMOVE</source>
-      <translation>QUITAR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>SECONDARY OFFSET</source>
-      <translation>CORRECTOR SECUNDARIO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>SMALLER</source>
-      <translation>MENOR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>STOP MEASURING {name}? READINGS STAY STORED. Y: STOP   N: CONTINUE</source>
-      <translation>¿DEJAR DE MEDIR {name}? LAS LECTURAS QUEDAN GUARDADAS. Y: DEJAR   N: SEGUIR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>TOLERANCE</source>
-      <translation>TOLERANCIA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>TOOL OR OFFSET NUMBER</source>
-      <translation>NÚMERO DE HERRAMIENTA O CORRECTOR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>TOOL WEAR</source>
-      <translation>DESGASTE DE HERRAMIENTA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>UPPER DEVIATION</source>
-      <translation>DESVIACIÓN SUPERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>WAIT</source>
-      <translation>ESPERAR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>every {count} parts</source>
-      <translation>cada {count} piezas</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>feature {row} saved</source>
-      <translation>característica {row} guardada</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>measured features of {program}: {change}</source>
-      <translation>características medidas de {program}: {change}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>nominal dimension, tolerance, sampling plan</source>
-      <translation>medida nominal, tolerancia, plan de muestreo</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>{name} REMOVED</source>
-      <translation>{name} ELIMINADO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>{name} SAVED</source>
-      <translation>{name} GUARDADA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>{row} removed</source>
-      <translation>{row} eliminado</translation>
-    </message>
-    <message>
-      <location filename="app/quality/features_section.py" />
-      <source>{value} is not a whole number</source>
-      <translation>{value} no es un número entero</translation>
-    </message>
-    <message>
-      <location filename="app/quality/gauge_line.py" />
-      <source>NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …</source>
-      <translation>NO HAY CALIBRADOR EN EL ARCHIVO DE MÁQUINA. AÑADA [gauge] port = …</translation>
-    </message>
-    <message>
-      <location filename="app/quality/gauge_line.py" />
-      <source>No gauge is configured: enter its serial port under [gauge] in the machine file.</source>
-      <translation>Ningún calibrador configurado: indique su puerto serie en [gauge] del archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/gauge_line.py" />
-      <source>the gauge is not connected or is switched off</source>
-      <translation>el calibrador no está conectado o está apagado</translation>
-    </message>
-    <message>
-      <location filename="app/quality/gauge_line.py" />
-      <source>the gauge sent unreadable data</source>
-      <translation>el calibrador envió datos ilegibles</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_book.py" />
-      <source>MEASURED PARTS CANNOT BE SAVED: NO DATA STORE</source>
-      <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: NO HAY ALMACÉN DE DATOS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_book.py" />
-      <source>MEASURED PARTS CANNOT BE SAVED: {away}</source>
-      <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: {away}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_function.py" />
-      <source>ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST</source>
-      <translation>ENTER: ABRIR PIEZAS MEDIDAS   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_function.py" />
-      <source>MEASURED PARTS</source>
-      <translation>PIEZAS MEDIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_function.py" />
-      <source>MEASUREMENT DUE</source>
-      <translation>MEDICIÓN PENDIENTE</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_function.py" />
-      <source>Press Enter to open the page, or press W in the main menu.</source>
-      <translation>Pulse Enter para abrir la página, o W en el menú principal.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_function.py" />
-      <source>STORED</source>
-      <translation>GUARDADO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_function.py" />
-      <source>features, readings, charts, trends</source>
-      <translation>características, lecturas, gráficas, tendencias</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_watch.py" />
-      <source>program {program}: the next part can start before the required parts are measured</source>
-      <translation>programa {program}: la pieza siguiente puede empezar antes de medir las piezas requeridas</translation>
-    </message>
-    <message>
-      <location filename="app/quality/parts_watch.py" />
-      <source>program {program}: the next part cannot start before the required parts are measured</source>
-      <translation>programa {program}: la pieza siguiente no puede empezar antes de medir las piezas requeridas</translation>
-    </message>
-    <message>
-      <location filename="app/quality/plots_view.py" />
-      <source>CHART</source>
-      <translation>GRÁFICO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/plots_view.py" />
-      <source>NOTHING TO DRAW YET</source>
-      <translation>AÚN NO HAY NADA QUE DIBUJAR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MAIN MENU, F8/F9</source>
-      <translation>NO SE PUEDE DESHACER: HAY UN CAMBIO POSTERIOR. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>CORRECT</source>
-      <translation>CORREGIR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>CORRECTION UNDONE</source>
-      <translation>CORRECCIÓN DESHECHA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>DEVIATION</source>
-      <translation>DESVIACIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>Enter the deviation in DL and DR of the tool table (F8 of the main menu).</source>
-      <translation>Introduzca la desviación en DL y DR de la tabla de herramientas (F8 del menú principal).</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>F8 proposes a correction, F4 undoes the last correction.</source>
-      <translation>F8 propone una corrección, F4 deshace la última corrección.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>GAUGE OFF</source>
-      <translation>CALIBR. NO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>GAUGE ON</source>
-      <translation>CALIBR. SÍ</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>GAUGE READING IGNORED. OPEN READINGS, THEN MEASURE AGAIN</source>
-      <translation>LECTURA IGNORADA. ABRA LECTURAS Y MIDA DE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>GOOD</source>
-      <translation>BUENA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>MEASURED {name} OF PART {part}?</source>
-      <translation>¿{name} MEDIDO EN LA PIEZA {part}?</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MAIN MENU, F8/F9</source>
-      <translation>SIN CORRECCIONES EN ESTA PÁGINA. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>NOT MEASURED YET</source>
-      <translation>AÚN SIN MEDIR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>PART +</source>
-      <translation>PIEZA +</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>PART −</source>
-      <translation>PIEZA −</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>PRESS Y TO REMOVE READING {size} FROM PART {part}, N TO KEEP IT</source>
-      <translation>PULSE Y PARA QUITAR LA LECTURA {size} DE LA PIEZA {part}, N PARA CONSERVARLA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>READING REMOVED</source>
-      <translation>LECTURA QUITADA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>READINGS  ·  {program}</source>
-      <translation>LECTURAS  ·  {program}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>STILL READING STORED DATA. PRESS F8 AGAIN</source>
-      <translation>AÚN SE LEEN LOS DATOS GUARDADOS. PULSE F8 OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>TOO LARGE</source>
-      <translation>GRANDE</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>TOO SMALL</source>
-      <translation>PEQUEÑA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST</source>
-      <translation>ESCRIBA LA MEDIDA Y PULSE ENTER. ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>measure a part and see the correction needed</source>
-      <translation>medir una pieza y ver la corrección necesaria</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>program {program}, part {part}: reading of {feature} ({last} mm) removed</source>
-      <translation>programa {program}, pieza {part}: lectura de {feature} ({last} mm) quitada</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>program {program}, part {part}: {feature} measured as {taken} mm</source>
-      <translation>programa {program}, pieza {part}: {feature} medido, {taken} mm</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>{name} {size} FAR OUT OF TOLERANCE. Y: SAVE   N: MEASURE AGAIN</source>
-      <translation>{name} {size} MUY FUERA DE TOLERANCIA. Y: GUARDAR   N: MEDIR DE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>{name}, PART {part}: {size} SAVED</source>
-      <translation>{name}, PIEZA {part}: {size} GUARDADA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>{row} must be more than 0; type the measured size, not the deviation</source>
-      <translation>{row} debe ser mayor que 0; escriba la medida, no la desviación</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>{words}. Y: APPLY   N: DO NOT APPLY</source>
-      <translation>{words}. Y: APLICAR   N: NO APLICAR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/readings_section.py" />
-      <source>{words}; APPLIES FROM NEXT PART</source>
-      <translation>{words}; VALE DESDE LA PRÓXIMA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/sample_plan.py" />
-      <source>MEASURE PART {part}: {names}</source>
-      <translation>MIDA LA PIEZA {part}: {names}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/sample_plan.py" />
-      <source>part {part} must be measured before the next part starts: {names}</source>
-      <translation>hay que medir la pieza {part} antes de que empiece la siguiente: {names}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/section.py" />
-      <source>NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2</source>
-      <translation>AÚN NO HAY CARACTERÍSTICAS. AÑADA UNA CARACTERÍSTICA EN LA SECCIÓN 1 CON F2</translation>
-    </message>
-    <message>
-      <location filename="app/quality/section.py" />
-      <source>SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES</source>
-      <translation>SELECCIONE ANTES UN PROGRAMA. CADA PROGRAMA TIENE SUS PROPIAS CARACTERÍSTICAS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_figures.py" />
-      <source>No part was started in this period.</source>
-      <translation>En este período no se empezó ninguna pieza.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_figures.py" />
-      <source>The clock was set back after {time}, so times of day overlap at that point, but durations are correct.</source>
-      <translation>El reloj se atrasó después de {time}, por lo que en ese punto las horas se solapan, pero las duraciones son correctas.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_figures.py" />
-      <source>The clock was set back by {time} during the shift, so the shift was longer by the same amount.</source>
-      <translation>El reloj se atrasó {time} durante el turno, que por ello fue ese tiempo más largo.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_figures.py" />
-      <source>The clock was set forward by {time} during the shift, so the shift was shorter by the same amount.</source>
-      <translation>El reloj se adelantó {time} durante el turno, que por ello fue ese tiempo más corto.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_figures.py" />
-      <source>The shift has not started.</source>
-      <translation>El turno no ha empezado.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_figures.py" />
-      <source>The shift is still running; this report covers it up to {time}.</source>
-      <translation>El turno sigue en curso; este informe lo cubre hasta las {time}.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>Creating the report …</source>
-      <translation>Creando el informe …</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>EARLIER</source>
-      <translation>ANTES</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>ENTER: SAVE REPORT HERE   F4: RESCAN FOR USB STICKS</source>
-      <translation>ENTER: GUARDAR INFORME AQUÍ   F4: BUSCAR OTRA VEZ MEMORIAS USB</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>Enter saves the report as HTML in the selected location.</source>
-      <translation>Enter guarda el informe como HTML en la ubicación elegida.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK</source>
-      <translation>F2, F3: OTRO TURNO   F6: GUARDAR INFORME COMO HTML   ESC: VOLVER</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>JOBS CANNOT BE SAVED: NO DATA STORE</source>
-      <translation>NO SE PUEDEN GUARDAR TRABAJOS: NO HAY ALMACÉN DE DATOS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>LATER</source>
-      <translation>DESPUÉS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>NO EARLIER SHIFT IS AVAILABLE</source>
-      <translation>NO HAY TURNOS ANTERIORES DISPONIBLES</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>PLACE</source>
-      <translation>LUGAR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>REPORT IS NOT READY YET. WAIT A MOMENT</source>
-      <translation>EL INFORME AÚN NO ESTÁ LISTO. ESPERE UN MOMENTO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>SHIFT REPORT</source>
-      <translation>INFORME DE TURNO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>SHIFT REPORT  ·  SAVE TO:</source>
-      <translation>INFORME DE TURNO  ·  GUARDAR EN:</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>THIS IS THE LATEST SHIFT</source>
-      <translation>ESTE ES EL ÚLTIMO TURNO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>parts, times, stops and alarms, for printing</source>
-      <translation>piezas, tiempos, paros y alarmas, para imprimir</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_function.py" />
-      <source>{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW</source>
-      <translation>{name} GUARDADO. SI USÓ UNA MEMORIA USB, YA PUEDE RETIRARLA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>Alarms and E-stops</source>
-      <translation>Alarmas y paros de emergencia</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>All stops</source>
-      <translation>Todos los paros</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>Availability</source>
-      <translation>Disponibilidad</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>CYCLES WITHOUT A PART</source>
-      <translation>CICLOS SIN PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>Inserts changed in this shift</source>
-      <translation>Plaquitas cambiadas en este turno</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>LIFE USED</source>
-      <translation>VIDA USADA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>LIMITS</source>
-      <translation>LÍMITES</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>LONGEST</source>
-      <translation>MÁS LARGO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>MEAN</source>
-      <translation>MEDIA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>Not recorded</source>
-      <translation>Sin registrar</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>OCCURRENCES</source>
-      <translation>VECES</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>Offsets changed</source>
-      <translation>Correctores cambiados</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>Out of tolerance</source>
-      <translation>Fuera de tolerancia</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>Parts</source>
-      <translation>Piezas</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>Parts by program</source>
-      <translation>Piezas por programa</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>REASON</source>
-      <translation>MOTIVO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>SHARE</source>
-      <translation>PARTE</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>SHORTEST</source>
-      <translation>MÁS CORTO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>START TIME</source>
-      <translation>HORA DE INICIO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>Stops</source>
-      <translation>Paros</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>Stops by reason</source>
-      <translation>Paros por motivo</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>TIME</source>
-      <translation>TIEMPO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>Tool life used so far</source>
-      <translation>Vida de herramienta usada hasta ahora</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>USAGE</source>
-      <translation>USO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>USED</source>
-      <translation>USADO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>WHO</source>
-      <translation>QUIÉN</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>and {count} more</source>
-      <translation>y {count} más</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>green: cycles; amber: stops; red: alarms</source>
-      <translation>verde: ciclos; ámbar: paros; rojo: alarmas</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>shift from {first} to {last}</source>
-      <translation>turno de {first} a {last}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>wear</source>
-      <translation>desgaste</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>{bad} of {count} readings</source>
-      <translation>{bad} de {count} lecturas</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>{parts} parts, {time}</source>
-      <translation>{parts} piezas, {time}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>{share} %: in cycle for {run} of {planned}</source>
-      <translation>{share} %: en ciclo {run} de {planned}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/shift_page.py" />
-      <source>{unit} mm</source>
-      <translation>{unit} mm</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>MINUTES</source>
-      <translation>MINUTOS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO</source>
-      <translation>¿PLAQUITA NUEVA EN T{number}? USO DE LA VIEJA: {words}. Y: SÍ   N: NO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>NO TOOL HAS OFFSETS YET</source>
-      <translation>AÚN NO HAY HERRAMIENTAS CON CORRECTOR</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: no new part starts once the tool life is used up.</source>
-      <translation>Solo el tiempo en avance cuenta para los minutos de vida. Escriba 0 para no tener límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>REMAINING</source>
-      <translation>RESTANTE</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>STOP</source>
-      <translation>PARO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>STOPS</source>
-      <translation>PAROS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>TOOL LIFE</source>
-      <translation>VIDA ÚTIL DE HERRAMIENTAS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT</source>
-      <translation>ESCRIBA EL LÍMITE DE VIDA. F2: OTRO LÍMITE   F4: PLAQUITA NUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>T{number} SAVED</source>
-      <translation>T{number} GUARDADA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>T{number} tool life: {limit_parts} parts, {minutes}, warn at {warn}</source>
-      <translation>vida de T{number}: {limit_parts} piezas, {minutes}, aviso al {warn}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>WARN</source>
-      <translation>AVISO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>WARN AT %</source>
-      <translation>AVISAR AL %</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>insert life in parts and minutes</source>
-      <translation>vida de plaquita en piezas y minutos</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>no stop at end of tool life</source>
-      <translation>sin paro al agotarse la vida de la herramienta</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>{count} parts</source>
-      <translation>{count} piezas</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>{limit_seconds} min</source>
-      <translation>{limit_seconds} min</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_section.py" />
-      <source>{value} is not a valid number of parts; type a whole number</source>
-      <translation>{value} no es un número de piezas válido; escriba un entero</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_watch.py" />
-      <source>TOOL {number} LIFE USED UP: {words}</source>
-      <translation>VIDA DE HERRAMIENTA {number} AGOTADA: {words}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_watch.py" />
-      <source>TOOL {number} LIFE: {words} USED</source>
-      <translation>VIDA DE HERRAMIENTA {number}: {words} USADOS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_watch.py" />
-      <source>T{number} tool life is used up ({life}): change the insert and confirm the change in TOOL LIFE</source>
-      <translation>la vida de T{number} se ha agotado ({life}): cambie la plaquita y confirme el cambio en VIDA ÚTIL</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_watch.py" />
-      <source>T{number} tool life is used up ({life}): {method}</source>
-      <translation>la vida de T{number} se ha agotado ({life}): {method}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_watch.py" />
-      <source>T{number}: NEW INSERT, TOOL LIFE STARTS AT ZERO</source>
-      <translation>T{number}: PLAQUITA NUEVA, LA VIDA EMPIEZA EN CERO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_watch.py" />
-      <source>T{number}: NEW TOOL, TOOL LIFE STARTS AT ZERO</source>
-      <translation>T{number}: HERRAMIENTA NUEVA, LA VIDA EMPIEZA EN CERO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_watch.py" />
-      <source>cutting time of T{number} set to {seconds} min</source>
-      <translation>tiempo de corte de T{number} fijado en {seconds} min</translation>
-    </message>
-    <message>
-      <location filename="app/quality/tool_life_watch.py" />
-      <source>fit a new tool and set its CUR.TIME to 0 in the tool table (F8)</source>
-      <translation>ponga una herramienta nueva y su CUR.TIME a 0 en la tabla de herramientas (F8)</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>ARROWS: SELECT TREND   ESC: BACK TO LIST</source>
-      <translation>FLECHAS: ELEGIR TENDENCIA   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>AVAILABILITY</source>
-      <translation>DISPONIBILIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>CYCLE TIME</source>
-      <translation>TIEMPO DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>CYCLE TIME, s</source>
-      <translation>TIEMPO DE CICLO, s</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>IN CYCLE</source>
-      <translation>EN CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>MINUTES BY REASON, WITH CUMULATIVE PERCENTAGE</source>
-      <translation>MINUTOS POR MOTIVO, CON PORCENTAJE ACUMULADO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>MINUTES OF THE SHIFT</source>
-      <translation>MINUTOS DEL TURNO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>NOT IN CYCLE</source>
-      <translation>FUERA DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>SHIFT HOURS, FOR EXAMPLE 6-14?</source>
-      <translation>¿HORAS DEL TURNO, POR EJEMPLO 6-14?</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>SPINDLE LOAD</source>
-      <translation>CARGA DEL HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>SPINDLE LOAD, %</source>
-      <translation>CARGA DEL HUSILLO, %</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>TRENDS</source>
-      <translation>TENDENCIAS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>TRENDS  ·  {program}</source>
-      <translation>TENDENCIAS  ·  {program}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>cycle times, stops, availability</source>
-      <translation>tiempos de ciclo, paros, disponibilidad</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>enter the start and end hour of the shift, such as 6-14</source>
-      <translation>escriba la hora de inicio y la de fin del turno, como 6-14</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>last cycle {last}, shortest {best}, mean {mean} of {count} parts</source>
-      <translation>último ciclo {last}, menor {best}, media {mean} de {count} piezas</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>last load {last} %, highest load {maximum} %</source>
-      <translation>última carga {last} %, carga mayor {maximum} %</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>no drive on this machine reports its load</source>
-      <translation>ningún accionamiento de esta máquina informa su carga</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>no part made yet</source>
-      <translation>aún no se ha hecho ninguna pieza</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>no stops yet</source>
-      <translation>aún sin paros</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>no wear correction yet</source>
-      <translation>aún sin correcciones de desgaste</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>parts</source>
-      <translation>piezas</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>shift hours: {first} to {last}</source>
-      <translation>horas del turno: {first} a {last}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>{count} corrections; last correction: {offset} by X {x} Z {z} after part {part}</source>
-      <translation>{count} correcciones; última corrección: {offset} en X {x} Z {z} tras la pieza {part}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>{count} stops, on average {mean} apart; longest total: {reason}, {time}</source>
-      <translation>{count} paros, {mean} entre ellos de media; mayor total: {reason}, {time}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>{first}–{last}: the shift has not started</source>
-      <translation>{first}–{last}: el turno no ha empezado</translation>
-    </message>
-    <message>
-      <location filename="app/quality/trends_section.py" />
-      <source>{first}–{last}: {share} %, in cycle for {run} of {planned}</source>
-      <translation>{first}–{last}: {share} %, en ciclo {run} de {planned}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/wear_correction.py" />
-      <source>NO OFFSETS SET FOR T{number}</source>
-      <translation>T{number} NO TIENE CORRECTORES DEFINIDOS</translation>
-    </message>
-    <message>
-      <location filename="app/quality/wear_correction.py" />
-      <source>{name} measured: the mean of {count} readings is {mean}, offset change {change}</source>
-      <translation>{name} medido: la media de {count} lecturas es {mean}, cambio del corrector {change}</translation>
-    </message>
-    <message>
-      <location filename="app/quality/wear_correction.py" />
-      <source>{row}: none of the parts started since the last change of {name} has been measured yet</source>
-      <translation>{row}: aún no se ha medido ninguna de las piezas empezadas desde el último cambio de {name}</translation>
-    </message>
-    <message>
       <location filename="app/scope/analyses.py" />
       <source>A dash means that the arc is too short to calculate the value.</source>
       <translation>Una raya indica que el arco es demasiado corto para calcular el valor.</translation>
@@ -11769,6 +11679,11 @@
       <translation>{seconds} ms</translation>
     </message>
     <message>
+      <location filename="app/scope/drawing_room_view.py" />
+      <source>CHART</source>
+      <translation>GRÁFICO</translation>
+    </message>
+    <message>
       <location filename="app/scope/drive_test_figures.py" />
       <source>90° PHASE LAG</source>
       <translation>DESFASE DE 90°</translation>
@@ -11877,6 +11792,11 @@
       <location filename="app/scope/scope_function.py" />
       <source>RECORDED</source>
       <translation>SE REGISTRA</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_function.py" />
+      <source>STORED</source>
+      <translation>GUARDADO</translation>
     </message>
     <message>
       <location filename="app/scope/scope_function.py" />
@@ -12730,6 +12650,11 @@
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
+      <source>STOP</source>
+      <translation>PARO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
       <source>TWIST</source>
       <translation>GIRE</translation>
     </message>
@@ -13017,6 +12942,11 @@
       <location filename="app/searchto/searchto_state_view.py" />
       <source>NO DIFFERENCES FROM CURRENT STATE</source>
       <translation>SIN DIFERENCIAS CON EL ESTADO ACTUAL</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_state_view.py" />
+      <source>NOW</source>
+      <translation>AHORA</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_state_view.py" />
@@ -14832,6 +14762,76 @@
       <location filename="app/special/spindle_limit.py" />
       <source>{rpm} rpm is outside the range of this spindle, {low} to {high} rpm</source>
       <translation>{rpm} rpm está fuera del margen de este husillo, de {low} a {high} rpm</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>MINUTES</source>
+      <translation>MINUTOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO</source>
+      <translation>¿PLAQUITA NUEVA EN T{number}? USO DE LA VIEJA: {words}. Y: SÍ   N: NO</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>NO TOOL HAS OFFSETS YET</source>
+      <translation>AÚN NO HAY HERRAMIENTAS CON CORRECTOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: no new part starts once the tool life is used up.</source>
+      <translation>Solo el tiempo en avance cuenta para los minutos de vida. Escriba 0 para no tener límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>REMAINING</source>
+      <translation>RESTANTE</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT</source>
+      <translation>ESCRIBA EL LÍMITE DE VIDA. F2: OTRO LÍMITE   F4: PLAQUITA NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>T{number} tool life: {limit_parts} parts, {minutes}, warn at {warn}</source>
+      <translation>vida de T{number}: {limit_parts} piezas, {minutes}, aviso al {warn}</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>WARN</source>
+      <translation>AVISO</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>WARN AT %</source>
+      <translation>AVISAR AL %</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>insert life in parts and minutes</source>
+      <translation>vida de plaquita en piezas y minutos</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>no stop at end of tool life</source>
+      <translation>sin paro al agotarse la vida de la herramienta</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>{count} parts</source>
+      <translation>{count} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>{limit_seconds} min</source>
+      <translation>{limit_seconds} min</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>{value} is not a valid number of parts; type a whole number</source>
+      <translation>{value} no es un número de piezas válido; escriba un entero</translation>
     </message>
     <message>
       <location filename="app/transfer/serial_settings.py" />
@@ -18252,6 +18252,176 @@
       <location filename="core/executor/watchdog.py" />
       <source>the software thread of the control is stuck</source>
       <translation>el hilo de software del control está atorado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/availability.py" />
+      <source>the end of a cycle is earlier than its start because the clock was set back</source>
+      <translation>el final de un ciclo es anterior a su comienzo porque el reloj se atrasó</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/availability.py" />
+      <source>the end of a shift must be later than its start; correct the shift times</source>
+      <translation>el final de un turno debe ser posterior a su comienzo; corrija las horas del turno</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/capability.py" />
+      <source>process capability needs a tolerance; enter a tolerance for this feature</source>
+      <translation>la capacidad del proceso necesita una tolerancia; introduzca una tolerancia para esta característica</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/capability.py" />
+      <source>the lower limit must be below the upper limit; correct the tolerance</source>
+      <translation>el límite inferior debe ser menor que el superior; corrija la tolerancia</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/capability.py" />
+      <source>{values_count} readings are not enough; a Cpk needs at least {minimum} readings</source>
+      <translation>{values_count} lecturas no bastan; un Cpk necesita al menos {minimum} lecturas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>a control chart is not possible for samples of {size}; use samples of 1 to {sample_sizes} parts</source>
+      <translation>no es posible una gráfica de control para muestras de {size}; use muestras de 1 a {sample_sizes} piezas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>a value is not a number; delete that reading</source>
+      <translation>un valor no es un número; borre esa lectura</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>an X-bar chart needs at least 2 complete samples of {shape} parts; measure more parts</source>
+      <translation>la gráfica X-barra necesita al menos 2 muestras completas de {shape} piezas; mida más piezas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>an individuals chart needs at least 2 values; measure more parts</source>
+      <translation>la gráfica de individuales necesita al menos 2 valores; mida más piezas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>the samples of an X-bar chart must all have the same size, 2 to 10 values</source>
+      <translation>las muestras de la gráfica X-barra deben tener todas el mismo tamaño, de 2 a 10 valores</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/drift_rules.py" />
+      <source>eight points in a row beyond one sigma</source>
+      <translation>ocho puntos seguidos más allá de un sigma</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/drift_rules.py" />
+      <source>fifteen points in a row within one sigma</source>
+      <translation>quince puntos seguidos dentro de un sigma</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/drift_rules.py" />
+      <source>four of five points beyond one sigma on one side</source>
+      <translation>cuatro de cinco puntos más allá de un sigma a un lado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/drift_rules.py" />
+      <source>fourteen points in a row alternating up and down</source>
+      <translation>catorce puntos seguidos subiendo y bajando alternadamente</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/drift_rules.py" />
+      <source>nine points in a row on one side of the center line</source>
+      <translation>nueve puntos seguidos a un lado de la línea central</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/drift_rules.py" />
+      <source>one point beyond a control limit</source>
+      <translation>un punto fuera de un límite de control</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/drift_rules.py" />
+      <source>six points in a row rising or falling</source>
+      <translation>seis puntos seguidos subiendo o bajando</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/drift_rules.py" />
+      <source>two of three points beyond two sigma on one side</source>
+      <translation>dos de tres puntos más allá de dos sigmas a un lado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>a feature name must have 1 to {name_longest} characters</source>
+      <translation>el nombre de una característica debe tener de 1 a {name_longest} caracteres</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: a sample must have 1 to {sample_sizes} parts</source>
+      <translation>{feature}: una muestra debe tener de 1 a {sample_sizes} piezas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the direction must be +1 (a positive correction makes the dimension larger) or -1 (a positive correction makes the dimension smaller)</source>
+      <translation>{feature}: la dirección debe ser +1 (una corrección positiva aumenta la cota) o -1 (una corrección positiva disminuye la cota)</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the lower deviation must be below the upper deviation; correct one of them</source>
+      <translation>{feature}: la desviación inferior debe ser menor que la superior; corrija una</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the lower limit is 0 or less; correct the deviation</source>
+      <translation>{feature}: el límite inferior es 0 o menos; corrija la desviación</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for no sampling plan</source>
+      <translation>{feature}: el intervalo de medición debe ser de 1 a {every_most} piezas, o 0 sin plan de muestreo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the nominal dimension and the limits must be numbers</source>
+      <translation>{feature}: la medida nominal y los límites deben ser números</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the nominal dimension must be more than 0 and at most {size_most} mm</source>
+      <translation>{feature}: la medida nominal debe ser mayor que 0 y como máximo {size_most} mm</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the offset number must be 1 to {numbers}, not {number}</source>
+      <translation>{feature}: el número de corrector debe ser de 1 a {numbers}, no {number}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/stops.py" />
+      <source>{reason}: the end of a stop is earlier than its start because the clock was set back</source>
+      <translation>{reason}: el final de un paro es anterior a su comienzo porque el reloj se atrasó</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>the correction would be less than the smallest offset step, so no correction is needed</source>
+      <translation>la corrección sería menor que el paso mínimo del corrector, así que no hace falta corregir</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>the deviation is within the dead band, so no correction is needed</source>
+      <translation>la desviación está dentro de la banda muerta, así que no hace falta corregir</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>{feature}: a correction of {change} mm is too large to be tool wear; touch the tool off</source>
+      <translation>{feature}: una corrección de {change} mm es demasiado grande para ser desgaste; tome referencia de la herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>{feature}: a reading is not a number; delete that reading</source>
+      <translation>{feature}: una lectura no es un número; borre esa lectura</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>{feature}: a reading is off by more than {distance} times the tolerance, which is too large for tool wear; measure again</source>
+      <translation>{feature}: una lectura se desvía más de {distance} veces la tolerancia, demasiado para ser desgaste; mida de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>{feature}: no part has been measured since the last correction</source>
+      <translation>{feature}: no se ha medido ninguna pieza desde la última corrección</translation>
     </message>
     <message>
       <location filename="core/extras/sharing/connection_string.py" />
@@ -28349,6 +28519,41 @@
       <translation>{whole}: {text} no es una longitud; escriba 1.25 (pulgadas) o 30mm</translation>
     </message>
     <message>
+      <location filename="core/production/tool_life.py" />
+      <source>T{number}: the tool-life warning must be set between 1 and 100 % of the tool life</source>
+      <translation>T{number}: el aviso de vida de la herramienta debe ponerse entre el 1 y el 100 % de la vida</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>T{number}: tool life must be 0 to {parts_most} parts; 0 means no limit</source>
+      <translation>T{number}: la vida debe ser de 0 a {parts_most} piezas; 0 significa sin límite</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>T{number}: tool life must be 0 to {seconds_most} cutting minutes; 0 means no limit</source>
+      <translation>T{number}: la vida debe ser de 0 a {seconds_most} minutos de corte; 0 significa sin límite</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>no limit</source>
+      <translation>sin límite</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>{parts} of {limit_parts} parts</source>
+      <translation>{parts} de {limit_parts} piezas</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>{parts} parts, {seconds} min</source>
+      <translation>{parts} piezas, {seconds} min</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>{seconds} of {limit_seconds} min</source>
+      <translation>{seconds} de {limit_seconds} min</translation>
+    </message>
+    <message>
       <location filename="core/proving/air_checks.py" />
       <source>A drill feeds into an existing hole.</source>
       <translation>Una broca avanza en un agujero ya existente.</translation>
@@ -29847,211 +30052,6 @@
       <location filename="core/proving/unchecked_parts.py" />
       <source>{without}: tool holder, edge length and hand of the tool not defined</source>
       <translation>{without}: portaherramientas, largo de filo y mano de la herramienta sin definir</translation>
-    </message>
-    <message>
-      <location filename="core/quality/availability.py" />
-      <source>the end of a cycle is earlier than its start because the clock was set back</source>
-      <translation>el final de un ciclo es anterior a su comienzo porque el reloj se atrasó</translation>
-    </message>
-    <message>
-      <location filename="core/quality/availability.py" />
-      <source>the end of a shift must be later than its start; correct the shift times</source>
-      <translation>el final de un turno debe ser posterior a su comienzo; corrija las horas del turno</translation>
-    </message>
-    <message>
-      <location filename="core/quality/capability.py" />
-      <source>process capability needs a tolerance; enter a tolerance for this feature</source>
-      <translation>la capacidad del proceso necesita una tolerancia; introduzca una tolerancia para esta característica</translation>
-    </message>
-    <message>
-      <location filename="core/quality/capability.py" />
-      <source>the lower limit must be below the upper limit; correct the tolerance</source>
-      <translation>el límite inferior debe ser menor que el superior; corrija la tolerancia</translation>
-    </message>
-    <message>
-      <location filename="core/quality/capability.py" />
-      <source>{values_count} readings are not enough; a Cpk needs at least {minimum} readings</source>
-      <translation>{values_count} lecturas no bastan; un Cpk necesita al menos {minimum} lecturas</translation>
-    </message>
-    <message>
-      <location filename="core/quality/control_charts.py" />
-      <source>a control chart is not possible for samples of {size}; use samples of 1 to {sample_sizes} parts</source>
-      <translation>no es posible una gráfica de control para muestras de {size}; use muestras de 1 a {sample_sizes} piezas</translation>
-    </message>
-    <message>
-      <location filename="core/quality/control_charts.py" />
-      <source>a value is not a number; delete that reading</source>
-      <translation>un valor no es un número; borre esa lectura</translation>
-    </message>
-    <message>
-      <location filename="core/quality/control_charts.py" />
-      <source>an X-bar chart needs at least 2 complete samples of {shape} parts; measure more parts</source>
-      <translation>la gráfica X-barra necesita al menos 2 muestras completas de {shape} piezas; mida más piezas</translation>
-    </message>
-    <message>
-      <location filename="core/quality/control_charts.py" />
-      <source>an individuals chart needs at least 2 values; measure more parts</source>
-      <translation>la gráfica de individuales necesita al menos 2 valores; mida más piezas</translation>
-    </message>
-    <message>
-      <location filename="core/quality/control_charts.py" />
-      <source>the samples of an X-bar chart must all have the same size, 2 to 10 values</source>
-      <translation>las muestras de la gráfica X-barra deben tener todas el mismo tamaño, de 2 a 10 valores</translation>
-    </message>
-    <message>
-      <location filename="core/quality/drift_rules.py" />
-      <source>eight points in a row beyond one sigma</source>
-      <translation>ocho puntos seguidos más allá de un sigma</translation>
-    </message>
-    <message>
-      <location filename="core/quality/drift_rules.py" />
-      <source>fifteen points in a row within one sigma</source>
-      <translation>quince puntos seguidos dentro de un sigma</translation>
-    </message>
-    <message>
-      <location filename="core/quality/drift_rules.py" />
-      <source>four of five points beyond one sigma on one side</source>
-      <translation>cuatro de cinco puntos más allá de un sigma a un lado</translation>
-    </message>
-    <message>
-      <location filename="core/quality/drift_rules.py" />
-      <source>fourteen points in a row alternating up and down</source>
-      <translation>catorce puntos seguidos subiendo y bajando alternadamente</translation>
-    </message>
-    <message>
-      <location filename="core/quality/drift_rules.py" />
-      <source>nine points in a row on one side of the center line</source>
-      <translation>nueve puntos seguidos a un lado de la línea central</translation>
-    </message>
-    <message>
-      <location filename="core/quality/drift_rules.py" />
-      <source>one point beyond a control limit</source>
-      <translation>un punto fuera de un límite de control</translation>
-    </message>
-    <message>
-      <location filename="core/quality/drift_rules.py" />
-      <source>six points in a row rising or falling</source>
-      <translation>seis puntos seguidos subiendo o bajando</translation>
-    </message>
-    <message>
-      <location filename="core/quality/drift_rules.py" />
-      <source>two of three points beyond two sigma on one side</source>
-      <translation>dos de tres puntos más allá de dos sigmas a un lado</translation>
-    </message>
-    <message>
-      <location filename="core/quality/measured_feature.py" />
-      <source>a feature name must have 1 to {name_longest} characters</source>
-      <translation>el nombre de una característica debe tener de 1 a {name_longest} caracteres</translation>
-    </message>
-    <message>
-      <location filename="core/quality/measured_feature.py" />
-      <source>{feature}: a sample must have 1 to {sample_sizes} parts</source>
-      <translation>{feature}: una muestra debe tener de 1 a {sample_sizes} piezas</translation>
-    </message>
-    <message>
-      <location filename="core/quality/measured_feature.py" />
-      <source>{feature}: the direction must be +1 (a positive correction makes the dimension larger) or -1 (a positive correction makes the dimension smaller)</source>
-      <translation>{feature}: la dirección debe ser +1 (una corrección positiva aumenta la cota) o -1 (una corrección positiva disminuye la cota)</translation>
-    </message>
-    <message>
-      <location filename="core/quality/measured_feature.py" />
-      <source>{feature}: the lower deviation must be below the upper deviation; correct one of them</source>
-      <translation>{feature}: la desviación inferior debe ser menor que la superior; corrija una</translation>
-    </message>
-    <message>
-      <location filename="core/quality/measured_feature.py" />
-      <source>{feature}: the lower limit is 0 or less; correct the deviation</source>
-      <translation>{feature}: el límite inferior es 0 o menos; corrija la desviación</translation>
-    </message>
-    <message>
-      <location filename="core/quality/measured_feature.py" />
-      <source>{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for no sampling plan</source>
-      <translation>{feature}: el intervalo de medición debe ser de 1 a {every_most} piezas, o 0 sin plan de muestreo</translation>
-    </message>
-    <message>
-      <location filename="core/quality/measured_feature.py" />
-      <source>{feature}: the nominal dimension and the limits must be numbers</source>
-      <translation>{feature}: la medida nominal y los límites deben ser números</translation>
-    </message>
-    <message>
-      <location filename="core/quality/measured_feature.py" />
-      <source>{feature}: the nominal dimension must be more than 0 and at most {size_most} mm</source>
-      <translation>{feature}: la medida nominal debe ser mayor que 0 y como máximo {size_most} mm</translation>
-    </message>
-    <message>
-      <location filename="core/quality/measured_feature.py" />
-      <source>{feature}: the offset number must be 1 to {numbers}, not {number}</source>
-      <translation>{feature}: el número de corrector debe ser de 1 a {numbers}, no {number}</translation>
-    </message>
-    <message>
-      <location filename="core/quality/stops.py" />
-      <source>{reason}: the end of a stop is earlier than its start because the clock was set back</source>
-      <translation>{reason}: el final de un paro es anterior a su comienzo porque el reloj se atrasó</translation>
-    </message>
-    <message>
-      <location filename="core/quality/tool_life.py" />
-      <source>T{number}: the tool-life warning must be set between 1 and 100 % of the tool life</source>
-      <translation>T{number}: el aviso de vida de la herramienta debe ponerse entre el 1 y el 100 % de la vida</translation>
-    </message>
-    <message>
-      <location filename="core/quality/tool_life.py" />
-      <source>T{number}: tool life must be 0 to {parts_most} parts; 0 means no limit</source>
-      <translation>T{number}: la vida debe ser de 0 a {parts_most} piezas; 0 significa sin límite</translation>
-    </message>
-    <message>
-      <location filename="core/quality/tool_life.py" />
-      <source>T{number}: tool life must be 0 to {seconds_most} cutting minutes; 0 means no limit</source>
-      <translation>T{number}: la vida debe ser de 0 a {seconds_most} minutos de corte; 0 significa sin límite</translation>
-    </message>
-    <message>
-      <location filename="core/quality/tool_life.py" />
-      <source>no limit</source>
-      <translation>sin límite</translation>
-    </message>
-    <message>
-      <location filename="core/quality/tool_life.py" />
-      <source>{parts} of {limit_parts} parts</source>
-      <translation>{parts} de {limit_parts} piezas</translation>
-    </message>
-    <message>
-      <location filename="core/quality/tool_life.py" />
-      <source>{parts} parts, {seconds} min</source>
-      <translation>{parts} piezas, {seconds} min</translation>
-    </message>
-    <message>
-      <location filename="core/quality/tool_life.py" />
-      <source>{seconds} of {limit_seconds} min</source>
-      <translation>{seconds} de {limit_seconds} min</translation>
-    </message>
-    <message>
-      <location filename="core/quality/wear_proposal.py" />
-      <source>the correction would be less than the smallest offset step, so no correction is needed</source>
-      <translation>la corrección sería menor que el paso mínimo del corrector, así que no hace falta corregir</translation>
-    </message>
-    <message>
-      <location filename="core/quality/wear_proposal.py" />
-      <source>the deviation is within the dead band, so no correction is needed</source>
-      <translation>la desviación está dentro de la banda muerta, así que no hace falta corregir</translation>
-    </message>
-    <message>
-      <location filename="core/quality/wear_proposal.py" />
-      <source>{feature}: a correction of {change} mm is too large to be tool wear; touch the tool off</source>
-      <translation>{feature}: una corrección de {change} mm es demasiado grande para ser desgaste; tome referencia de la herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/quality/wear_proposal.py" />
-      <source>{feature}: a reading is not a number; delete that reading</source>
-      <translation>{feature}: una lectura no es un número; borre esa lectura</translation>
-    </message>
-    <message>
-      <location filename="core/quality/wear_proposal.py" />
-      <source>{feature}: a reading is off by more than {distance} times the tolerance, which is too large for tool wear; measure again</source>
-      <translation>{feature}: una lectura se desvía más de {distance} veces la tolerancia, demasiado para ser desgaste; mida de nuevo</translation>
-    </message>
-    <message>
-      <location filename="core/quality/wear_proposal.py" />
-      <source>{feature}: no part has been measured since the last correction</source>
-      <translation>{feature}: no se ha medido ninguna pieza desde la última corrección</translation>
     </message>
     <message>
       <location filename="core/records/ball_bar.py" />

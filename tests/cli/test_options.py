@@ -101,10 +101,6 @@ COVERED = {
     ("machine hal", "--out"): "tests/cli/test_machine_hal.py",
     ("machine hal", "--json"): "tests/cli/test_machine_hal.py",
     ("alarms", "--json"): "tests/cli/test_alarms.py",
-    ("parts", "--csv"): "tests/cli/test_parts.py",
-    **{("shift", option): "tests/quality/test_shift_figures.py"
-       for option in ("--back", "--from", "--to", "--report", "--json", "--metric")},
-    ("parts", "--json"): "tests/cli/test_parts.py",
     ("scope", "--csv"): "tests/cli/test_scope.py",
     ("scope", "--json"): "tests/cli/test_scope.py",
     **{(f"serial {way}", option): "tests/drivers/transfer" for way in ("send", "receive")
@@ -175,7 +171,6 @@ def test_an_option_before_a_command_acts_or_is_refused(
         "desktop",
         "list",
         "clear",
-        "shift",
         "table",
         "reset",
         "begin",

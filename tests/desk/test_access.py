@@ -22,8 +22,8 @@ from app.desk.desk import Desk
 from app.editor.editor import Editor
 from app.offsets.offset_history import OffsetHistory
 from app.offsets.offset_questions import OffsetQuestions
+from app.production.parts_watch import PartsWatch
 from app.programs.program_list import ProgramList
-from app.quality.parts_watch import PartsWatch
 from app.special.access_levels import AccessLevels
 from app.special.inputs_outputs import InputsOutputs
 from app.special.inputs_outputs import Kind as Shown
@@ -51,6 +51,7 @@ from core.store.store_rows import Kind
 from core.store.tool_lives import insert_changes
 from core.store.touch_off import Touch
 from drivers.clocks import StepClock
+from tests.extras.features import all_installed
 from tests.texts import begins, pattern, shows
 from tests.texts import text as wording
 
@@ -77,7 +78,7 @@ BEHIND_A_RULE = {
     "desk/persistence.py": "as journal.py",
     "desk/screen_settings.py": "asked by desk.py",
     "editor/document.py": "asked by may_save of the editor",
-    "quality/parts_watch.py": "asked by features_section.py",
+    "extras/quality/sample_plan.py": "asked by features_section.py",
     "special/part_count.py": "asked by parts_counter.py",
     "transfer/line_transfer.py": "asked by serial_command.py and serial_transfer.py",
 }
@@ -86,7 +87,7 @@ NO_CHANGE = {
     "cli/json_page.py": "a page of the manual",
     "cli/proof_cache.py": "proofs that can be made again",
     "cli/report_file.py": "a report, to a file of whoever asks",
-    "cli/shift_command.py": "a report",
+    "extras/quality/shift_command.py": "a report",
     "cli/trace_command.py": "setpoints, to a file of whoever asks",
     "compose/demo_store.py": "a store for trying",
     "compose/dialects_page.py": "a page of the manual",
@@ -102,8 +103,8 @@ NO_CHANGE = {
     "jog/hand_functions.py": "coolant off: it brings to rest",
     "mdi/mdi_line.py": "the lines that were typed",
     "programs/whole_file.py": "how a file is written; who calls it asks",
-    "quality/readings_file.py": "readings, to a file of whoever asks",
-    "quality/shift_function.py": "a report",
+    "extras/quality/readings_file.py": "readings, to a file of whoever asks",
+    "extras/quality/shift_function.py": "a report",
     "scope/record_shelf.py": "how records are kept; asked by scope_model.py",
     "shopfloor/status_file.py": "what the machine does, for other programs",
     "special/setup_sheet_work.py": "the sheet on paper",
@@ -195,6 +196,7 @@ def test_the_page_is_the_table() -> None:
     assert (HOUSE / "docs" / "access.md").read_text("utf-8") == page()
 
 
+@all_installed
 @pytest.mark.parametrize("act", list(Act))
 def test_somebody_asks_for_every_act(act: Act) -> None:
     """A rule that no page and no command asks for would be a promise that nobody keeps."""

@@ -17,6 +17,7 @@ from core.key_declaration import Field, Kind, file_key, keys_of
 from core.machine.machine_tables import TABLES_OF_A_LATHE
 from core.page_contents import anchor_of
 from core.table_schema import TableReference
+from tests.extras.features import all_installed
 
 PAGE = Path(__file__).parents[2] / "docs" / "integrator" / "machine-file.md"
 TABLES = tuple(references())
@@ -35,6 +36,7 @@ def _modules() -> Iterator[str]:
             yield each.name
 
 
+@all_installed
 def test_the_page_is_up_to_date() -> None:
     command = "python -m app.compose.machine_file_page docs/integrator/machine-file.md"
     assert PAGE.read_text("utf-8") == document(), command

@@ -6,10 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from app.compose.desk_functions import furnish
-from app.compose.desk_quality import give_quality
 from app.compose.journal import Journal
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
+from app.compose.production_desk import give_production
 from app.compose.scope_desk import give_scope
 from app.compose.workshop import drawer, proof_of
 from app.desk.desk import Desk
@@ -85,7 +85,7 @@ def desk_on(
     desk.attach(hand)
     desk.own_starts.append(hand)
     give_scope(desk, live)
-    give_quality(desk, lathe, keep if isinstance(keep, Journal) else None)
+    give_production(desk, lathe, keep if isinstance(keep, Journal) else None)
     built.append(desk)
     machine.hear = desk.hear
     return desk

@@ -6,9 +6,10 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
+from app.desk.page_description import PageEntry
 from app.desk.prompt_line import NOT_HERE
 from app.screen import page_table
-from app.screen.page_table import PAGES, PageEntry, class_of
+from app.screen.page_table import PAGES, class_of
 from core.executor.commands import CycleStart, FeedHold
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.hands import Hands, Key

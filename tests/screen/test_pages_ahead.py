@@ -10,11 +10,11 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.desk.desk import Desk
+from app.desk.page_description import PageEntry
 from app.desk.program_loading import Phase
 from app.scope.scope_view import ScopePage
 from app.screen import page_table, pages_ahead
 from app.screen.page_base import Page
-from app.screen.page_table import PageEntry
 from app.screen.pages_ahead import APART, PagesAhead
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine

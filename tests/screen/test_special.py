@@ -492,29 +492,6 @@ def test_lamps_and_sound_are_one_table_and_off_by_default(hands: Hands) -> None:
     assert hands.prompt() == wording("screen.no-lamps")
 
 
-def test_the_shift_report_is_made_and_written_to_the_control(hands: Hands) -> None:
-    hands.key(Key.Key_F10)
-    page = hands.frame.page
-    assert isinstance(page, SpecialPage)
-    page._enter([each.name for each in page.model.functions].index("SHIFT REPORT"))
-    hands.sees(lambda: bool(page.table.sheet.rows) and cells(page, 0) == ("Parts", "0"))
-    hands.key(Key.Key_F3)
-    assert hands.prompt() == wording("screen.no-later-shift")
-    hands.key(Key.Key_F2)
-    hands.sees(
-        lambda: begins(page.model.current.sheet(hands.desk.snapshot()).notes[-1], "screen.no-part-begun")
-    )
-    hands.key(Key.Key_F6)
-    hands.sees(lambda: bool(page.table.sheet.rows) and cells(page, -1)[0] == "THIS CONTROL")
-    hands.key(Key.Key_Up)
-    for _ in page.table.sheet.rows:
-        hands.key(Key.Key_Down)
-    hands.key(Key.Key_Return)
-    hands.sees(lambda: shows(hands.prompt(), "screen.file-is-whole"))
-    (written,) = (data_folder() / "sheets").glob("shift-*.html")
-    assert wording("screen.no-part-begun") in written.read_text()
-
-
 @pytest.mark.parametrize("number", range(1, 17))
 def test_every_function_is_chosen_by_its_number_and_return(hands: Hands, number: int) -> None:
     hands.key(Key.Key_F10)

@@ -20,7 +20,7 @@ print(*read)
 desk.close()
 """
 OF_LATER = (
-    *("app.editor", "app.programs.program_list", "app.quality.shift_page", "app.scope", "app.shapes"),
+    *("app.editor", "app.programs.program_list", "app.extras.quality.shift_page", "app.scope", "app.shapes"),
     *(
         "app.extras.sharing.sharing_model",
         "app.special.setup_sheet",

@@ -17,7 +17,7 @@ from core.alarms import CATALOGUE
 from core.executor.interrupted_job import InterruptedJob
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.store.part_cycles import StopRow
-from tests.cli.test_json_page import declared_alone
+from tests.cli.json_output import declared_alone
 
 INTERRUPTED = InterruptedJob(
     "pin.nc", "job", "text", 4, 7, 7, 1, 12, ("X", "Z"), (0.0, 0.0), "E-STOP", "2026-11-23T08:00:00Z"

@@ -22,7 +22,6 @@ PAGES = (
     (("F1", "F10"), "SPECIAL FUNCTIONS"),
     (("F1", "b"), "PART"),
     (("F1", "q"), "SCOPE"),
-    (("F1", "w"), "MEASURED PARTS"),
     *((("F1", page.key.lower()), page.name) for extra in extras().values() for page in extra.pages),
     (("F1",), "MAIN MENU"),
 )

@@ -10,7 +10,7 @@ from app.desk.formats import local_time
 from app.desk.translation import tr
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message
-from core.quality.tool_life import LifeState, ToolLife
+from core.production.tool_life import LifeState, ToolLife
 from core.store.store_rows import ToolRow
 from core.tool_edges import edge_name
 

@@ -18,7 +18,7 @@ from app.desk.translation import tr
 from app.extras.jobs.job_setup import ProvedJob
 from app.extras.jobs.jobs_model import JobsModel
 from app.extras.jobs.jobs_watch import FEATURE, JobProofs, JobsWatch
-from app.quality.parts_watch import PartsWatch
+from app.production.parts_watch import PartsWatch
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.proving.part_setting import PartSetting

@@ -17,11 +17,11 @@ from app.desk.program_loading import Loaded
 from app.desk.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.extras.jobs.job_setup import ProvedJob, missing
-from app.quality.parts_watch import PartsWatch
+from app.production.parts_watch import PartsWatch
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.quality.tool_life import ToolLife
+from core.production.tool_life import ToolLife
 from core.store import job_queue
 from core.store.job_queue import JobRow
 
