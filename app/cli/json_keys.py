@@ -472,29 +472,6 @@ channels[].max | number or null | unit | Largest value; null if not available.
         ),
     ),
 )
-ACCESS_LIST = Output(
-    "access list --json",
-    "One object.",
-    keys(
-        """
-on | boolean | | Whether access levels are on.
-damaged | boolean | | Whether an entry of a user is damaged, so that this user cannot log in.
-people | list | | Users.
-people[].name | string | | Name.
-people[].level | string | | Level: OPERATOR, SETUP or SERVICE.
-"""
-    ),
-)
-ACCESS_TABLE = Output(
-    "access table --json",
-    "One object with a key for each kind of change, such as ZERO OFFSETS.",
-    keys(
-        """
-*.level | string | | Level that the change needs.
-*.what | string | | Description of the change.
-"""
-    ),
-)
 PROFILE = Output(
     "profile DRAWING --json",
     "One object. Lengths are in millimeters.",
@@ -550,7 +527,7 @@ left_out.* | integer | | Number, by kind.
 _OWN_OUTPUTS = (
     *(PROVE, EXPAND_OMNITURN, EXPAND_SINUMERIK, EXPAND_KLARTEXT, TRACE, RUN, MACHINE_CHECK, MACHINE_HAL),
     *(ALARMS, OFFSETS_SHOW, OFFSETS_HISTORY, STORE_VERIFY),
-    *(SHAPES, SHAPES_LIST, SCOPE, ACCESS_LIST, ACCESS_TABLE, PROFILE, PROFILE_LIST),
+    *(SHAPES, SHAPES_LIST, SCOPE, PROFILE, PROFILE_LIST),
 )
 OUTPUTS = tuple(
     insert_after(

@@ -31,7 +31,6 @@ COMMANDS = (
     "run",
     "offsets",
     "store",
-    "access",
     "machine",
     "serial",
     "alarms",

@@ -24,9 +24,11 @@ if TYPE_CHECKING:
     from app.special.special_functions import SpecialFunction
     from core.json_key import Output
     from core.machine.machine_model import Machine
+    from core.store.people import PersonRow
+    from core.store.store import Store
     from core.table_schema import Driver
 
-NAMES = ("quality", "jobs", "sharing")
+NAMES = ("access", "quality", "jobs", "sharing")
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -75,6 +77,13 @@ class Extra:
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
         """Return the declared outputs of --json of this feature, by the output that they follow."""
         return {}
+
+    def demand_pin(self, store: Store, row: PersonRow, remedy: str) -> bool:
+        """Ask for the PIN of this user on the command line; return False if this feature cannot do that.
+
+        ``remedy`` says what to do if the user has no PIN. Raises CommandError if the PIN is wrong.
+        """
+        return False
 
     def check(self, machine: Machine, answers: Answers) -> None:
         """Add the rows of this feature to ``turndesk machine check``."""

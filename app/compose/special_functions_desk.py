@@ -14,7 +14,6 @@ from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps
 from app.production.parts_watch import PartsWatch
 from app.scope.scope_function import ScopeFunction
-from app.special.access_levels import AccessLevels
 from app.special.backup_and_restore import BackupAndRestore
 from app.special.drive_status import DriveStatus
 from app.special.inputs_outputs import InputsOutputs
@@ -94,7 +93,6 @@ def special_functions(
     if watch is not None and machine.kind == "lathe":
         functions.append(ToolLifeFunction(desk, watch))
     functions.append(LampsAndSound(desk, machine, sounds))
-    functions.append(AccessLevels(desk, persistence))
     if machine.language == Dialect.SINUMERIK:
         functions.append(RParameters(desk, persistence, worker))
     elsewhere = {name for extra in extras().values() for name in extra.own_functions}

@@ -86,7 +86,13 @@ APART = frozenset(
             "run_without_screen.py",
         ),
         *("desk/command_errors.py", "desk/toml_file.py", "offsets/offsets_file.py", "screen/display.py"),
-        *("shared_database.py", "sharing/version_record.py", "place_answer.py", "sharing_table.py"),
+        *(
+            "shared_database.py",
+            "sharing/version_record.py",
+            "place_answer.py",
+            "sharing_table.py",
+            "pin_question.py",
+        ),
         *("screen/pdf_pages.py", "shapes/sinumerik_lines.py", "shapes/bar_lines.py"),
         *("shapes/live_lines.py", "shapes/sinumerik_live_lines.py"),
         *(

@@ -4820,78 +4820,8 @@
     </message>
     <message>
       <location filename="app/desk/access.py" />
-      <source>, after {minutes} min without input</source>
-      <translation>, tras {minutes} min sin actividad</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>CHECKING THE PIN OF {name}</source>
-      <translation>COMPROBANDO EL PIN DE {name}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>NOT SAVED: {why}</source>
-      <translation>SIN GUARDAR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S</source>
-      <translation>DEMASIADOS PIN ERRÓNEOS. REINTENTE EN {seconds} S</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S</source>
-      <translation>PIN ERRÓNEO DE {name}. REINTENTE EN {seconds} S</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>access minutes</source>
-      <translation>access minutes</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>automatic sign-out after {minutes} min without input</source>
-      <translation>cierre de sesión automático tras {minutes} min sin actividad</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>wrong PIN for {row}; consecutive wrong PINs: {count}</source>
-      <translation>PIN erróneo de {row}; PIN erróneos seguidos: {count}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>wrong PINs</source>
-      <translation>wrong PINs</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>{name} HAS NO PIN. A SERVICE USER MUST SET THE PIN</source>
-      <translation>{name} NO TIENE PIN. UN USUARIO DE SERVICIO DEBE FIJAR EL PIN</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>{name} HAS SIGNED IN: {level}</source>
-      <translation>{name} HA ENTRADO: {level}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>{name} SIGNED OUT (NO INPUT). LEVEL: OPERATOR. F10: SIGN IN</source>
-      <translation>{name}: SESIÓN CERRADA (SIN ACTIVIDAD). NIVEL: OPERADOR. F10: ENTRAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
       <source>{name} has signed out{why}</source>
       <translation>{name} ha salido{why}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>{name}: SIGN-OUT IN {seconds} S. PRESS ANY KEY TO STAY SIGNED IN</source>
-      <translation>{name}: CIERRE DE SESIÓN EN {seconds} S. PULSE CUALQUIER TECLA PARA SEGUIR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>{row} has signed in: {level}</source>
-      <translation>{row} ha entrado: {level}</translation>
     </message>
     <message>
       <location filename="app/desk/access.py" />
@@ -4899,39 +4829,9 @@
       <translation>{what}: SE REQUIERE {level} (AHORA {now}). F10, NIVELES DE ACCESO: ENTRAR</translation>
     </message>
     <message>
-      <location filename="app/desk/access_reset.py" />
-      <source>NO ACCESS LEVELS TO RESET</source>
-      <translation>NO HAY NIVELES DE ACCESO QUE BORRAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access_reset.py" />
-      <source>PIN RESET IN {time}</source>
-      <translation>BORRADO DE PIN EN {time}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access_reset.py" />
-      <source>PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS</source>
-      <translation>PULSE ANTES EL PARO DE EMERGENCIA. DÉJELO PULSADO 10 MIN PARA BORRAR LOS NIVELES DE ACCESO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access_reset.py" />
-      <source>SERVICE RESET CANCELED: ACCESS LEVELS UNCHANGED</source>
-      <translation>BORRADO DE SERVICIO CANCELADO: NIVELES DE ACCESO SIN CAMBIOS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access_reset.py" />
-      <source>service reset canceled</source>
-      <translation>borrado de servicio cancelado</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access_reset.py" />
-      <source>service reset done: all users and PINs removed, access levels off</source>
-      <translation>borrado de servicio hecho: usuarios y PIN eliminados, niveles de acceso desactivados</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access_reset.py" />
-      <source>service reset started: the E-stop must stay pressed for 10 min</source>
-      <translation>borrado de servicio iniciado: el paro de emergencia debe seguir pulsado 10 min</translation>
+      <location filename="app/desk/access.py" />
+      <source>{what}: {level} REQUIRED (NOW {now}). THIS TURNDESK IS INSTALLED WITHOUT SIGN-IN</source>
+      <translation>{what}: SE REQUIERE {level} (AHORA {now}). ESTE TURNDESK SE INSTALÓ SIN ENTRADA DE USUARIOS</translation>
     </message>
     <message>
       <location filename="app/desk/arithmetic.py" />
@@ -6854,6 +6754,276 @@
       <translation>{size} bytes</translation>
     </message>
     <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>ACCESS LEVELS</source>
+      <translation>NIVELES DE ACCESO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED</source>
+      <translation>TODOS LOS PIN QUITADOS. NIVELES DE ACCESO DESACTIVADOS: TODO PERMITIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>Access levels are off: anyone can change anything, and no PIN is required.</source>
+      <translation>Niveles de acceso desactivados: cualquiera puede cambiarlo todo y no se pide PIN.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>After {minutes} minutes without input, the level returns to OPERATOR.</source>
+      <translation>Tras {minutes} minutos sin actividad, el nivel vuelve a OPERADOR.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>CONFIRM PIN:</source>
+      <translation>CONFIRME EL PIN:</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>E-stop, feed hold, Reset and Drives Off work at every level.</source>
+      <translation>Paro de emergencia, retención de avance, Reset y servos apagados funcionan en todos los niveles.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>F3 adds the first user, with SERVICE level, and turns access levels on.</source>
+      <translation>F3 añade el primer usuario, de nivel SERVICIO, y activa los niveles de acceso.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>F3: ADD USER, TURN ACCESS LEVELS ON   ESC: BACK TO THE LIST</source>
+      <translation>F3: AÑADIR UN USUARIO, ACTIVAR LOS NIVELES DE ACCESO   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>LEVEL? 1 OPERATOR, 2 SETUP, 3 SERVICE</source>
+      <translation>¿NIVEL? 1 OPERADOR, 2 PREPARADOR, 3 SERVICIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>LEVELS</source>
+      <translation>NIVELES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>NAME?</source>
+      <translation>¿NOMBRE?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>NEW PIN FOR {name}?</source>
+      <translation>¿PIN NUEVO DE {name}?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>PIN FOR {name}?</source>
+      <translation>¿PIN DE {name}?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL</source>
+      <translation>SE BORRARÁN LOS PIN. SUELTE EL PARO DE EMERGENCIA O ENTRE PARA CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN</source>
+      <translation>PULSE Y PARA ELIMINAR A {name}, N PARA CONSERVAR EL USUARIO Y EL PIN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>REMOVE</source>
+      <translation>QUITAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK</source>
+      <translation>ELIJA SU NOMBRE   ENTER: ENTRAR   F2: SALIR   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>SIGN OUT</source>
+      <translation>SALIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>SIGNED OUT: OPERATOR LEVEL IS ACTIVE</source>
+      <translation>SESIÓN CERRADA: NIVEL OPERADOR ACTIVO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>TIME</source>
+      <translation>TIEMPO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>TYPE OF CHANGE</source>
+      <translation>TIPO DE CAMBIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL</source>
+      <translation>ESCRIBA EL DATO   ENTER: ACEPTAR   ESC: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>USERS</source>
+      <translation>USUARIOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>Y: REMOVE ALL PINS IN 10 MINUTES (LOGGED)   N: KEEP THEM</source>
+      <translation>Y: BORRAR TODOS LOS PIN EN 10 MINUTOS (SE REGISTRA)   N: CONSERVARLOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>sign in</source>
+      <translation>sign in</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>sign in, users, PINs</source>
+      <translation>entrar, usuarios, PIN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>the level must be 1, 2 or 3</source>
+      <translation>el nivel debe ser 1, 2 o 3</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>the two PINs do not match; nothing was saved. Enter the PIN again</source>
+      <translation>los dos PIN no coinciden; no se guardó nada. Introduzca el PIN de nuevo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>user {draft} saved with level {level} and a new PIN</source>
+      <translation>usuario {draft} guardado con nivel {level} y PIN nuevo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>{draft} already exists; press F4 to change the PIN</source>
+      <translation>{draft} ya existe; pulse F4 para cambiar el PIN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>{name} REMOVED</source>
+      <translation>{name} ELIMINADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>{name}: {level}, PIN SAVED</source>
+      <translation>{name}: {level}, PIN GUARDADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>{row} removed</source>
+      <translation>{row} eliminado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>NO ACCESS LEVELS TO RESET</source>
+      <translation>NO HAY NIVELES DE ACCESO QUE BORRAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>PIN RESET IN {time}</source>
+      <translation>BORRADO DE PIN EN {time}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS</source>
+      <translation>PULSE ANTES EL PARO DE EMERGENCIA. DÉJELO PULSADO 10 MIN PARA BORRAR LOS NIVELES DE ACCESO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>SERVICE RESET CANCELED: ACCESS LEVELS UNCHANGED</source>
+      <translation>BORRADO DE SERVICIO CANCELADO: NIVELES DE ACCESO SIN CAMBIOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>service reset canceled</source>
+      <translation>borrado de servicio cancelado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>service reset done: all users and PINs removed, access levels off</source>
+      <translation>borrado de servicio hecho: usuarios y PIN eliminados, niveles de acceso desactivados</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>service reset started: the E-stop must stay pressed for 10 min</source>
+      <translation>borrado de servicio iniciado: el paro de emergencia debe seguir pulsado 10 min</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/extra.py" />
+      <source>LAMPS AND SOUND</source>
+      <translation>LÁMPARAS Y SONIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>, after {minutes} min without input</source>
+      <translation>, tras {minutes} min sin actividad</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>CHECKING THE PIN OF {name}</source>
+      <translation>COMPROBANDO EL PIN DE {name}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S</source>
+      <translation>DEMASIADOS PIN ERRÓNEOS. REINTENTE EN {seconds} S</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S</source>
+      <translation>PIN ERRÓNEO DE {name}. REINTENTE EN {seconds} S</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>access minutes</source>
+      <translation>access minutes</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>automatic sign-out after {minutes} min without input</source>
+      <translation>cierre de sesión automático tras {minutes} min sin actividad</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>wrong PIN for {row}; consecutive wrong PINs: {count}</source>
+      <translation>PIN erróneo de {row}; PIN erróneos seguidos: {count}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>wrong PINs</source>
+      <translation>wrong PINs</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>{name} HAS NO PIN. A SERVICE USER MUST SET THE PIN</source>
+      <translation>{name} NO TIENE PIN. UN USUARIO DE SERVICIO DEBE FIJAR EL PIN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>{name} HAS SIGNED IN: {level}</source>
+      <translation>{name} HA ENTRADO: {level}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>{name} SIGNED OUT (NO INPUT). LEVEL: OPERATOR. F10: SIGN IN</source>
+      <translation>{name}: SESIÓN CERRADA (SIN ACTIVIDAD). NIVEL: OPERADOR. F10: ENTRAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>{name}: SIGN-OUT IN {seconds} S. PRESS ANY KEY TO STAY SIGNED IN</source>
+      <translation>{name}: CIERRE DE SESIÓN EN {seconds} S. PULSE CUALQUIER TECLA PARA SEGUIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>{row} has signed in: {level}</source>
+      <translation>{row} ha entrado: {level}</translation>
+    </message>
+    <message>
       <location filename="app/extras/jobs/extra.py" />
       <source>JOBS</source>
       <translation>TRABAJOS</translation>
@@ -7005,11 +7175,6 @@
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_model.py" />
-      <source>REMOVE</source>
-      <translation>QUITAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_model.py" />
       <source>SETUP SHEET</source>
       <translation>HOJA DE PREPARACIÓN</translation>
     </message>
@@ -7017,16 +7182,6 @@
       <location filename="app/extras/jobs/jobs_model.py" />
       <source>STATE</source>
       <translation>ESTADO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_model.py" />
-      <source>TIME</source>
-      <translation>TIEMPO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_model.py" />
-      <source>TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL</source>
-      <translation>ESCRIBA EL DATO   ENTER: ACEPTAR   ESC: CANCELAR</translation>
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_model.py" />
@@ -7365,18 +7520,8 @@
     </message>
     <message>
       <location filename="app/extras/quality/features_section.py" />
-      <source>{name} REMOVED</source>
-      <translation>{name} ELIMINADO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
       <source>{name} SAVED</source>
       <translation>{name} GUARDADA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>{row} removed</source>
-      <translation>{row} eliminado</translation>
     </message>
     <message>
       <location filename="app/extras/quality/features_section.py" />
@@ -10397,6 +10542,11 @@
       <location filename="app/part/part_sheet.py" />
       <source>NO STOCK IS SPECIFIED FOR THIS PROGRAM</source>
       <translation>ESTE PROGRAMA NO TIENE MATERIAL INDICADO</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>NOT SAVED: {why}</source>
+      <translation>SIN GUARDAR: {why}</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -13469,146 +13619,6 @@
       <translation>respuesta HTTP {code} {reason}{place}</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
-      <source>ACCESS LEVELS</source>
-      <translation>NIVELES DE ACCESO</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED</source>
-      <translation>TODOS LOS PIN QUITADOS. NIVELES DE ACCESO DESACTIVADOS: TODO PERMITIDO</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>Access levels are off: anyone can change anything, and no PIN is required.</source>
-      <translation>Niveles de acceso desactivados: cualquiera puede cambiarlo todo y no se pide PIN.</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>After {minutes} minutes without input, the level returns to OPERATOR.</source>
-      <translation>Tras {minutes} minutos sin actividad, el nivel vuelve a OPERADOR.</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>CONFIRM PIN:</source>
-      <translation>CONFIRME EL PIN:</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>E-stop, feed hold, Reset and Drives Off work at every level.</source>
-      <translation>Paro de emergencia, retención de avance, Reset y servos apagados funcionan en todos los niveles.</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>F3 adds the first user, with SERVICE level, and turns access levels on.</source>
-      <translation>F3 añade el primer usuario, de nivel SERVICIO, y activa los niveles de acceso.</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>F3: ADD USER, TURN ACCESS LEVELS ON   ESC: BACK TO THE LIST</source>
-      <translation>F3: AÑADIR UN USUARIO, ACTIVAR LOS NIVELES DE ACCESO   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>LEVEL? 1 OPERATOR, 2 SETUP, 3 SERVICE</source>
-      <translation>¿NIVEL? 1 OPERADOR, 2 PREPARADOR, 3 SERVICIO</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>LEVELS</source>
-      <translation>NIVELES</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>NAME?</source>
-      <translation>¿NOMBRE?</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>NEW PIN FOR {name}?</source>
-      <translation>¿PIN NUEVO DE {name}?</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>PIN FOR {name}?</source>
-      <translation>¿PIN DE {name}?</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL</source>
-      <translation>SE BORRARÁN LOS PIN. SUELTE EL PARO DE EMERGENCIA O ENTRE PARA CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN</source>
-      <translation>PULSE Y PARA ELIMINAR A {name}, N PARA CONSERVAR EL USUARIO Y EL PIN</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK</source>
-      <translation>ELIJA SU NOMBRE   ENTER: ENTRAR   F2: SALIR   ESC: VOLVER</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>SIGN OUT</source>
-      <translation>SALIR</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>SIGNED OUT: OPERATOR LEVEL IS ACTIVE</source>
-      <translation>SESIÓN CERRADA: NIVEL OPERADOR ACTIVO</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>TYPE OF CHANGE</source>
-      <translation>TIPO DE CAMBIO</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>USERS</source>
-      <translation>USUARIOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>Y: REMOVE ALL PINS IN 10 MINUTES (LOGGED)   N: KEEP THEM</source>
-      <translation>Y: BORRAR TODOS LOS PIN EN 10 MINUTOS (SE REGISTRA)   N: CONSERVARLOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>sign in</source>
-      <translation>sign in</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>sign in, users, PINs</source>
-      <translation>entrar, usuarios, PIN</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>the level must be 1, 2 or 3</source>
-      <translation>el nivel debe ser 1, 2 o 3</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>the two PINs do not match; nothing was saved. Enter the PIN again</source>
-      <translation>los dos PIN no coinciden; no se guardó nada. Introduzca el PIN de nuevo</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>user {draft} saved with level {level} and a new PIN</source>
-      <translation>usuario {draft} guardado con nivel {level} y PIN nuevo</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>{draft} already exists; press F4 to change the PIN</source>
-      <translation>{draft} ya existe; pulse F4 para cambiar el PIN</translation>
-    </message>
-    <message>
-      <location filename="app/special/access_levels.py" />
-      <source>{name}: {level}, PIN SAVED</source>
-      <translation>{name}: {level}, PIN GUARDADO</translation>
-    </message>
-    <message>
       <location filename="app/special/backup_and_restore.py" />
       <source>ACTION ON ENTER</source>
       <translation>ACCIÓN CON ENTER</translation>
@@ -13937,11 +13947,6 @@
       <location filename="app/special/lamps_and_sound.py" />
       <source>LAMP TEST</source>
       <translation>PRUEBA</translation>
-    </message>
-    <message>
-      <location filename="app/special/lamps_and_sound.py" />
-      <source>LAMPS AND SOUND</source>
-      <translation>LÁMPARAS Y SONIDO</translation>
     </message>
     <message>
       <location filename="app/special/lamps_and_sound.py" />
@@ -15117,16 +15122,6 @@
       <location filename="app/working_plane/plane_instant.py" />
       <source>TABLE AND PLANE</source>
       <translation>MESA Y PLANO</translation>
-    </message>
-    <message>
-      <location filename="core/access/pins.py" />
-      <source>a PIN must have {shortest} to {longest} digits</source>
-      <translation>un PIN debe tener de {shortest} a {longest} cifras</translation>
-    </message>
-    <message>
-      <location filename="core/access/pins.py" />
-      <source>a PIN of one repeated digit is too easy to guess; choose another</source>
-      <translation>un PIN de una sola cifra repetida es demasiado fácil de adivinar; elija otro</translation>
     </message>
     <message>
       <location filename="core/alarms/__init__.py" />
@@ -18252,6 +18247,16 @@
       <location filename="core/executor/watchdog.py" />
       <source>the software thread of the control is stuck</source>
       <translation>el hilo de software del control está atorado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/access/pins.py" />
+      <source>a PIN must have {shortest} to {longest} digits</source>
+      <translation>un PIN debe tener de {shortest} a {longest} cifras</translation>
+    </message>
+    <message>
+      <location filename="core/extras/access/pins.py" />
+      <source>a PIN of one repeated digit is too easy to guess; choose another</source>
+      <translation>un PIN de una sola cifra repetida es demasiado fácil de adivinar; elija otro</translation>
     </message>
     <message>
       <location filename="core/extras/quality/availability.py" />

@@ -14,7 +14,6 @@ import pytest
 from app.cli.main import main
 from app.compose import headless_run
 from core.access.access_table import Level
-from core.access.pins import hashed
 from core.coded_error import CodedError
 from core.store import measured_parts, part_cycles, people, tool_lives
 from core.store.measured_parts import FeatureRow, ReadingRow
@@ -118,6 +117,6 @@ def filled(home: Path) -> Path:
         store.set_tool(1, "wear", wear_x=-0.01).result(60)
         store.undo_offset("undone", kind=Kind.TOOL).result(60)
         store.write(
-            lambda c: people.keep_person(c, people.PersonRow("ANN", Level.SERVICE, *hashed("1234")))
+            lambda c: people.keep_person(c, people.PersonRow("ANN", Level.SERVICE, b"salt", b"hash"))
         ).result(60)
     return home

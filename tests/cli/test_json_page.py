@@ -201,11 +201,6 @@ def test_store_verify(turndesk: Turndesk, filled: Path) -> None:
     declared_alone([whole(turndesk("store", "verify", "--json"))], json_keys.STORE_VERIFY.keys)
 
 
-def test_access(turndesk: Turndesk, filled: Path) -> None:
-    declared_alone([whole(turndesk("access", "list", "--json"))], json_keys.ACCESS_LIST.keys)
-    declared_alone([whole(turndesk("access", "table", "--json"))], json_keys.ACCESS_TABLE.keys)
-
-
 def test_public_tables_have_the_declared_columns(home: Path) -> None:
     with Store.open(home) as store, store.read() as connection:
         for table in PUBLIC:

@@ -118,10 +118,8 @@ COVERED = {
     ("setup desktop", "--remove"): "tests/cli/test_setup.py",
     **{(command, "--as"): "tests/cli/test_access.py"
        for command in ("prove", "run", "offsets set", "offsets clear", "offsets undo", "store restore",
-                       "store import", "setup load", "machine accept", "access add",
-                       "access pin", "access remove", "serial receive", "profile", "shapes")},
-    **{("access " + action, "--json"): "tests/cli/test_access.py" for action in ("list", "table")},
-    ("access add", "--level"): "tests/cli/test_access.py",
+                       "store import", "setup load", "machine accept", "serial receive", "profile",
+                       "shapes")},
     ("serial receive", "--out"): "tests/drivers/transfer",
     ("serial send", "--eol"): "tests/drivers/transfer",
     ("serial send", "--wait"): "tests/drivers/transfer",

@@ -9,7 +9,6 @@ import pytest
 
 from app.extras.jobs.jobs_json_keys import JOBS
 from core.access.access_table import Level
-from core.access.pins import hashed
 from core.store import job_queue, people
 from core.store.store import Store
 from tests.cli.conftest import Turndesk
@@ -88,7 +87,7 @@ def test_jobs_are_the_operators_and_have_the_name(
     monkeypatch.setattr("getpass.getuser", lambda: "shop")
     monkeypatch.delenv("SSH_CONNECTION", raising=False)
     with Store.open(home) as store:
-        ann = people.PersonRow("ANN", Level.SERVICE, *hashed("1234"))
+        ann = people.PersonRow("ANN", Level.SERVICE, b"salt", b"hash")
         store.write(lambda c: people.keep_person(c, ann)).result(60)
     assert turndesk("jobs", "add", "cap", 20).status == 0
     with Store.open(home) as store:

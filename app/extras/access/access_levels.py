@@ -6,17 +6,18 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
-from app.desk.access import MINUTES, Access
-from app.desk.access_reset import AccessReset
+from app.desk.access import Access
 from app.desk.desk import Desk
 from app.desk.machine_status import Tone
 from app.desk.persistence import Persistence
 from app.desk.sheet import Entry, Key, Row, Sheet, following
 from app.desk.translation import data, tr
+from app.extras.access.access_reset import AccessReset
+from app.extras.access.sign_in import MINUTES, SignIn
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import RULES, Act, Level
-from core.access.pins import LONGEST, PinError, check_pin, hashed
 from core.executor.snapshot import Snapshot
+from core.extras.access.pins import LONGEST, PinError, check_pin, hashed
 from core.message import Message
 from core.store.people import NAME_LONGEST, PersonRow, check_person
 from core.store.store_errors import StoreError
@@ -40,13 +41,13 @@ class AccessLevels(SpecialFunction):
     name = "ACCESS LEVELS"
     use = "sign in, users, PINs"
 
-    def __init__(self, desk: Desk, persistence: Persistence) -> None:
+    def __init__(self, desk: Desk, persistence: Persistence, sign_in: SignIn) -> None:
         super().__init__(desk)
-        self.persistence = persistence
+        self.persistence, self.session = persistence, sign_in
         self.entry = Entry()
         self.draft: _Draft | None = None
         self.table = False
-        self.service_reset = AccessReset(self.access, desk.say, self._reset_now)
+        self.service_reset = AccessReset(sign_in, desk.say, self._reset_now)
 
     @property
     def access(self) -> Access:
@@ -92,7 +93,7 @@ class AccessLevels(SpecialFunction):
             )
         minutes = tr("After {minutes} minutes without input, the level returns to OPERATOR.")
         return (
-            tr(Message(minutes, minutes=self.access.minutes)),
+            tr(Message(minutes, minutes=self.session.minutes)),
             "E-stop, feed hold, Reset and Drives Off work at every level.",
         )
 
@@ -199,7 +200,7 @@ class AccessLevels(SpecialFunction):
         row = self.access.people.named(draft.name)
         self.escape()
         if row is not None and pin:
-            self.access.sign_in(row, pin)
+            self.session.sign_in(row, pin)
 
     def _named(self, draft: _Draft, text: str) -> None:
         draft.name = check_person(text)
@@ -252,7 +253,7 @@ class AccessLevels(SpecialFunction):
             self.access.reload()
             self.desk.done(said)
 
-        self.access.worker.queue(work, done, self.desk.refuse)
+        self.session.worker.queue(work, done, self.desk.refuse)
 
     # --- people --------------------------------------------------------------------------------------
 
@@ -287,7 +288,7 @@ class AccessLevels(SpecialFunction):
         """F8: another time after which the level falls back."""
         if not self.desk.refused(Act.PEOPLE):
             self.desk.clear()
-            self.access.choose_minutes(following(MINUTES, self.access.minutes))
+            self.session.choose_minutes(following(MINUTES, self.session.minutes))
 
     # --- service reset -------------------------------------------------------------------------------
 
@@ -311,4 +312,4 @@ class AccessLevels(SpecialFunction):
             self.access.lift()
             self.desk.done(tr("ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED"))
 
-        self.access.worker.queue(remove, done, self.desk.refuse)
+        self.session.worker.queue(remove, done, self.desk.refuse)

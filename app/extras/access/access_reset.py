@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from app.desk.access import Access
 from app.desk.translation import tr
+from app.extras.access.sign_in import SignIn
 from core.executor.snapshot import Snapshot, State
 from core.message import Message
 
@@ -21,13 +22,18 @@ WAIT = 600.0  # s
 class AccessReset:
     """``reset`` takes all people away; called when the time is over."""
 
-    access: Access
+    sign_in: SignIn
     say: Callable[[str], None]
     reset: Callable[[], None]
     _since: float | None = None
 
     def __post_init__(self) -> None:
-        self.access.reset_look = self.look
+        self.sign_in.reset_look = self.look
+
+    @property
+    def access(self) -> Access:
+        """Who is in force."""
+        return self.sign_in.access
 
     @property
     def under_way(self) -> bool:
