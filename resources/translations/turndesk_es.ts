@@ -18259,16 +18259,6 @@
       <translation>un PIN de una sola cifra repetida es demasiado fácil de adivinar; elija otro</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/availability.py" />
-      <source>the end of a cycle is earlier than its start because the clock was set back</source>
-      <translation>el final de un ciclo es anterior a su comienzo porque el reloj se atrasó</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/availability.py" />
-      <source>the end of a shift must be later than its start; correct the shift times</source>
-      <translation>el final de un turno debe ser posterior a su comienzo; corrija las horas del turno</translation>
-    </message>
-    <message>
       <location filename="core/extras/quality/capability.py" />
       <source>process capability needs a tolerance; enter a tolerance for this feature</source>
       <translation>la capacidad del proceso necesita una tolerancia; introduzca una tolerancia para esta característica</translation>
@@ -18305,46 +18295,46 @@
     </message>
     <message>
       <location filename="core/extras/quality/control_charts.py" />
-      <source>the samples of an X-bar chart must all have the same size, 2 to 10 values</source>
-      <translation>las muestras de la gráfica X-barra deben tener todas el mismo tamaño, de 2 a 10 valores</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/drift_rules.py" />
       <source>eight points in a row beyond one sigma</source>
       <translation>ocho puntos seguidos más allá de un sigma</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>fifteen points in a row within one sigma</source>
       <translation>quince puntos seguidos dentro de un sigma</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>four of five points beyond one sigma on one side</source>
       <translation>cuatro de cinco puntos más allá de un sigma a un lado</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>fourteen points in a row alternating up and down</source>
       <translation>catorce puntos seguidos subiendo y bajando alternadamente</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>nine points in a row on one side of the center line</source>
       <translation>nueve puntos seguidos a un lado de la línea central</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>one point beyond a control limit</source>
       <translation>un punto fuera de un límite de control</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>six points in a row rising or falling</source>
       <translation>seis puntos seguidos subiendo o bajando</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>the samples of an X-bar chart must all have the same size, 2 to 10 values</source>
+      <translation>las muestras de la gráfica X-barra deben tener todas el mismo tamaño, de 2 a 10 valores</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
       <source>two of three points beyond two sigma on one side</source>
       <translation>dos de tres puntos más allá de dos sigmas a un lado</translation>
     </message>
@@ -18392,6 +18382,16 @@
       <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: the offset number must be 1 to {numbers}, not {number}</source>
       <translation>{feature}: el número de corrector debe ser de 1 a {numbers}, no {number}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/stops.py" />
+      <source>the end of a cycle is earlier than its start because the clock was set back</source>
+      <translation>el final de un ciclo es anterior a su comienzo porque el reloj se atrasó</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/stops.py" />
+      <source>the end of a shift must be later than its start; correct the shift times</source>
+      <translation>el final de un turno debe ser posterior a su comienzo; corrija las horas del turno</translation>
     </message>
     <message>
       <location filename="core/extras/quality/stops.py" />

@@ -15,8 +15,7 @@ from app.extras.quality.section import QualitySection, mark_of, size
 from app.production.parts_watch import PartsWatch
 from core.executor.snapshot import Snapshot
 from core.extras.quality.capability import capability
-from core.extras.quality.control_charts import charts_of
-from core.extras.quality.drift_rules import findings
+from core.extras.quality.control_charts import charts_of, findings
 from core.extras.quality.quality_errors import QualityError
 from core.message import Message
 from core.store.measured_parts import FeatureRow, ReadingRow

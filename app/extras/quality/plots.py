@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from core.extras.quality.control_charts import Chart, ChartPair
-from core.extras.quality.drift_rules import findings
+from core.extras.quality.control_charts import Chart, ChartPair, findings
 from core.extras.quality.wear_proposal import Proposal
 
 AHEAD = 4.0  # parts behind the last one, for which a correction is drawn

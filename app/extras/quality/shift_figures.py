@@ -16,8 +16,7 @@ from app.desk.translation import tr
 from app.extras.quality.parts_data import feature_of
 from app.extras.quality.shift_times import Shift
 from app.production.cycle_recorder import COMPLETE
-from core.extras.quality.availability import Availability, Span, availability
-from core.extras.quality.stops import ReasonShare, Stop, pareto
+from core.extras.quality.stops import Availability, ReasonShare, Span, Stop, availability, pareto
 from core.message import Message
 from core.store import event_log, measured_parts, offset_tables, part_cycles, tool_lives
 from core.store.measured_parts import FeatureRow, ReadingRow

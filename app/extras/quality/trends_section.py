@@ -20,8 +20,7 @@ from app.offsets.offset_values import signed
 from app.production.parts_watch import PartsWatch
 from core.access.access_table import Act
 from core.executor.snapshot import Snapshot
-from core.extras.quality.availability import Availability, Span, availability
-from core.extras.quality.stops import pareto, times_between
+from core.extras.quality.stops import Availability, Span, availability, pareto, times_between
 from core.message import Message
 from core.store.store_errors import StoreError
 

@@ -1,4 +1,7 @@
-"""Stops of the machine: the Pareto of their reasons, and the time between them."""
+"""Stops of the machine: the Pareto of their reasons, the time between them, and availability.
+
+Availability of the shift is the share of its time in which parts were made (ISO 22400-2).
+"""
 
 from __future__ import annotations
 
@@ -62,3 +65,45 @@ def times_between(stops: Sequence[Stop]) -> tuple[float, ...]:
             between.append(max(0.0, stop.start - end))
         end = max(end or stop.start, stop.start + stop.seconds)
     return tuple(between)
+
+
+class Span(NamedTuple):
+    """From ``start`` to ``end``, seconds of one clock."""
+
+    start: float
+    end: float
+
+
+class Availability(NamedTuple):
+    """Seconds of a shift, those in which a cycle ran, and their share."""
+
+    planned: float
+    producing: float
+
+    @property
+    def share(self) -> float:
+        """0…1."""
+        return self.producing / self.planned
+
+
+def availability(shift: Span, running: Iterable[Span]) -> Availability:
+    """Of a shift, from the spans in which a cycle ran; what overlaps counts once, what is outside not at all.
+
+    Raises QualityError for a shift without length and for a span that ends before it begins.
+    """
+    if shift.end <= shift.start:
+        raise QualityError(
+            "the end of a shift must be later than its start; correct the shift times", "shift-times"
+        )
+    producing, reached = 0.0, shift.start
+    for span in sorted(running):
+        if span.end < span.start:
+            raise QualityError(
+                "the end of a cycle is earlier than its start because the clock was set back",
+                "clock-set-back",
+            )
+        start, end = max(span.start, reached), min(span.end, shift.end)
+        if end > start:
+            producing += end - start
+            reached = end
+    return Availability(shift.end - shift.start, producing)

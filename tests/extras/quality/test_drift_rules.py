@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.extras.quality.control_charts import Chart
-from core.extras.quality.drift_rules import RULES, findings
+from core.extras.quality.control_charts import RULES, Chart, findings
 
 
 def rules(points: list[float]) -> list[tuple[int, int]]:

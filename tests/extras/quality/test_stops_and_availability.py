@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from core.extras.quality.availability import Span, availability
 from core.extras.quality.quality_errors import QualityError
-from core.extras.quality.stops import Stop, pareto, times_between
+from core.extras.quality.stops import Span, Stop, availability, pareto, times_between
 from tests.coded import raises_code
 
 
