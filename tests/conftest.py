@@ -15,7 +15,6 @@ import pytest
 from hypothesis import settings
 from xdist.remote import Producer
 
-from core.access import pins
 from tests import late_computer
 from tests.named import SAFETY, not_run
 from tests.steady_examples import same_examples_whatever_is_loaded
@@ -104,12 +103,6 @@ def pytest_runtest_setup() -> None:
 def _copied_stores(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
     """Copy an empty store instead of creating one."""
     use_template(request.node, monkeypatch)
-
-
-@pytest.fixture(autouse=True)
-def _cheap_pins(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Hash PINs at a cost that takes no time."""
-    monkeypatch.setattr(pins, "COST", pins.Cost(4, 8, 1))
 
 
 @pytest.hookimpl(wrapper=True)

@@ -89,6 +89,12 @@ def test_a_feature_knows_only_the_features_that_it_needs(imports: dict[str, set[
     assert {(a, b) for a, b in known if b and a != b} <= needed
 
 
+def test_pages_of_optional_features_are_composed_from_above(imports: dict[str, set[str]]) -> None:
+    extras = {m: used for m, used in imports.items() if m.startswith("app.extras.")}
+    known = {m for m, used in extras.items() if any(name.startswith("app.compose") for name in used)}
+    assert {m for m in known if not m.endswith((".extra", "_desk", "_wire", "_command", "_check"))} == set()
+
+
 def test_no_modules_import_each_other_in_a_circle(imports: dict[str, set[str]]) -> None:
     """Not even for types alone: who reads one of them would have to read all."""
     assert sorted(_circles(imports)) == []

@@ -11,6 +11,10 @@ import pytest
 from app.cli import main
 from app.compose import extra
 from app.compose.extra import NAMES, command_modules, drawing_endings, extras, insert_after
+from app.special.special_functions import SpecialFunctions
+from tests.attached import attached
+from tests.screen.desks import desk_on
+from tests.screen.fake import FakeMachine
 
 HOUSE = Path(__file__).parents[1]
 
@@ -62,6 +66,16 @@ def test_a_feature_without_one_that_it_needs_is_left_out(monkeypatch: pytest.Mon
 def test_a_feature_comes_after_those_that_it_needs() -> None:
     for name, each in extras().items():
         assert all(NAMES.index(need) < NAMES.index(name) for need in each.needs)
+
+
+@pytest.mark.usefixtures("no_features")
+def test_without_features_f10_has_the_tool_lives_of_a_lathe(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    names = {each.name for each in attached(desk_on(FakeMachine()), SpecialFunctions).functions}
+    assert "TOOL LIFE" in names
+    assert "JOBS" not in names
 
 
 @pytest.mark.usefixtures("no_features")

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.whole_product import WHOLE_PRODUCT
+
 HOUSE = Path(__file__).parents[1]
 MAP = HOUSE / "docs" / "architecture.md"
 ROOMS = ("app", "core", "drivers")
@@ -125,11 +127,18 @@ def test_the_file_is_there(path: str) -> None:
     assert (HOUSE / path).is_file()
 
 
+def _absent(path: str) -> bool:
+    """Whether a path does not exist, and does not belong to an optional feature that was deleted."""
+    extra = re.match(r"(?:app|core|tests)/extras/(\w+)", path)
+    deleted = extra is not None and not (HOUSE / "app" / "extras" / extra[1]).exists()
+    return not deleted and not (HOUSE / path).exists()
+
+
 def test_the_map_names_only_what_is_there() -> None:
     text = MAP.read_text(encoding="utf-8")
     named = set(re.findall(r"`((?:app|core|drivers|tests|resources)/[\w/]*(?:\.py)?)`", text))
     assert len(named) > 60
-    assert sorted(path for path in named if not (HOUSE / path).exists()) == []
+    assert sorted(filter(_absent, named)) == []
 
 
 def test_the_documents_name_only_files_that_are_there() -> None:
@@ -142,9 +151,10 @@ def test_the_documents_name_only_files_that_are_there() -> None:
         )
     ]
     assert len(named) > 150
-    assert [each for each in named if not (HOUSE / each[1]).exists()] == []
+    assert [each for each in named if _absent(each[1])] == []
 
 
+@WHOLE_PRODUCT
 def test_the_records_name_files_by_names_that_are_there() -> None:
     """In a record a file often stands alone, without its folder."""
     there = {path.name for room in (*ROOMS, "resources", "tests") for path in (HOUSE / room).rglob("*.py")}

@@ -31,13 +31,9 @@ COMMANDS = (
     "run",
     "offsets",
     "store",
-    "access",
     "machine",
     "serial",
     "alarms",
-    "parts",
-    "jobs",
-    "shift",
     "scope",
     "setup",
 )

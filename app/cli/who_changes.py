@@ -10,7 +10,6 @@ import argparse
 import getpass
 import os
 import sys
-import time
 from collections.abc import Callable, Collection
 from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from core.store.store_errors import StoreError
 
 COMMAND_LINE = "command line"  # in the history, where there are no levels and nobody is named
-_WRONG = "wrong PINs"  # the setting that the desk keeps too
 
 
 def add_as_option(parser: argparse.ArgumentParser) -> None:
@@ -83,6 +81,7 @@ def _needs(act: Act) -> str:
 
 
 def _remedy(people: People, needed: Level) -> str:
+    """Say who can make a change of this level, or how levels are turned off."""
     able = [row.name for row in people.rows if row.level >= needed and row.has_pin]
     if not able:
         return (
@@ -93,46 +92,19 @@ def _remedy(people: People, needed: Level) -> str:
 
 
 def _demand_pin(store: Store, row: PersonRow) -> None:
-    """Raises CommandError for a wrong one, which is logged, and lets the next wait."""
-    from core.access.pins import Hashed, hashed, is_outdated, is_pin, wait_after
-    from core.store.people import keep_person
+    """Raises CommandError for a wrong one, and where this TurnDesk cannot check PINs."""
+    from app.compose.extra import extras
 
-    if not row.has_pin:
-        remedy = _remedy(store.people(), Level.SERVICE)
+    remedy = _remedy(store.people(), Level.SERVICE)
+    if not any(extra.demand_pin(store, row, remedy) for extra in extras().values()):
         raise CommandError(
-            Message("no PIN is stored for user {row}; {remedy}", row=row.name, remedy=remedy), "no-pin"
+            Message(
+                "access levels are on, but this TurnDesk is installed without sign-in, so the PIN of user "
+                "{row} cannot be checked",
+                row=row.name,
+            ),
+            "no-sign-in",
         )
-    kept = store.setting(_WRONG)
-    wrong = kept if isinstance(kept, int) else 0
-    if pause := wait_after(wrong):
-        sys.stderr.write(f"turndesk: {wrong} wrong PINs in a row; try again in {pause:.0f} s\n")
-        time.sleep(pause)
-    pin = asked_pin(Message("PIN for {row}: ", row=row.name))
-    store.set_setting(_WRONG, wrong + 1).result()  # before it is looked at: who ends us then is counted too
-    stored = Hashed(row.salt, row.hash)
-    if is_pin(pin, stored):
-        if is_outdated(stored):
-            renewed = row._replace(**hashed(pin)._asdict())
-            store.write(lambda c: keep_person(c, renewed)).result()
-        store.set_setting(_WRONG, None).result()
-        return
-    told = Message(
-        "wrong PIN for {row} entered on the command line; consecutive wrong PINs: {wrong}",
-        row=row.name,
-        wrong=wrong + 1,
-    )
-    store.log_event("access", told, who=getpass.getuser()).result()
-    raise CommandError(
-        Message("wrong PIN for user {row}; nothing was changed, and the attempt was logged", row=row.name),
-        "wrong-pin",
-    )
-
-
-def asked_pin(question: str) -> str:
-    """What is typed, which nobody sees; without a terminal a line of the standard input."""
-    if sys.stdin.isatty():
-        return getpass.getpass(question)
-    return sys.stdin.readline().strip()
 
 
 Opened = Callable[[], AbstractContextManager["Store"]]

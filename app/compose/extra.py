@@ -7,7 +7,7 @@ No module outside a feature imports it. If its folders are deleted, TurnDesk wor
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
@@ -18,13 +18,22 @@ if TYPE_CHECKING:
     from app.compose.check_rows import Answers
     from app.compose.journal import Journal
     from app.desk.desk import Desk
+    from app.desk.latest import Latest
     from app.desk.page_description import PageEntry
+    from app.desk.persistence import Persistence
+    from app.desk.program_loading import LoadingSteps
+    from app.special.special_functions import SpecialFunction
     from core.executor.snapshot import Snapshot
     from core.json_key import Output
     from core.machine.machine_model import Machine
+    from core.store.people import PersonRow
+    from core.store.store import Store
     from core.table_schema import Driver
 
-NAMES = (*("pendant", "mtconnect", "office", "sharing", "analyses", "scheduler", "shapes", "drawings"),)
+NAMES = (
+    *("access", "quality", "jobs", "pendant", "mtconnect", "office", "sharing", "analyses", "scheduler"),
+    *("shapes", "drawings"),
+)
 """All optional features. A feature comes after the features that it needs."""
 
 Tell = Callable[[str], None]
@@ -37,7 +46,8 @@ class Extra:
 
     ``commands`` maps each subcommand to the subcommand that it follows in the help. Its module is
     ``app.extras.NAME.SUBCOMMAND_command``. ``threads`` maps each supervised thread to what an operator
-    misses when the thread ends. ``needs`` names the features without which this feature is left out.
+    misses when the thread ends. ``own_functions`` names the special functions that a page of the feature
+    shows, so that F10 does not. ``needs`` names the features without which this feature is left out.
     ``proof_workers`` is the dotted name of a class of workers on other computers, which prove programs.
     ``drawings`` are the endings of drawings from which this feature makes programs: the list of programs
     shows them. ``editor_panel`` is the dotted name of a subclass of ``EditorPanel`` that writes lines in
@@ -57,6 +67,7 @@ class Extra:
     drawings: Sequence[str] = ()
     editor_panel: str = ""
     tables_follow: str = ""
+    own_functions: Collection[str] = ()
 
     def machine_tables(self) -> Sequence[Driver]:
         """Return the tables that this feature adds to the machine file."""
@@ -70,8 +81,17 @@ class Extra:
         """Add what this feature provides to the ports of a connected machine."""
         return connected
 
-    def attach(self, desk: Desk, machine: Machine, journal: Journal | None) -> None:
-        """Attach the models of this feature to the desk; without a ``journal`` nothing is saved."""
+    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
+        """Attach the models of this feature to the desk; without a ``journal`` nothing is saved.
+
+        ``work`` reads and proves programs with the offsets of this moment, and saves nothing.
+        """
+
+    def special_functions(
+        self, desk: Desk, machine: Machine, persistence: Persistence, worker: Latest
+    ) -> Sequence[tuple[SpecialFunction, str]]:
+        """Return the special functions (F10) of this feature, each with the name of the one it follows."""
+        return ()
 
     def extend(self, part: object, desk: Desk, machine: Machine) -> None:
         """Add to ``part``, a model of a feature that this one needs, when that model is made."""
@@ -101,6 +121,13 @@ class Extra:
     def floor_outputs(self) -> Sequence[Output]:
         """Return what this feature sends to the shop network; ``command`` is the title of its section."""
         return ()
+
+    def demand_pin(self, store: Store, row: PersonRow, remedy: str) -> bool:
+        """Ask for the PIN of this user on the command line; return False if this feature cannot do that.
+
+        ``remedy`` says what to do if the user has no PIN. Raises CommandError if the PIN is wrong.
+        """
+        return False
 
     def check(self, machine: Machine, answers: Answers) -> None:
         """Add the rows of this feature to ``turndesk machine check``."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from app.compose.journal import Journal
-from app.quality.parts_book import PartsBook, parts_data
-from app.quality.tool_life_watch import ToolLifeWatch
+from app.production.parts_book import PartsBook, production
+from app.production.tool_life_watch import ToolLifeWatch
 from core.executor.commands import BarNextPart, Command
 from core.executor.job import Proof
 from core.executor.snapshot import Snapshot
@@ -37,7 +37,7 @@ class HeadlessLives:
     def _read(self, book: PartsBook) -> None:
         if book.store is None:
             raise StoreError(book.locked)
-        book.now = parts_data(book.store, "", tools=book.tools)
+        book.now = production(book.store, "", book.tools, {})
         book.loads = 1
 
     def see(self, snapshot: Snapshot, proof: Proof) -> None:

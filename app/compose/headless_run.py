@@ -15,7 +15,7 @@ from app.compose.run_log import EventLog
 from app.desk.command_errors import CommandError, as_command_error
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.run_without_screen import HeadlessRun
-from app.quality.parts_book import tools_of
+from app.production.parts_book import tools_of
 from core.executor.executor import Executor
 from core.executor.interruption_watch import Note
 from core.executor.recorder import Recorder, recorded_of

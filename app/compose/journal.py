@@ -12,9 +12,9 @@ from pathlib import Path
 from app.desk.data_folder import data_folder
 from app.desk.persistence import Persistence
 from app.offsets.offset_book import OffsetBook, OffsetRows, rows_of_store
+from app.production.cycle_recorder import CycleRecorder
+from app.production.parts_book import PartsBook
 from app.programs.run_history import note_cut_off_runs
-from app.quality.cycle_recorder import CycleRecorder
-from app.quality.parts_book import PartsBook
 from core.executor.snapshot import Event, InterruptedJob, of_plain, plain
 from core.language.source import Source
 from core.message import Message

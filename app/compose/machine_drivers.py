@@ -16,7 +16,7 @@ from drivers.simulated import simulated_table
 
 # What each driver adds to the file, in the order in which a machine file's owner is told of them. The module
 # that puts a backend together stands in ``backend_entry``, where no table has to be loaded for it.
-_OWN_DRIVERS = (
+_OWN_DRIVERS: tuple[Driver, ...] = (
     simulated_table.DRIVER,
     canopen_table.DRIVER,
     inverter_table.DRIVER,

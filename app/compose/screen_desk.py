@@ -13,15 +13,14 @@ from app.compose.accepted_machine import file_changes, guarded
 from app.compose.backend_entry import NO_PRIORITY, Connected, has_inverter, played
 from app.compose.backends import connect
 from app.compose.desk_functions import furnish
-from app.compose.desk_quality import give_quality
 from app.compose.error_log import Log
 from app.compose.extra import drawing_endings, extras
-from app.compose.jobs_desk import give_jobs
 from app.compose.journal import Journal
 from app.compose.kinematics_chain import kinematics_of
 from app.compose.machine_in_use import remember_machine
 from app.compose.machine_setup import read_machine
 from app.compose.machine_status import keep_status
+from app.compose.production_desk import give_production
 from app.compose.scope_desk import give_scope
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import (
@@ -320,11 +319,10 @@ def _desk(
         desk.attach(MillTouch(desk, kinematics_of(machine)))
     give_part(desk, machine, keep)
     give_searchto(desk, machine)
-    give_quality(desk, machine, journal)
+    give_production(desk, machine, journal)
     alone = workshop(machine, offsets, left=left, pictures=False)
-    give_jobs(desk, machine, alone, shapes_at_hand, kept, journal)
     for extra in extras().values():
-        extra.attach(desk, machine, journal)
+        extra.attach(desk, machine, journal, alone)
     return desk
 
 

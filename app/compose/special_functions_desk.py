@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from app.compose.extra import extras, insert_after
 from app.compose.program_transfer import PLAIN, SerialLines, proving
 from app.desk.data_folder import BACKUPS, data_folder
 from app.desk.desk import Desk
 from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.program_loading import LoadingSteps
-from app.jobs.jobs_function import JobsFunction
-from app.quality.parts_function import MeasuredPartsFunction
-from app.quality.shift_function import ShiftReport
+from app.production.parts_watch import PartsWatch
 from app.scope.scope_function import ScopeFunction
-from app.special.access_levels import AccessLevels
 from app.special.backup_and_restore import BackupAndRestore
 from app.special.drive_status import DriveStatus
 from app.special.inputs_outputs import InputsOutputs
@@ -28,6 +26,7 @@ from app.special.r_parameters import RParameters
 from app.special.setup_sheet_function import SetupSheetFunction
 from app.special.special_functions import SpecialFunction, SpecialFunctions
 from app.special.spindle_limit import SpindleSpeedLimit
+from app.special.tool_life_function import ToolLifeFunction
 from app.transfer.serial_transfer import SerialTransfer
 from core.language.source import Dialect, usual_ending
 from core.machine.desk_tables import BackupTable, DncModel
@@ -89,11 +88,17 @@ def special_functions(
     functions.append(_transfer(desk, machine, persistence, workshop, own))
     functions.append(_setup_sheet(desk, machine, persistence, worker))
     functions.append(ScopeFunction(desk))
-    functions.append(MeasuredPartsFunction(desk))
-    functions.append(JobsFunction(desk))
-    functions.append(ShiftReport(desk, machine.name, worker, data_folder() / "sheets"))
+    watch = desk.attached(PartsWatch)
+    if watch is not None and machine.kind == "lathe":
+        functions.append(ToolLifeFunction(desk, watch))
     functions.append(LampsAndSound(desk, machine, sounds))
-    functions.append(AccessLevels(desk, persistence))
     if machine.language == Dialect.SINUMERIK:
         functions.append(RParameters(desk, persistence, worker))
-    return SpecialFunctions(functions, worker)
+    elsewhere = {name for extra in extras().values() for name in extra.own_functions}
+    functions = [each for each in functions if each.name not in elsewhere]
+    added = [
+        pair
+        for extra in extras().values()
+        for pair in extra.special_functions(desk, machine, persistence, worker)
+    ]
+    return SpecialFunctions(insert_after(functions, lambda function: function.name, added), worker)

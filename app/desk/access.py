@@ -1,32 +1,42 @@
 """Who works at the desk, by name and level, and what he may change. No Qt, never waits.
 
-Without people there are no levels: everybody may change everything, and nobody is asked.
+Without people there are no levels: everybody may change everything, and nobody is asked. Signing in is an
+optional feature. Where people are stored and it is absent, the level stays OPERATOR.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass, field
-from functools import partial
+from typing import Protocol
 
-from app.desk.latest import Latest
 from app.desk.persistence import Persistence
 from app.desk.translation import data, tr
 from core.access.access_table import Act, Level, level_for
-from core.access.pins import Hashed, WrongPins, hashed, is_outdated, is_pin
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
-from core.store.people import People, PersonRow
+from core.store.people import People
 from core.store.store_errors import StoreError
 
 NOBODY = "operator"  # in the history, while nobody has signed in
-MINUTES = (2, 5, 10, 30, 60)  # without a key or finger after which a level falls back
-_USUAL = 10
-_WARNED = 30.0  # s before it does
 _AGAIN = 1.0  # s between two tries to read people that could not be read
-_WRONG, _MINUTES = "wrong PINs", "access minutes"  # settings
+
+
+class Session(Protocol):
+    """How people sign in. Nothing here waits."""
+
+    def used(self) -> None:
+        """A key or a finger: whoever signed in is there."""
+
+    def look(self, snapshot: Snapshot) -> None:
+        """Once a frame: what was tried, and whether the level falls back."""
+
+    def reload(self) -> None:
+        """Read what is stored for signing in. Raises StoreError."""
+
+    def close(self) -> None:
+        """The desk shuts."""
 
 
 @dataclass(slots=True)
@@ -39,15 +49,10 @@ class Access:
     people: People = field(default_factory=People)
     name: str = ""
     level: Level = Level.OPERATOR
-    minutes: int = _USUAL
-    wrong: WrongPins = field(default_factory=WrongPins)
-    worker: Latest = field(default_factory=lambda: Latest("access"))
+    session: Session | None = None  # None: nobody can sign in
     pending: str = ""  # a service reset that is under way, for the header
-    reset_look: Callable[[Snapshot], None] = lambda _snapshot: None  # of that reset
     _unread: float | None = None  # when people were tried last, where they could not be read
     _lifted: bool = False  # whether a service reset has ended levels that cannot be read
-    _used: float = 0.0
-    _warned: bool = False
 
     def __post_init__(self) -> None:
         self.reload()
@@ -81,53 +86,9 @@ class Access:
         if not self.people.on or self.level >= needed:
             return ""
         text = tr("{what}: {level} REQUIRED (NOW {now}). F10, ACCESS LEVELS: SIGN IN")
+        if self.session is None:
+            text = tr("{what}: {level} REQUIRED (NOW {now}). THIS TURNDESK IS INSTALLED WITHOUT SIGN-IN")
         return tr(Message(text, what=tr(act.value), level=tr(needed.name), now=tr(self.level.name)))
-
-    # --- signing in and out --------------------------------------------------------------------------
-
-    def sign_in(self, row: PersonRow, pin: str) -> None:
-        """Try a PIN; the answer comes with a later frame, and wrong ones let wait longer and longer."""
-        left = self.wrong.left(self.clock())
-        if left > 0.0:
-            self.say(tr(Message("TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S", seconds=f"{left:.0f}")))
-        elif not row.has_pin:
-            self.say(tr(Message("{name} HAS NO PIN. A SERVICE USER MUST SET THE PIN", name=data(row.name))))
-        elif not self.worker.busy:
-            self.say(tr(Message("CHECKING THE PIN OF {name}", name=data(row.name))))
-            self.worker.queue(partial(self._try, row, pin), partial(self._tried, row), self.say)
-
-    def _try(self, row: PersonRow, pin: str) -> bool:
-        """On the worker: whether it is the PIN. One that was stored at a lower cost is stored again."""
-        kept = Hashed(row.salt, row.hash)
-        right = is_pin(pin, kept)
-        if right and is_outdated(kept):
-            with suppress(StoreError):  # the next time that a PIN is entered it is tried again
-                self.persistence.keep_person(PersonRow(row.name, row.level, *hashed(pin)))
-        return right
-
-    def _tried(self, row: PersonRow, right: bool) -> None:
-        if right:
-            self.reload()  # a hash may be new
-            self.wrong.right()
-            self.name, self.level = row.name, Level(row.level)
-            self.used()
-            self.note(Message("{row} has signed in: {level}", row=row.name, level=self.level.name))
-            self.say(
-                tr(Message("{name} HAS SIGNED IN: {level}", name=data(row.name), level=tr(self.level.name)))
-            )
-        else:
-            self.wrong.wrong(self.clock())
-            self.note(
-                Message(
-                    "wrong PIN for {row}; consecutive wrong PINs: {count}",
-                    row=row.name,
-                    count=self.wrong.count,
-                )
-            )
-            left = self.wrong.left(self.clock())
-            text = tr("WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S")
-            self.say(tr(Message(text, name=data(row.name), seconds=f"{left:.0f}")))
-        self._keep(_WRONG, self.wrong.count or None)
 
     def sign_out(self, why: str = "") -> None:
         """Nobody is signed in any more: the level is OPERATOR."""
@@ -139,31 +100,15 @@ class Access:
 
     def used(self) -> None:
         """A key or a finger: whoever signed in is there."""
-        self._used, self._warned = self.clock(), False
+        if self.session is not None:
+            self.session.used()
 
     def look(self, snapshot: Snapshot) -> None:
-        """Once a frame: what was tried, and whether the level falls back, which is said before."""
-        self.worker.poll()
+        """Once a frame: people that could not be read, and what the session has to do."""
         if self._unread is not None and self.clock() - self._unread >= _AGAIN:
             self.reload()  # a store that was away at the start is there some time, and its levels with it
-        self.reset_look(snapshot)
-        if not self.name:
-            return
-        left = self._used + 60.0 * self.minutes - self.clock()
-        if left <= 0.0:
-            words = tr("{name} SIGNED OUT (NO INPUT). LEVEL: OPERATOR. F10: SIGN IN")
-            self.say(tr(Message(words, name=data(self.name))))
-            self.sign_out(Message(", after {minutes} min without input", minutes=self.minutes))
-        elif left <= _WARNED and not self._warned:
-            self._warned = True
-            words = tr("{name}: SIGN-OUT IN {seconds} S. PRESS ANY KEY TO STAY SIGNED IN")
-            self.say(tr(Message(words, name=data(self.name), seconds=f"{left:.0f}")))
-
-    def choose_minutes(self, minutes: int) -> None:
-        """Another time after which a level falls back."""
-        self.minutes = minutes
-        self._keep(_MINUTES, minutes)
-        self.note(Message("automatic sign-out after {minutes} min without input", minutes=minutes))
+        if self.session is not None:
+            self.session.look(snapshot)
 
     # --- people --------------------------------------------------------------------------------------
 
@@ -171,16 +116,14 @@ class Access:
         """Read who works here, after a change of it or a restore."""
         try:
             self.people = self.persistence.people()
-            minutes, wrong = self.persistence.setting(_MINUTES), self.persistence.setting(_WRONG)
+            if self.session is not None:
+                self.session.reload()
         except StoreError:
             self._unread = self.clock()
             if not self._lifted:
                 self.people = self.people._replace(damaged=True)  # unknown: the strictest level is in force
             return  # the desk says by itself that nothing can be read
         self._unread = None
-        self.minutes = minutes if isinstance(minutes, int) and minutes in MINUTES else _USUAL
-        if isinstance(wrong, int) and wrong > self.wrong.count:
-            self.wrong = WrongPins(wrong, self.clock())
         row = self.people.named(self.name)
         if self.name and (row is None or row.level < self.level):
             self.sign_out()
@@ -194,12 +137,7 @@ class Access:
         """A line of the log, with the name of whoever is signed in."""
         self.persistence.note_access(text, self.who)
 
-    def _keep(self, key: str, value: object) -> None:
-        try:
-            self.persistence.save_setting(key, value)
-        except StoreError as error:
-            self.say(tr(Message("NOT SAVED: {why}", why=error)))
-
     def close(self) -> None:
         """The desk shuts."""
-        self.worker.close()
+        if self.session is not None:
+            self.session.close()

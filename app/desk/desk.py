@@ -21,6 +21,7 @@ from app.desk.first_job import FirstJob
 from app.desk.interrupted_notice import NoticeRow
 from app.desk.machine_file_changes import FileChanges
 from app.desk.machine_status import MachineStatus, SilenceWatch, Tone, status_of
+from app.desk.page_description import ProgramKey
 from app.desk.page_entry import program_barred
 from app.desk.program_folder import ProgramFolders
 from app.desk.program_loading import Loaded, PartProved, Phase, ProgramLoader
@@ -143,6 +144,7 @@ class Desk:
     hears: Callable[[Snapshot], None] = lambda _snapshot: None  # the sounds
     offered: Callable[[Snapshot], NoticeRow | None] = lambda _snapshot: None  # between cycles: the next job
     first_move: StartWatch | None = None  # what is known of it
+    program_keys: dict[str, ProgramKey] = field(default_factory=dict)  # keys of features in the program list
     watches: list[Watcher] = field(default_factory=list)  # what else looks at every frame
     _attached: dict[type[Attached], Attached] = field(default_factory=dict)
     _made_later: dict[str, Callable[[], Attached]] = field(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 LATHES, MILLS = frozenset({"omniturn", "sinumerik"}), frozenset({"klartext"})
@@ -25,3 +26,13 @@ class PageEntry:
     languages: frozenset[str] = ALL_LANGUAGES  # of the machines that have it
     later: tuple[str, ...] = ()
     after: str = ""  # of a page of an optional feature: the page that it follows in the main menu
+    shortcut: str = ""  # key that opens it from any page, as app.screen.keys calls it
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramKey:
+    """A function key of the list of programs: it opens ``page``, and ``use`` gets the name of the program."""
+
+    label: str
+    page: str
+    use: Callable[[str], None]

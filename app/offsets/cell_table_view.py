@@ -23,7 +23,7 @@ from app.screen.panel import Shown
 from app.screen.row_panel import RowPanel
 from app.screen.window_layout import FINGER
 from core.executor.snapshot import Snapshot
-from core.quality.tool_life import ToolLife
+from core.production.tool_life import ToolLife
 from core.store.store_rows import Row
 
 HEAD, HIGH = 4.0, 8.0  # units: the line of words at most, and a row

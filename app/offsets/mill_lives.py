@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from app.desk.desk import Desk
-from core.quality.tool_life import ToolLife
+from core.production.tool_life import ToolLife
 
 
 def _none() -> Mapping[int, ToolLife]:

@@ -12,7 +12,7 @@ from app.offsets.mill_lives import MillLives
 from app.offsets.mill_touch import MillTouch
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.quality.tool_life import LifeState
+from core.production.tool_life import LifeState
 from core.store.store_rows import LIFE_REACH, MILL_TOOLS, Field, Kind, Sort, Value
 
 USED = "used"  # the column of what was cut, which is counted and no part of the row

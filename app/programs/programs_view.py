@@ -11,11 +11,11 @@ from PySide6.QtGui import QImage, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.machine_status import MachineStatus
+from app.desk.page_description import ProgramKey
 from app.desk.page_entry import editor_barred
 from app.desk.program_loading import Loaded
 from app.desk.sheet import Key
 from app.editor.editor import Editor
-from app.jobs.jobs_model import JobsModel
 from app.path.path_view import PathView
 from app.programs.copy_rename_delete import NONE
 from app.programs.preview import Thumbnail
@@ -120,13 +120,15 @@ class ProgramsPage(ListPage):
 
     def labels(self) -> tuple[str, ...]:
         """Those of the list or of the chooser."""
-        own = {} if self.model.transfer.open else {"F3": "EDIT", "F10": "JOB"}
+        added = {name: key.label for name, key in self.desk.program_keys.items()}
+        own = {} if self.model.transfer.open else {"F3": "EDIT", **added}
         return self.labels_of(own, self.page_keys())
 
     def key_actions(self) -> KeyActions:
         """The function keys of the list, or of the chooser over it."""
         keys = self.page_keys()
-        own = {} if self.model.transfer.open else {"F3": self._edit, "F10": self._job}
+        added = {name: partial(self._use, key) for name, key in self.desk.program_keys.items()}
+        own: KeyActions = {} if self.model.transfer.open else {"F3": self._edit, **added}
         return {**own, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
@@ -148,13 +150,13 @@ class ProgramsPage(ListPage):
         if not self.host.go(page_table.EDITOR):
             editor.made_of = None
 
-    def _job(self) -> None:
-        """The marked program as one more job of the queue; how many parts is asked on its page."""
-        here, jobs = self.model.program, self.desk.attached(JobsModel)
-        if here is None or jobs is None or here.drawing:
+    def _use(self, key: ProgramKey) -> None:
+        """Open the page of the key with the marked program."""
+        here = self.model.program
+        if here is None or here.drawing:
             self.desk.say(NONE)
-        elif self.host.go(page_table.JOBS):
-            jobs.add_program(here.name)
+        elif self.host.go(key.page):
+            key.use(here.name)
 
     def _chosen(self, row: int) -> None:
         model = self.model

@@ -57,7 +57,7 @@ NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_F1, SHIFT): "Codes",
     (Key.Key_F3, SHIFT): "Shapes",
     (Key.Key_F4, SHIFT): "Calculators",
-    (Key.Key_F6, SHIFT): "Jobs",
+    (Key.Key_F6, SHIFT): "Shift+F6",
     (Key.Key_Q, NONE): "Q",
     (Key.Key_X, NONE): "X",
 }

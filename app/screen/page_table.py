@@ -17,7 +17,6 @@ TOOLS, SECCMP, SPECIAL = "TOOL OFFSETS", "SECONDARY OFFSETS", "SPECIAL FUNCTIONS
 ZERO, MILL_TOOLS, PRESETS = "ZERO OFFSETS", "TOOL TABLE", "PRESETS"
 PROGRAMS, SHAPE, PART = "PROGRAMS", "TOOL SHAPE", "PART"
 SCOPE, ANALYSES = "SCOPE", "ANALYSES"
-MEASURED, JOBS = "MEASURED PARTS", "JOBS"
 
 
 _OMNITURN = frozenset({"omniturn"})
@@ -139,23 +138,6 @@ _OWN_PAGES = (
         "SCOPE",
         "axis and spindle plots: following error, speed, load",
         later=("app.scope.scope_chart_view.ScopeChart",),
-    ),
-    PageEntry(
-        MEASURED,
-        "app.quality.quality_view.MeasuredPartsPage",
-        "app.quality.quality_functions.QualityFunctions",
-        "W",
-        "MEASURED",
-        "features, readings, charts, trends",
-        later=("app.quality.plots_view.PlotsPane", "app.compose.desk_quality_sections.sections"),
-    ),
-    PageEntry(
-        JOBS,
-        "app.jobs.jobs_view.JobsPage",
-        "app.jobs.jobs_model.JobsModel",
-        "J",
-        "JOBS",
-        "next job, number of parts, setup requirements",
     ),
     PageEntry(SHAPE, "app.offsets.tool_shapes_view.ToolShapePage"),
     PageEntry(MENU, "app.screen.main_menu.MenuPage"),

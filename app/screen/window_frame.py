@@ -144,7 +144,7 @@ class Frame(QWidget):
             "F1": partial(self.go, page_table.MENU),
             "F7": self.toggle_log,
             "Scope": self.toggle_scope,
-            "Jobs": partial(self.go, page_table.JOBS),
+            **{page.shortcut: partial(self.go, page.name) for page in page_table.PAGES if page.shortcut},
             CLOSE: partial(self.desk.choose_setting, "first_job", False),
             **self.page.key_actions(),
             **(self._log_keys() if self.log.isVisible() else {}),

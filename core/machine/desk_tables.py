@@ -1,4 +1,4 @@
-"""[backup], [dnc] and [gauge] of the machine file: daily backups, serial lines for programs and gauges."""
+"""[backup] and [dnc] of the machine file: daily backups, and the serial line for programs."""
 
 from __future__ import annotations
 
@@ -7,12 +7,10 @@ from typing import Any
 from core.key_declaration import Range, file_key, key_table
 from core.table_schema import Driver, DriverTable
 
-_BAUD: Any = file_key(Range(110, 1_000_000), default=9600, meaning="Bit rate of the line.")
-_BITS: Any = file_key(Range(7, 8), default=8, meaning="Data bits of a character.")
-_PARITY: Any = file_key(
-    default="N", choices=("N", "E", "O"), meaning="Parity: none (N), even (E) or odd (O)."
-)
-_STOP: Any = file_key(Range(1, 2), default=1, meaning="Stop bits of a character.")
+BAUD: Any = file_key(Range(110, 1_000_000), default=9600, meaning="Bit rate of the line.")
+BITS: Any = file_key(Range(7, 8), default=8, meaning="Data bits of a character.")
+PARITY: Any = file_key(default="N", choices=("N", "E", "O"), meaning="Parity: none (N), even (E) or odd (O).")
+STOP: Any = file_key(Range(1, 2), default=1, meaning="Stop bits of a character.")
 KEPT = 14
 
 
@@ -21,10 +19,10 @@ class DncModel:
     """The serial line for programs."""
 
     port: str = file_key(meaning="Serial port, such as `/dev/serial/by-id/…`.")
-    baud: int = _BAUD
-    bits: int = _BITS
-    parity: str = _PARITY
-    stop: int = _STOP
+    baud: int = BAUD
+    bits: int = BITS
+    parity: str = PARITY
+    stop: int = STOP
     flow: str = file_key(
         default="xonxoff", choices=("xonxoff", "rtscts", "none"), meaning="Flow control of the line."
     )
@@ -51,21 +49,6 @@ class DncModel:
     )
 
 
-@key_table
-class GaugeModel:
-    """The serial line of a gauge; ``unit`` of lines that do not say theirs."""
-
-    port: str = file_key(meaning="Serial port of the gauge, such as `/dev/serial/by-id/…`.")
-    name: str = file_key(default="gauge", meaning="Name that is saved with each reading of the gauge.")
-    unit: str = file_key(
-        default="mm", choices=("mm", "in"), meaning="Unit of a reading whose line does not state one."
-    )
-    baud: int = _BAUD
-    bits: int = _BITS
-    parity: str = _PARITY
-    stop: int = _STOP
-
-
 DRIVER = Driver(
     tables=(
         DriverTable(
@@ -73,12 +56,6 @@ DRIVER = Driver(
             DncModel,
             port="dnc.port",
             purpose="The serial line over which programs are sent and received.",
-        ),
-        DriverTable(
-            "gauge",
-            GaugeModel,
-            port="gauge.port",
-            purpose="A gauge that sends its readings as lines of text over a serial line.",
         ),
     )
 )

@@ -36,7 +36,6 @@ COMPOSING = "app/compose"
 COMPOSED = (
     "accepted_machine.py",
     "desk_part.py",
-    "gauge_wire.py",
     "journal.py",
     "screen_desk.py",
     "simulated_backend.py",
@@ -49,21 +48,20 @@ ROOMS = (
         "app/automatic",
         "app/desk",
         "app/editor",
-        "app/jobs",
         "app/jog",
         "app/mdi",
         "app/offsets",
         "app/part",
         "app/path",
         "app/programs",
-        "app/quality",
+        "app/production",
     ),
     *("app/scope", "app/screen", "app/searchto", "app/extras"),
     *("app/special", "app/transfer"),
     "app/working_plane",
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
     *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
-    *("core/quality", "core/records", "core/extras", "core/access"),
+    *("core/production", "core/records", "core/extras", "core/access"),
     "app/shopfloor",
 )
 # Where much is told to programs or to the console: what is marked alone.
@@ -106,6 +104,8 @@ APART = frozenset(
         ),  # see _of_books
     }
 )
+# Of optional features: what their commands print.
+APART_IN_EXTRAS = ("_command.py", "_check.py", "_json_keys.py")
 # Read by somebody, and not to be told from names by their looks.
 ALSO = (
     "the server does not support TLS; use an address that begins with http://",
@@ -285,7 +285,9 @@ def console_texts(shown: Container[str]) -> dict[str, str]:
 def _is_apart(path: Path, room: str) -> bool:
     named = {path.name, f"{path.parent.name}/{path.name}"}
     driver = path.parent.name == "driver"  # of an optional feature
-    return driver or bool(named & APART) or (room == COMPOSING and path.name not in COMPOSED)
+    if driver or (room == "app/extras" and path.name.endswith(APART_IN_EXTRAS)):
+        return True
+    return bool(named & APART) or (room == COMPOSING and path.name not in COMPOSED)
 
 
 def _texts_of_file(path: Path, loud: bool, marked_alone: bool) -> list[str]:

@@ -5429,27 +5429,27 @@
       <translation>El material en bruto indicado no se puede usar ({why}). En su lugar se emplea uno supuesto.</translation>
     </message>
     <message>
-      <location filename="app/compose/gauge_wire.py" />
+      <location filename="app/extras/quality/gauge_wire.py" />
       <source>GAUGE: {why}. F5: LISTEN AGAIN</source>
       <translation>CALIBRADOR: {why}. F5: ESCUCHAR OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/compose/gauge_wire.py" />
+      <location filename="app/extras/quality/gauge_wire.py" />
       <source>GAUGE: {why}. MEASURE AGAIN</source>
       <translation>CALIBRADOR: {why}. MIDA DE NUEVO</translation>
     </message>
     <message>
-      <location filename="app/compose/gauge_wire.py" />
+      <location filename="app/extras/quality/gauge_wire.py" />
       <source>Listening to the gauge: {count} readings.</source>
       <translation>Calibrador a la escucha: {count} lecturas.</translation>
     </message>
     <message>
-      <location filename="app/compose/gauge_wire.py" />
+      <location filename="app/extras/quality/gauge_wire.py" />
       <source>No reading from the gauge for {minutes} min. Check its switch and cable.</source>
       <translation>Sin lecturas del calibrador desde hace {minutes} min. Revise su interruptor y su cable.</translation>
     </message>
     <message>
-      <location filename="app/compose/gauge_wire.py" />
+      <location filename="app/extras/quality/gauge_wire.py" />
       <source>Not listening to the gauge. Press F5 to start.</source>
       <translation>Calibrador sin escuchar. Pulse F5 para empezar.</translation>
     </message>
@@ -5684,37 +5684,37 @@
       <translation>{what}: SE REQUIERE {level} (AHORA {now}). F10, NIVELES DE ACCESO: ENTRAR</translation>
     </message>
     <message>
-      <location filename="app/desk/access_reset.py" />
+      <location filename="app/extras/access/access_reset.py" />
       <source>NO ACCESS LEVELS TO RESET</source>
       <translation>NO HAY NIVELES DE ACCESO QUE BORRAR</translation>
     </message>
     <message>
-      <location filename="app/desk/access_reset.py" />
+      <location filename="app/extras/access/access_reset.py" />
       <source>PIN RESET IN {time}</source>
       <translation>BORRADO DE PIN EN {time}</translation>
     </message>
     <message>
-      <location filename="app/desk/access_reset.py" />
+      <location filename="app/extras/access/access_reset.py" />
       <source>PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS</source>
       <translation>PULSE ANTES EL PARO DE EMERGENCIA. DÉJELO PULSADO 10 MIN PARA BORRAR LOS NIVELES DE ACCESO</translation>
     </message>
     <message>
-      <location filename="app/desk/access_reset.py" />
+      <location filename="app/extras/access/access_reset.py" />
       <source>SERVICE RESET CANCELED: ACCESS LEVELS UNCHANGED</source>
       <translation>BORRADO DE SERVICIO CANCELADO: NIVELES DE ACCESO SIN CAMBIOS</translation>
     </message>
     <message>
-      <location filename="app/desk/access_reset.py" />
+      <location filename="app/extras/access/access_reset.py" />
       <source>service reset canceled</source>
       <translation>borrado de servicio cancelado</translation>
     </message>
     <message>
-      <location filename="app/desk/access_reset.py" />
+      <location filename="app/extras/access/access_reset.py" />
       <source>service reset done: all users and PINs removed, access levels off</source>
       <translation>borrado de servicio hecho: usuarios y PIN eliminados, niveles de acceso desactivados</translation>
     </message>
     <message>
-      <location filename="app/desk/access_reset.py" />
+      <location filename="app/extras/access/access_reset.py" />
       <source>service reset started: the E-stop must stay pressed for 10 min</source>
       <translation>borrado de servicio iniciado: el paro de emergencia debe seguir pulsado 10 min</translation>
     </message>
@@ -7639,272 +7639,272 @@
       <translation>{size} bytes</translation>
     </message>
     <message>
-      <location filename="app/jobs/job_setup.py" />
+      <location filename="app/extras/jobs/job_setup.py" />
       <source>no offset set: touch off the tool</source>
       <translation>sin corrector: tome referencia de la herramienta</translation>
     </message>
     <message>
-      <location filename="app/jobs/job_setup.py" />
+      <location filename="app/extras/jobs/job_setup.py" />
       <source>remaining tool life covers {left} of {parts} parts</source>
       <translation>la vida restante de la herramienta alcanza para {left} de {parts} piezas</translation>
     </message>
     <message>
-      <location filename="app/jobs/job_setup.py" />
+      <location filename="app/extras/jobs/job_setup.py" />
       <source>since the last run ({when}), the tool tip has changed from R {was}, {was_tip}, to R {radius}, {tip}</source>
       <translation>desde la última corrida ({when}), la punta cambió de R {was}, {was_tip}, a R {radius}, {tip}</translation>
     </message>
     <message>
-      <location filename="app/jobs/job_setup.py" />
+      <location filename="app/extras/jobs/job_setup.py" />
       <source>tip quadrant {quadrant}</source>
       <translation>cuadrante de punta {quadrant}</translation>
     </message>
     <message>
-      <location filename="app/jobs/job_setup.py" />
+      <location filename="app/extras/jobs/job_setup.py" />
       <source>tool life used up, {words}: change the insert</source>
       <translation>vida de la herramienta agotada, {words}: cambie la plaquita</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/jobs_function.py" />
       <source>ENTER: OPEN JOBS   ESC: BACK TO THE LIST</source>
       <translation>ENTER: ABRIR TRABAJOS   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/jobs_function.py" />
       <source>IN PROGRESS</source>
       <translation>EN CURSO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/jobs_function.py" />
       <source>JOBS</source>
       <translation>TRABAJOS</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/jobs_function.py" />
       <source>Press Enter to open the JOBS page. Shift+F6 opens it from any page, and J opens it from the main menu.</source>
       <translation>Pulse Enter para abrir la página TRABAJOS. Mayús+F6 la abre desde cualquier página, y J desde el menú principal.</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/jobs_function.py" />
       <source>WAITING</source>
       <translation>ESPERANDO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_function.py" />
+      <location filename="app/extras/jobs/jobs_function.py" />
       <source>next job, number of parts, setup requirements</source>
       <translation>trabajo siguiente, número de piezas, lo necesario para la preparación</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>ADD</source>
       <translation>SUMAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>CANNOT LOAD: MACHINE MOVING OR PROGRAM RUNNING. ESC: BACK</source>
       <translation>NO SE PUEDE CARGAR: MÁQUINA O PROGRAMA EN MARCHA. ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>CLEAR</source>
       <translation>BORRAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>DONE</source>
       <translation>HECHO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>F1, THEN F2: LOAD PROGRAM   F1, F6, THEN F10: ADD JOB</source>
       <translation>F1, LUEGO F2: CARGAR PROGRAMA   F1, F6, LUEGO F10: AÑADIR TRABAJO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>F2: LOAD JOB ONLY   CYCLE START: RUN   ESC: AUTOMATIC</source>
       <translation>F2: SOLO CARGAR TRABAJO   ARRANQUE DE CICLO: CORRER   ESC: AUTOMÁTICO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>HOW MANY PARTS OF {program}?</source>
       <translation>¿CUÁNTAS PIEZAS DE {program}?</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>JOB DONE, PROGRAM STILL LOADED</source>
       <translation>TRABAJO HECHO, PROGRAMA AÚN CARGADO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>JOBS CANNOT BE SAVED: NO DATA STORE</source>
       <translation>NO SE PUEDEN GUARDAR TRABAJOS: NO HAY ALMACÉN DE DATOS</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>LINE {line}</source>
       <translation>LÍNEA {line}</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>MADE</source>
       <translation>HECHAS</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>NO FINISHED JOBS TO CLEAR</source>
       <translation>NO HAY TRABAJOS TERMINADOS QUE VACIAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>NO JOBS. F3: ADD LOADED PROGRAM   F1, F6, THEN F10: ADD JOB</source>
       <translation>SIN TRABAJOS. F3: AÑADIR PROGRAMA CARGADO   F1, F6, LUEGO F10: AÑADIR TRABAJO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>NO NOTES DURING A CYCLE: LETTER KEYS WOULD STOP THE MACHINE</source>
       <translation>SIN NOTAS DURANTE UN CICLO: LAS LETRAS PARARÍAN LA MÁQUINA</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>NOTE TOO LONG: {maximum} CHARACTERS AT MOST</source>
       <translation>NOTA DEMASIADO LARGA: {maximum} CARACTERES COMO MÁXIMO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>PROGRAM LOADED. SEE ERRORS AND WARNINGS ON PART PAGE (B)</source>
       <translation>PROGRAMA CARGADO. VEA ERRORES Y AVISOS EN LA PÁGINA PIEZA (B)</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>PROOF</source>
       <translation>COMPROBACIÓN</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>PROVING …</source>
       <translation>COMPROBANDO …</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>QUANTITY</source>
       <translation>CANTIDAD</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>REMOVE</source>
       <translation>QUITAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>SETUP SHEET</source>
       <translation>HOJA DE PREPARACIÓN</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>STATE</source>
       <translation>ESTADO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>STOCK</source>
       <translation>MATERIAL EN BRUTO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>TIME</source>
       <translation>TIEMPO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL</source>
       <translation>ESCRIBA EL DATO   ENTER: ACEPTAR   ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>Y: REMOVE {count} FINISHED JOBS FROM THE QUEUE   N: KEEP THEM</source>
       <translation>Y: QUITAR {count} TRABAJOS TERMINADOS DE LA COLA   N: CONSERVARLOS</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>finished jobs removed from the job queue</source>
       <translation>trabajos terminados quitados de la cola de trabajos</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>job {program} added: {expected} parts</source>
       <translation>trabajo {program} añadido: {expected} piezas</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>job {program} removed</source>
       <translation>trabajo {program} quitado</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>job {program}: moved to position {to}</source>
       <translation>trabajo {program}: movido a la posición {to}</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>job {program}: quantity changed: {expected} → {expected2} parts</source>
       <translation>trabajo {program}: cantidad cambiada: {expected} → {expected2} piezas</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>job {program}: {text}</source>
       <translation>trabajo {program}: {text}</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>ready</source>
       <translation>lista</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_model.py" />
+      <location filename="app/extras/jobs/jobs_model.py" />
       <source>{program}: {made} OF {wanted} MADE. Y: REMOVE FROM QUEUE   N: KEEP</source>
       <translation>{program}: {made} DE {wanted} HECHAS. Y: QUITAR DE LA COLA   N: CONSERVAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>ALL TOOLS READY</source>
       <translation>TODAS LAS HERRAMIENTAS LISTAS</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>JOB DONE: {count} OF {expected} PARTS OF {program}.</source>
       <translation>TRABAJO HECHO: {count} DE {expected} PIEZAS DE {program}.</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>NEXT: {program}, {left} PARTS</source>
       <translation>SIGUE: {program}, {left} PIEZAS</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>NO MORE JOBS WAITING.</source>
       <translation>NO HAY MÁS TRABAJOS EN ESPERA.</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>NOT PROVED YET</source>
       <translation>AÚN NO COMPROBADO</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>THE PROGRAM HAS ERRORS</source>
       <translation>EL PROGRAMA TIENE ERRORES</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>job {program} started</source>
       <translation>trabajo {program} empezado</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>{count} SETUP ITEMS NOT READY</source>
       <translation>{count} PUNTOS DE PREPARACIÓN SIN TERMINAR</translation>
     </message>
     <message>
-      <location filename="app/jobs/jobs_watch.py" />
+      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST</source>
       <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, LUEGO F6: REVISE LA LISTA</translation>
     </message>
@@ -10904,1077 +10904,1077 @@
       <translation>NO SE PUEDE ESCRIBIR {target}: {cause}</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS</source>
       <translation>FLECHAS: ELEGIR CARACTERÍSTICA. A TRAZOS: LÍMITES DE CONTROL, PUNTOS: TOLERANCIA, CÍRCULOS: REGLAS INCUMPLIDAS</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>AVERAGE</source>
       <translation>PROMEDIO</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>CONTROL CHARTS</source>
       <translation>GRÁFICAS DE CONTROL</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>CONTROL CHARTS  ·  {program}</source>
       <translation>GRÁFICAS DE CONTROL  ·  {program}</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>DRIFT</source>
       <translation>DERIVA</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>FEATURE NOT MEASURED YET</source>
       <translation>CARACTERÍSTICA AÚN SIN MEDIR</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>INDIVIDUALS</source>
       <translation>VALORES INDIVIDUALES</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>MEAN {mode}</source>
       <translation>MEDIA {mode}</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>MOVING RANGE</source>
       <translation>RANGO MÓVIL</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>RANGE</source>
       <translation>RANGO</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>READINGS</source>
       <translation>LECTURAS</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>limits, Cpk, drift</source>
       <translation>límites, Cpk, deriva</translation>
     </message>
     <message>
-      <location filename="app/quality/charts_section.py" />
+      <location filename="app/extras/quality/charts_section.py" />
       <source>no drift; Cpk is at least {minimum} (95 % confidence)</source>
       <translation>sin deriva; Cpk es al menos {minimum} (confianza del 95 %)</translation>
     </message>
     <message>
-      <location filename="app/quality/correction_effect.py" />
+      <location filename="app/extras/quality/correction_effect.py" />
       <source>NOW</source>
       <translation>AHORA</translation>
     </message>
     <message>
-      <location filename="app/quality/correction_effect.py" />
+      <location filename="app/extras/quality/correction_effect.py" />
       <source>PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}</source>
       <translation>NO SE PUEDEN COMPARAR LAS PIEZAS CON CORRECTORES VIEJOS Y NUEVOS: {why}</translation>
     </message>
     <message>
-      <location filename="app/quality/correction_effect.py" />
+      <location filename="app/extras/quality/correction_effect.py" />
       <source>{name}: {change} FROM NEXT PART</source>
       <translation>{name}: {change} DESDE LA PRÓXIMA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/quality/cycle_recorder.py" />
+      <location filename="app/production/cycle_recorder.py" />
       <source>BETWEEN CYCLES</source>
       <translation>ENTRE CICLOS</translation>
     </message>
     <message>
-      <location filename="app/quality/cycle_recorder.py" />
+      <location filename="app/production/cycle_recorder.py" />
       <source>RESTARTED</source>
       <translation>REANUDADO</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>CHANGE</source>
       <translation>CAMBIAR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>CORRECTED BY</source>
       <translation>SE CORRIGE CON</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>EFFECT OF LARGER OFFSET ON SIZE</source>
       <translation>EFECTO DE MÁS CORRECTOR EN LA MEDIDA</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>ENTER: CHANGE FEATURE   F2: NEW FEATURE   ESC: BACK TO LIST</source>
       <translation>ENTER: CAMBIAR CARACTERÍSTICA   F2: NUEVA   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>Enter accepts the entry and goes to the next field. F6 saves the feature, Esc discards the changes.</source>
       <translation>Enter acepta lo escrito y pasa al campo siguiente. F6 guarda la característica, Esc descarta los cambios.</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>F2 adds a feature, Enter changes the selected feature, F5 sets whether the next part waits until the required parts are measured.</source>
       <translation>F2 añade una característica, Enter cambia la seleccionada, F5 define si la próxima pieza espera hasta que se midan las piezas requeridas.</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>FEATURES</source>
       <translation>CARACTERÍSTICAS</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>FEATURES  ·  {program}</source>
       <translation>CARACTERÍSTICAS  ·  {program}</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>FILL IN THE FIELDS. F6: SAVE   ESC: CANCEL</source>
       <translation>RELLENE LOS CAMPOS. F6: GUARDAR   ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>LARGER</source>
       <translation>MAYOR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>LOWER DEVIATION</source>
       <translation>DESVIACIÓN INFERIOR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>MEASURE EVERY N PARTS (0: NEVER)</source>
       <translation>MEDIR CADA N PIEZAS (0: NUNCA)</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>MEASURED</source>
       <translation>MEDIDO</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>NEW</source>
       <translation>NUEVA</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>NEXT PART DOES NOT WAIT FOR REQUIRED MEASUREMENTS</source>
       <translation>LA PIEZA SIGUIENTE NO ESPERA LAS MEDICIONES REQUERIDAS</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>NEXT PART WAITS FOR REQUIRED MEASUREMENTS</source>
       <translation>LA PIEZA SIGUIENTE ESPERA LAS MEDICIONES REQUERIDAS</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>NO WAIT</source>
       <translation>NO ESPERAR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>NOMINAL</source>
       <translation>NOMINAL</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>NOMINAL {mode}</source>
       <translation>NOMINAL {mode}</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>OFFSET</source>
       <translation>CORRECTOR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>PARTS PER SAMPLE</source>
       <translation>PIEZAS POR MUESTRA</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>PRESS ENTER TO SWITCH TO THE OTHER VALUE</source>
       <translation>PULSE ENTER PARA PASAR AL OTRO VALOR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>SECONDARY OFFSET</source>
       <translation>CORRECTOR SECUNDARIO</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>SMALLER</source>
       <translation>MENOR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>STOP MEASURING {name}? READINGS STAY STORED. Y: STOP   N: CONTINUE</source>
       <translation>¿DEJAR DE MEDIR {name}? LAS LECTURAS QUEDAN GUARDADAS. Y: DEJAR   N: SEGUIR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>TOLERANCE</source>
       <translation>TOLERANCIA</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>TOOL OR OFFSET NUMBER</source>
       <translation>NÚMERO DE HERRAMIENTA O CORRECTOR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>TOOL WEAR</source>
       <translation>DESGASTE DE HERRAMIENTA</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>UPPER DEVIATION</source>
       <translation>DESVIACIÓN SUPERIOR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>WAIT</source>
       <translation>ESPERAR</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>every {count} parts</source>
       <translation>cada {count} piezas</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>feature {row} saved</source>
       <translation>característica {row} guardada</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>measured features of {program}: {change}</source>
       <translation>características medidas de {program}: {change}</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>nominal dimension, tolerance, sampling plan</source>
       <translation>medida nominal, tolerancia, plan de muestreo</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>{name} REMOVED</source>
       <translation>{name} ELIMINADO</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>{name} SAVED</source>
       <translation>{name} GUARDADA</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>{row} removed</source>
       <translation>{row} eliminado</translation>
     </message>
     <message>
-      <location filename="app/quality/features_section.py" />
+      <location filename="app/extras/quality/features_section.py" />
       <source>{value} is not a whole number</source>
       <translation>{value} no es un número entero</translation>
     </message>
     <message>
-      <location filename="app/quality/gauge_line.py" />
+      <location filename="app/extras/quality/gauge_line.py" />
       <source>NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …</source>
       <translation>NO HAY CALIBRADOR EN EL ARCHIVO DE MÁQUINA. AÑADA [gauge] port = …</translation>
     </message>
     <message>
-      <location filename="app/quality/gauge_line.py" />
+      <location filename="app/extras/quality/gauge_line.py" />
       <source>No gauge is configured: enter its serial port under [gauge] in the machine file.</source>
       <translation>Ningún calibrador configurado: indique su puerto serie en [gauge] del archivo de máquina.</translation>
     </message>
     <message>
-      <location filename="app/quality/gauge_line.py" />
+      <location filename="app/extras/quality/gauge_line.py" />
       <source>the gauge is not connected or is switched off</source>
       <translation>el calibrador no está conectado o está apagado</translation>
     </message>
     <message>
-      <location filename="app/quality/gauge_line.py" />
+      <location filename="app/extras/quality/gauge_line.py" />
       <source>the gauge sent unreadable data</source>
       <translation>el calibrador envió datos ilegibles</translation>
     </message>
     <message>
-      <location filename="app/quality/parts_book.py" />
+      <location filename="app/production/parts_book.py" />
       <source>MEASURED PARTS CANNOT BE SAVED: NO DATA STORE</source>
       <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: NO HAY ALMACÉN DE DATOS</translation>
     </message>
     <message>
-      <location filename="app/quality/parts_book.py" />
+      <location filename="app/production/parts_book.py" />
       <source>MEASURED PARTS CANNOT BE SAVED: {away}</source>
       <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: {away}</translation>
     </message>
     <message>
-      <location filename="app/quality/parts_function.py" />
+      <location filename="app/extras/quality/parts_function.py" />
       <source>ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST</source>
       <translation>ENTER: ABRIR PIEZAS MEDIDAS   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/quality/parts_function.py" />
+      <location filename="app/extras/quality/parts_function.py" />
       <source>MEASURED PARTS</source>
       <translation>PIEZAS MEDIDAS</translation>
     </message>
     <message>
-      <location filename="app/quality/parts_function.py" />
+      <location filename="app/extras/quality/parts_function.py" />
       <source>MEASUREMENT DUE</source>
       <translation>MEDICIÓN PENDIENTE</translation>
     </message>
     <message>
-      <location filename="app/quality/parts_function.py" />
+      <location filename="app/extras/quality/parts_function.py" />
       <source>Press Enter to open the page, or press W in the main menu.</source>
       <translation>Pulse Enter para abrir la página, o W en el menú principal.</translation>
     </message>
     <message>
-      <location filename="app/quality/parts_function.py" />
+      <location filename="app/extras/quality/parts_function.py" />
       <source>STORED</source>
       <translation>GUARDADO</translation>
     </message>
     <message>
-      <location filename="app/quality/parts_function.py" />
+      <location filename="app/extras/quality/parts_function.py" />
       <source>features, readings, charts, trends</source>
       <translation>características, lecturas, gráficas, tendencias</translation>
     </message>
     <message>
-      <location filename="app/quality/parts_watch.py" />
+      <location filename="app/production/parts_watch.py" />
       <source>program {program}: the next part can start before the required parts are measured</source>
       <translation>programa {program}: la pieza siguiente puede empezar antes de medir las piezas requeridas</translation>
     </message>
     <message>
-      <location filename="app/quality/parts_watch.py" />
+      <location filename="app/production/parts_watch.py" />
       <source>program {program}: the next part cannot start before the required parts are measured</source>
       <translation>programa {program}: la pieza siguiente no puede empezar antes de medir las piezas requeridas</translation>
     </message>
     <message>
-      <location filename="app/quality/plots_view.py" />
+      <location filename="app/extras/quality/plots_view.py" />
       <source>CHART</source>
       <translation>GRÁFICO</translation>
     </message>
     <message>
-      <location filename="app/quality/plots_view.py" />
+      <location filename="app/extras/quality/plots_view.py" />
       <source>NOTHING TO DRAW YET</source>
       <translation>AÚN NO HAY NADA QUE DIBUJAR</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MAIN MENU, F8/F9</source>
       <translation>NO SE PUEDE DESHACER: HAY UN CAMBIO POSTERIOR. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>CORRECT</source>
       <translation>CORREGIR</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>CORRECTION UNDONE</source>
       <translation>CORRECCIÓN DESHECHA</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>DEVIATION</source>
       <translation>DESVIACIÓN</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>Enter the deviation in DL and DR of the tool table (F8 of the main menu).</source>
       <translation>Introduzca la desviación en DL y DR de la tabla de herramientas (F8 del menú principal).</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>F8 proposes a correction, F4 undoes the last correction.</source>
       <translation>F8 propone una corrección, F4 deshace la última corrección.</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>GAUGE OFF</source>
       <translation>CALIBR. NO</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>GAUGE ON</source>
       <translation>CALIBR. SÍ</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>GAUGE READING IGNORED. OPEN READINGS, THEN MEASURE AGAIN</source>
       <translation>LECTURA IGNORADA. ABRA LECTURAS Y MIDA DE NUEVO</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>GOOD</source>
       <translation>BUENA</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>MEASURED {name} OF PART {part}?</source>
       <translation>¿{name} MEDIDO EN LA PIEZA {part}?</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MAIN MENU, F8/F9</source>
       <translation>SIN CORRECCIONES EN ESTA PÁGINA. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>NOT MEASURED YET</source>
       <translation>AÚN SIN MEDIR</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>PART +</source>
       <translation>PIEZA +</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>PART −</source>
       <translation>PIEZA −</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>PRESS Y TO REMOVE READING {size} FROM PART {part}, N TO KEEP IT</source>
       <translation>PULSE Y PARA QUITAR LA LECTURA {size} DE LA PIEZA {part}, N PARA CONSERVARLA</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>READING REMOVED</source>
       <translation>LECTURA QUITADA</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>READINGS  ·  {program}</source>
       <translation>LECTURAS  ·  {program}</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>STILL READING STORED DATA. PRESS F8 AGAIN</source>
       <translation>AÚN SE LEEN LOS DATOS GUARDADOS. PULSE F8 OTRA VEZ</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>TOO LARGE</source>
       <translation>GRANDE</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>TOO SMALL</source>
       <translation>PEQUEÑA</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST</source>
       <translation>ESCRIBA LA MEDIDA Y PULSE ENTER. ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>measure a part and see the correction needed</source>
       <translation>medir una pieza y ver la corrección necesaria</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>program {program}, part {part}: reading of {feature} ({last} mm) removed</source>
       <translation>programa {program}, pieza {part}: lectura de {feature} ({last} mm) quitada</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>program {program}, part {part}: {feature} measured as {taken} mm</source>
       <translation>programa {program}, pieza {part}: {feature} medido, {taken} mm</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>{name} {size} FAR OUT OF TOLERANCE. Y: SAVE   N: MEASURE AGAIN</source>
       <translation>{name} {size} MUY FUERA DE TOLERANCIA. Y: GUARDAR   N: MEDIR DE NUEVO</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>{name}, PART {part}: {size} SAVED</source>
       <translation>{name}, PIEZA {part}: {size} GUARDADA</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>{row} must be more than 0; type the measured size, not the deviation</source>
       <translation>{row} debe ser mayor que 0; escriba la medida, no la desviación</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>{words}. Y: APPLY   N: DO NOT APPLY</source>
       <translation>{words}. Y: APLICAR   N: NO APLICAR</translation>
     </message>
     <message>
-      <location filename="app/quality/readings_section.py" />
+      <location filename="app/extras/quality/readings_section.py" />
       <source>{words}; APPLIES FROM NEXT PART</source>
       <translation>{words}; VALE DESDE LA PRÓXIMA PIEZA</translation>
     </message>
     <message>
-      <location filename="app/quality/sample_plan.py" />
+      <location filename="app/extras/quality/sample_plan.py" />
       <source>MEASURE PART {part}: {names}</source>
       <translation>MIDA LA PIEZA {part}: {names}</translation>
     </message>
     <message>
-      <location filename="app/quality/sample_plan.py" />
+      <location filename="app/extras/quality/sample_plan.py" />
       <source>part {part} must be measured before the next part starts: {names}</source>
       <translation>hay que medir la pieza {part} antes de que empiece la siguiente: {names}</translation>
     </message>
     <message>
-      <location filename="app/quality/section.py" />
+      <location filename="app/extras/quality/section.py" />
       <source>NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2</source>
       <translation>AÚN NO HAY CARACTERÍSTICAS. AÑADA UNA CARACTERÍSTICA EN LA SECCIÓN 1 CON F2</translation>
     </message>
     <message>
-      <location filename="app/quality/section.py" />
+      <location filename="app/extras/quality/section.py" />
       <source>SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES</source>
       <translation>SELECCIONE ANTES UN PROGRAMA. CADA PROGRAMA TIENE SUS PROPIAS CARACTERÍSTICAS</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_figures.py" />
+      <location filename="app/extras/quality/shift_figures.py" />
       <source>No part was started in this period.</source>
       <translation>En este período no se empezó ninguna pieza.</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_figures.py" />
+      <location filename="app/extras/quality/shift_figures.py" />
       <source>The clock was set back after {time}, so times of day overlap at that point, but durations are correct.</source>
       <translation>El reloj se atrasó después de {time}, por lo que en ese punto las horas se solapan, pero las duraciones son correctas.</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_figures.py" />
+      <location filename="app/extras/quality/shift_figures.py" />
       <source>The clock was set back by {time} during the shift, so the shift was longer by the same amount.</source>
       <translation>El reloj se atrasó {time} durante el turno, que por ello fue ese tiempo más largo.</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_figures.py" />
+      <location filename="app/extras/quality/shift_figures.py" />
       <source>The clock was set forward by {time} during the shift, so the shift was shorter by the same amount.</source>
       <translation>El reloj se adelantó {time} durante el turno, que por ello fue ese tiempo más corto.</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_figures.py" />
+      <location filename="app/extras/quality/shift_figures.py" />
       <source>The shift has not started.</source>
       <translation>El turno no ha empezado.</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_figures.py" />
+      <location filename="app/extras/quality/shift_figures.py" />
       <source>The shift is still running; this report covers it up to {time}.</source>
       <translation>El turno sigue en curso; este informe lo cubre hasta las {time}.</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>Creating the report …</source>
       <translation>Creando el informe …</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>EARLIER</source>
       <translation>ANTES</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>ENTER: SAVE REPORT HERE   F4: RESCAN FOR USB STICKS</source>
       <translation>ENTER: GUARDAR INFORME AQUÍ   F4: BUSCAR OTRA VEZ MEMORIAS USB</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>Enter saves the report as HTML in the selected location.</source>
       <translation>Enter guarda el informe como HTML en la ubicación elegida.</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK</source>
       <translation>F2, F3: OTRO TURNO   F6: GUARDAR INFORME COMO HTML   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>LATER</source>
       <translation>DESPUÉS</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>NO EARLIER SHIFT IS AVAILABLE</source>
       <translation>NO HAY TURNOS ANTERIORES DISPONIBLES</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>PLACE</source>
       <translation>LUGAR</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>REPORT IS NOT READY YET. WAIT A MOMENT</source>
       <translation>EL INFORME AÚN NO ESTÁ LISTO. ESPERE UN MOMENTO</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>SHIFT REPORT</source>
       <translation>INFORME DE TURNO</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>SHIFT REPORT  ·  SAVE TO:</source>
       <translation>INFORME DE TURNO  ·  GUARDAR EN:</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>THIS IS THE LATEST SHIFT</source>
       <translation>ESTE ES EL ÚLTIMO TURNO</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>parts, times, stops and alarms, for printing</source>
       <translation>piezas, tiempos, paros y alarmas, para imprimir</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_function.py" />
+      <location filename="app/extras/quality/shift_function.py" />
       <source>{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW</source>
       <translation>{name} GUARDADO. SI USÓ UNA MEMORIA USB, YA PUEDE RETIRARLA</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>Alarms and E-stops</source>
       <translation>Alarmas y paros de emergencia</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>All stops</source>
       <translation>Todos los paros</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>Availability</source>
       <translation>Disponibilidad</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>CYCLES WITHOUT A PART</source>
       <translation>CICLOS SIN PIEZA</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>Inserts changed in this shift</source>
       <translation>Plaquitas cambiadas en este turno</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>LIFE USED</source>
       <translation>VIDA USADA</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>LIMITS</source>
       <translation>LÍMITES</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>LONGEST</source>
       <translation>MÁS LARGO</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>MEAN</source>
       <translation>MEDIA</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>Not recorded</source>
       <translation>Sin registrar</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>OCCURRENCES</source>
       <translation>VECES</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>Offsets changed</source>
       <translation>Correctores cambiados</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>Out of tolerance</source>
       <translation>Fuera de tolerancia</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>Parts</source>
       <translation>Piezas</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>Parts by program</source>
       <translation>Piezas por programa</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>REASON</source>
       <translation>MOTIVO</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>SHARE</source>
       <translation>PARTE</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>SHORTEST</source>
       <translation>MÁS CORTO</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>START TIME</source>
       <translation>HORA DE INICIO</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>Stops</source>
       <translation>Paros</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>Stops by reason</source>
       <translation>Paros por motivo</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>Tool life used so far</source>
       <translation>Vida de herramienta usada hasta ahora</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>USAGE</source>
       <translation>USO</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>USED</source>
       <translation>USADO</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>WHO</source>
       <translation>QUIÉN</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>and {count} more</source>
       <translation>y {count} más</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>green: cycles; amber: stops; red: alarms</source>
       <translation>verde: ciclos; ámbar: paros; rojo: alarmas</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>shift from {first} to {last}</source>
       <translation>turno de {first} a {last}</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>wear</source>
       <translation>desgaste</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>{bad} of {count} readings</source>
       <translation>{bad} de {count} lecturas</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>{parts} parts, {time}</source>
       <translation>{parts} piezas, {time}</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>{share} %: in cycle for {run} of {planned}</source>
       <translation>{share} %: en ciclo {run} de {planned}</translation>
     </message>
     <message>
-      <location filename="app/quality/shift_page.py" />
+      <location filename="app/extras/quality/shift_page.py" />
       <source>{unit} mm</source>
       <translation>{unit} mm</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>MINUTES</source>
       <translation>MINUTOS</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO</source>
       <translation>¿PLAQUITA NUEVA EN T{number}? USO DE LA VIEJA: {words}. Y: SÍ   N: NO</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>NO TOOL HAS OFFSETS YET</source>
       <translation>AÚN NO HAY HERRAMIENTAS CON CORRECTOR</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: no new part starts once the tool life is used up.</source>
       <translation>Solo el tiempo en avance cuenta para los minutos de vida. Escriba 0 para no tener límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>REMAINING</source>
       <translation>RESTANTE</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>STOP</source>
       <translation>PARO</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>STOPS</source>
       <translation>PAROS</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>TOOL LIFE</source>
       <translation>VIDA ÚTIL DE HERRAMIENTAS</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT</source>
       <translation>ESCRIBA EL LÍMITE DE VIDA. F2: OTRO LÍMITE   F4: PLAQUITA NUEVA</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>T{number} SAVED</source>
       <translation>T{number} GUARDADA</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>T{number} tool life: {limit_parts} parts, {minutes}, warn at {warn}</source>
       <translation>vida de T{number}: {limit_parts} piezas, {minutes}, aviso al {warn}</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>WARN</source>
       <translation>AVISO</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>WARN AT %</source>
       <translation>AVISAR AL %</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>insert life in parts and minutes</source>
       <translation>vida de plaquita en piezas y minutos</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>no stop at end of tool life</source>
       <translation>sin paro al agotarse la vida de la herramienta</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>{count} parts</source>
       <translation>{count} piezas</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>{limit_seconds} min</source>
       <translation>{limit_seconds} min</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_section.py" />
+      <location filename="app/special/tool_life_function.py" />
       <source>{value} is not a valid number of parts; type a whole number</source>
       <translation>{value} no es un número de piezas válido; escriba un entero</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_watch.py" />
+      <location filename="app/production/tool_life_watch.py" />
       <source>TOOL {number} LIFE USED UP: {words}</source>
       <translation>VIDA DE HERRAMIENTA {number} AGOTADA: {words}</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_watch.py" />
+      <location filename="app/production/tool_life_watch.py" />
       <source>TOOL {number} LIFE: {words} USED</source>
       <translation>VIDA DE HERRAMIENTA {number}: {words} USADOS</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_watch.py" />
+      <location filename="app/production/tool_life_watch.py" />
       <source>T{number} tool life is used up ({life}): change the insert and confirm the change in TOOL LIFE</source>
       <translation>la vida de T{number} se ha agotado ({life}): cambie la plaquita y confirme el cambio en VIDA ÚTIL</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_watch.py" />
+      <location filename="app/production/tool_life_watch.py" />
       <source>T{number} tool life is used up ({life}): {method}</source>
       <translation>la vida de T{number} se ha agotado ({life}): {method}</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_watch.py" />
+      <location filename="app/production/tool_life_watch.py" />
       <source>T{number}: NEW INSERT, TOOL LIFE STARTS AT ZERO</source>
       <translation>T{number}: PLAQUITA NUEVA, LA VIDA EMPIEZA EN CERO</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_watch.py" />
+      <location filename="app/production/tool_life_watch.py" />
       <source>T{number}: NEW TOOL, TOOL LIFE STARTS AT ZERO</source>
       <translation>T{number}: HERRAMIENTA NUEVA, LA VIDA EMPIEZA EN CERO</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_watch.py" />
+      <location filename="app/production/tool_life_watch.py" />
       <source>cutting time of T{number} set to {seconds} min</source>
       <translation>tiempo de corte de T{number} fijado en {seconds} min</translation>
     </message>
     <message>
-      <location filename="app/quality/tool_life_watch.py" />
+      <location filename="app/production/tool_life_watch.py" />
       <source>fit a new tool and set its CUR.TIME to 0 in the tool table (F8)</source>
       <translation>ponga una herramienta nueva y su CUR.TIME a 0 en la tabla de herramientas (F8)</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>ARROWS: SELECT TREND   ESC: BACK TO LIST</source>
       <translation>FLECHAS: ELEGIR TENDENCIA   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>AVAILABILITY</source>
       <translation>DISPONIBILIDAD</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>CYCLE TIME</source>
       <translation>TIEMPO DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>CYCLE TIME, s</source>
       <translation>TIEMPO DE CICLO, s</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>IN CYCLE</source>
       <translation>EN CICLO</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>MINUTES BY REASON, WITH CUMULATIVE PERCENTAGE</source>
       <translation>MINUTOS POR MOTIVO, CON PORCENTAJE ACUMULADO</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>MINUTES OF THE SHIFT</source>
       <translation>MINUTOS DEL TURNO</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>NOT IN CYCLE</source>
       <translation>FUERA DE CICLO</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>SHIFT HOURS, FOR EXAMPLE 6-14?</source>
       <translation>¿HORAS DEL TURNO, POR EJEMPLO 6-14?</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>SPINDLE LOAD</source>
       <translation>CARGA DEL HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>SPINDLE LOAD, %</source>
       <translation>CARGA DEL HUSILLO, %</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>TRENDS</source>
       <translation>TENDENCIAS</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>TRENDS  ·  {program}</source>
       <translation>TENDENCIAS  ·  {program}</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>cycle times, stops, availability</source>
       <translation>tiempos de ciclo, paros, disponibilidad</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>enter the start and end hour of the shift, such as 6-14</source>
       <translation>escriba la hora de inicio y la de fin del turno, como 6-14</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>last cycle {last}, shortest {best}, mean {mean} of {count} parts</source>
       <translation>último ciclo {last}, menor {best}, media {mean} de {count} piezas</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>last load {last} %, highest load {maximum} %</source>
       <translation>última carga {last} %, carga mayor {maximum} %</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>no drive on this machine reports its load</source>
       <translation>ningún accionamiento de esta máquina informa su carga</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>no part made yet</source>
       <translation>aún no se ha hecho ninguna pieza</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>no stops yet</source>
       <translation>aún sin paros</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>no wear correction yet</source>
       <translation>aún sin correcciones de desgaste</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>parts</source>
       <translation>piezas</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>shift hours: {first} to {last}</source>
       <translation>horas del turno: {first} a {last}</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>{count} corrections; last correction: {offset} by X {x} Z {z} after part {part}</source>
       <translation>{count} correcciones; última corrección: {offset} en X {x} Z {z} tras la pieza {part}</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>{count} stops, on average {mean} apart; longest total: {reason}, {time}</source>
       <translation>{count} paros, {mean} entre ellos de media; mayor total: {reason}, {time}</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>{first}–{last}: the shift has not started</source>
       <translation>{first}–{last}: el turno no ha empezado</translation>
     </message>
     <message>
-      <location filename="app/quality/trends_section.py" />
+      <location filename="app/extras/quality/trends_section.py" />
       <source>{first}–{last}: {share} %, in cycle for {run} of {planned}</source>
       <translation>{first}–{last}: {share} %, en ciclo {run} de {planned}</translation>
     </message>
     <message>
-      <location filename="app/quality/wear_correction.py" />
+      <location filename="app/extras/quality/wear_correction.py" />
       <source>NO OFFSETS SET FOR T{number}</source>
       <translation>T{number} NO TIENE CORRECTORES DEFINIDOS</translation>
     </message>
     <message>
-      <location filename="app/quality/wear_correction.py" />
+      <location filename="app/extras/quality/wear_correction.py" />
       <source>{name} measured: the mean of {count} readings is {mean}, offset change {change}</source>
       <translation>{name} medido: la media de {count} lecturas es {mean}, cambio del corrector {change}</translation>
     </message>
     <message>
-      <location filename="app/quality/wear_correction.py" />
+      <location filename="app/extras/quality/wear_correction.py" />
       <source>{row}: none of the parts started since the last change of {name} has been measured yet</source>
       <translation>{row}: aún no se ha medido ninguna de las piezas empezadas desde el último cambio de {name}</translation>
     </message>
@@ -14279,142 +14279,142 @@
       <translation>respuesta HTTP {code} {reason}{place}</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>ACCESS LEVELS</source>
       <translation>NIVELES DE ACCESO</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED</source>
       <translation>TODOS LOS PIN QUITADOS. NIVELES DE ACCESO DESACTIVADOS: TODO PERMITIDO</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>Access levels are off: anyone can change anything, and no PIN is required.</source>
       <translation>Niveles de acceso desactivados: cualquiera puede cambiarlo todo y no se pide PIN.</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>After {minutes} minutes without input, the level returns to OPERATOR.</source>
       <translation>Tras {minutes} minutos sin actividad, el nivel vuelve a OPERADOR.</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>CONFIRM PIN:</source>
       <translation>CONFIRME EL PIN:</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>E-stop, feed hold, Reset and Drives Off work at every level.</source>
       <translation>Paro de emergencia, retención de avance, Reset y servos apagados funcionan en todos los niveles.</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>F3 adds the first user, with SERVICE level, and turns access levels on.</source>
       <translation>F3 añade el primer usuario, de nivel SERVICIO, y activa los niveles de acceso.</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>F3: ADD USER, TURN ACCESS LEVELS ON   ESC: BACK TO THE LIST</source>
       <translation>F3: AÑADIR UN USUARIO, ACTIVAR LOS NIVELES DE ACCESO   ESC: VOLVER A LA LISTA</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>LEVEL? 1 OPERATOR, 2 SETUP, 3 SERVICE</source>
       <translation>¿NIVEL? 1 OPERADOR, 2 PREPARADOR, 3 SERVICIO</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>LEVELS</source>
       <translation>NIVELES</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>NAME?</source>
       <translation>¿NOMBRE?</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>NEW PIN FOR {name}?</source>
       <translation>¿PIN NUEVO DE {name}?</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>PIN FOR {name}?</source>
       <translation>¿PIN DE {name}?</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL</source>
       <translation>SE BORRARÁN LOS PIN. SUELTE EL PARO DE EMERGENCIA O ENTRE PARA CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN</source>
       <translation>PULSE Y PARA ELIMINAR A {name}, N PARA CONSERVAR EL USUARIO Y EL PIN</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK</source>
       <translation>ELIJA SU NOMBRE   ENTER: ENTRAR   F2: SALIR   ESC: VOLVER</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>SIGN OUT</source>
       <translation>SALIR</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>SIGNED OUT: OPERATOR LEVEL IS ACTIVE</source>
       <translation>SESIÓN CERRADA: NIVEL OPERADOR ACTIVO</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>TYPE OF CHANGE</source>
       <translation>TIPO DE CAMBIO</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>USERS</source>
       <translation>USUARIOS</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>Y: REMOVE ALL PINS IN 10 MINUTES (LOGGED)   N: KEEP THEM</source>
       <translation>Y: BORRAR TODOS LOS PIN EN 10 MINUTOS (SE REGISTRA)   N: CONSERVARLOS</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>sign in</source>
       <translation>sign in</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>sign in, users, PINs</source>
       <translation>entrar, usuarios, PIN</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>the level must be 1, 2 or 3</source>
       <translation>el nivel debe ser 1, 2 o 3</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>the two PINs do not match; nothing was saved. Enter the PIN again</source>
       <translation>los dos PIN no coinciden; no se guardó nada. Introduzca el PIN de nuevo</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>user {draft} saved with level {level} and a new PIN</source>
       <translation>usuario {draft} guardado con nivel {level} y PIN nuevo</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>{draft} already exists; press F4 to change the PIN</source>
       <translation>{draft} ya existe; pulse F4 para cambiar el PIN</translation>
     </message>
     <message>
-      <location filename="app/special/access_levels.py" />
+      <location filename="app/extras/access/access_levels.py" />
       <source>{name}: {level}, PIN SAVED</source>
       <translation>{name}: {level}, PIN GUARDADO</translation>
     </message>
@@ -15859,12 +15859,12 @@
       <translation>MESA Y PLANO</translation>
     </message>
     <message>
-      <location filename="core/access/pins.py" />
+      <location filename="core/extras/access/pins.py" />
       <source>a PIN must have {shortest} to {longest} digits</source>
       <translation>un PIN debe tener de {shortest} a {longest} cifras</translation>
     </message>
     <message>
-      <location filename="core/access/pins.py" />
+      <location filename="core/extras/access/pins.py" />
       <source>a PIN of one repeated digit is too easy to guess; choose another</source>
       <translation>un PIN de una sola cifra repetida es demasiado fácil de adivinar; elija otro</translation>
     </message>
@@ -29619,207 +29619,207 @@
       <translation>Con salto de bloque {switch}: {item}</translation>
     </message>
     <message>
-      <location filename="core/quality/availability.py" />
+      <location filename="core/extras/quality/stops.py" />
       <source>the end of a cycle is earlier than its start because the clock was set back</source>
       <translation>el final de un ciclo es anterior a su comienzo porque el reloj se atrasó</translation>
     </message>
     <message>
-      <location filename="core/quality/availability.py" />
+      <location filename="core/extras/quality/stops.py" />
       <source>the end of a shift must be later than its start; correct the shift times</source>
       <translation>el final de un turno debe ser posterior a su comienzo; corrija las horas del turno</translation>
     </message>
     <message>
-      <location filename="core/quality/capability.py" />
+      <location filename="core/extras/quality/capability.py" />
       <source>process capability needs a tolerance; enter a tolerance for this feature</source>
       <translation>la capacidad del proceso necesita una tolerancia; introduzca una tolerancia para esta característica</translation>
     </message>
     <message>
-      <location filename="core/quality/capability.py" />
+      <location filename="core/extras/quality/capability.py" />
       <source>the lower limit must be below the upper limit; correct the tolerance</source>
       <translation>el límite inferior debe ser menor que el superior; corrija la tolerancia</translation>
     </message>
     <message>
-      <location filename="core/quality/capability.py" />
+      <location filename="core/extras/quality/capability.py" />
       <source>{values_count} readings are not enough; a Cpk needs at least {minimum} readings</source>
       <translation>{values_count} lecturas no bastan; un Cpk necesita al menos {minimum} lecturas</translation>
     </message>
     <message>
-      <location filename="core/quality/control_charts.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>a control chart is not possible for samples of {size}; use samples of 1 to {sample_sizes} parts</source>
       <translation>no es posible una gráfica de control para muestras de {size}; use muestras de 1 a {sample_sizes} piezas</translation>
     </message>
     <message>
-      <location filename="core/quality/control_charts.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>a value is not a number; delete that reading</source>
       <translation>un valor no es un número; borre esa lectura</translation>
     </message>
     <message>
-      <location filename="core/quality/control_charts.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>an X-bar chart needs at least 2 complete samples of {shape} parts; measure more parts</source>
       <translation>la gráfica X-barra necesita al menos 2 muestras completas de {shape} piezas; mida más piezas</translation>
     </message>
     <message>
-      <location filename="core/quality/control_charts.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>an individuals chart needs at least 2 values; measure more parts</source>
       <translation>la gráfica de individuales necesita al menos 2 valores; mida más piezas</translation>
     </message>
     <message>
-      <location filename="core/quality/control_charts.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>the samples of an X-bar chart must all have the same size, 2 to 10 values</source>
       <translation>las muestras de la gráfica X-barra deben tener todas el mismo tamaño, de 2 a 10 valores</translation>
     </message>
     <message>
-      <location filename="core/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>eight points in a row beyond one sigma</source>
       <translation>ocho puntos seguidos más allá de un sigma</translation>
     </message>
     <message>
-      <location filename="core/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>fifteen points in a row within one sigma</source>
       <translation>quince puntos seguidos dentro de un sigma</translation>
     </message>
     <message>
-      <location filename="core/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>four of five points beyond one sigma on one side</source>
       <translation>cuatro de cinco puntos más allá de un sigma a un lado</translation>
     </message>
     <message>
-      <location filename="core/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>fourteen points in a row alternating up and down</source>
       <translation>catorce puntos seguidos subiendo y bajando alternadamente</translation>
     </message>
     <message>
-      <location filename="core/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>nine points in a row on one side of the center line</source>
       <translation>nueve puntos seguidos a un lado de la línea central</translation>
     </message>
     <message>
-      <location filename="core/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>one point beyond a control limit</source>
       <translation>un punto fuera de un límite de control</translation>
     </message>
     <message>
-      <location filename="core/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>six points in a row rising or falling</source>
       <translation>seis puntos seguidos subiendo o bajando</translation>
     </message>
     <message>
-      <location filename="core/quality/drift_rules.py" />
+      <location filename="core/extras/quality/control_charts.py" />
       <source>two of three points beyond two sigma on one side</source>
       <translation>dos de tres puntos más allá de dos sigmas a un lado</translation>
     </message>
     <message>
-      <location filename="core/quality/measured_feature.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>a feature name must have 1 to {name_longest} characters</source>
       <translation>el nombre de una característica debe tener de 1 a {name_longest} caracteres</translation>
     </message>
     <message>
-      <location filename="core/quality/measured_feature.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: a sample must have 1 to {sample_sizes} parts</source>
       <translation>{feature}: una muestra debe tener de 1 a {sample_sizes} piezas</translation>
     </message>
     <message>
-      <location filename="core/quality/measured_feature.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: the direction must be +1 (a positive correction makes the dimension larger) or -1 (a positive correction makes the dimension smaller)</source>
       <translation>{feature}: la dirección debe ser +1 (una corrección positiva aumenta la cota) o -1 (una corrección positiva disminuye la cota)</translation>
     </message>
     <message>
-      <location filename="core/quality/measured_feature.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: the lower deviation must be below the upper deviation; correct one of them</source>
       <translation>{feature}: la desviación inferior debe ser menor que la superior; corrija una</translation>
     </message>
     <message>
-      <location filename="core/quality/measured_feature.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: the lower limit is 0 or less; correct the deviation</source>
       <translation>{feature}: el límite inferior es 0 o menos; corrija la desviación</translation>
     </message>
     <message>
-      <location filename="core/quality/measured_feature.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for no sampling plan</source>
       <translation>{feature}: el intervalo de medición debe ser de 1 a {every_most} piezas, o 0 sin plan de muestreo</translation>
     </message>
     <message>
-      <location filename="core/quality/measured_feature.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: the nominal dimension and the limits must be numbers</source>
       <translation>{feature}: la medida nominal y los límites deben ser números</translation>
     </message>
     <message>
-      <location filename="core/quality/measured_feature.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: the nominal dimension must be more than 0 and at most {size_most} mm</source>
       <translation>{feature}: la medida nominal debe ser mayor que 0 y como máximo {size_most} mm</translation>
     </message>
     <message>
-      <location filename="core/quality/measured_feature.py" />
+      <location filename="core/extras/quality/measured_feature.py" />
       <source>{feature}: the offset number must be 1 to {numbers}, not {number}</source>
       <translation>{feature}: el número de corrector debe ser de 1 a {numbers}, no {number}</translation>
     </message>
     <message>
-      <location filename="core/quality/stops.py" />
+      <location filename="core/extras/quality/stops.py" />
       <source>{reason}: the end of a stop is earlier than its start because the clock was set back</source>
       <translation>{reason}: el final de un paro es anterior a su comienzo porque el reloj se atrasó</translation>
     </message>
     <message>
-      <location filename="core/quality/tool_life.py" />
+      <location filename="core/production/tool_life.py" />
       <source>T{number}: the tool-life warning must be set between 1 and 100 % of the tool life</source>
       <translation>T{number}: el aviso de vida de la herramienta debe ponerse entre el 1 y el 100 % de la vida</translation>
     </message>
     <message>
-      <location filename="core/quality/tool_life.py" />
+      <location filename="core/production/tool_life.py" />
       <source>T{number}: tool life must be 0 to {parts_most} parts; 0 means no limit</source>
       <translation>T{number}: la vida debe ser de 0 a {parts_most} piezas; 0 significa sin límite</translation>
     </message>
     <message>
-      <location filename="core/quality/tool_life.py" />
+      <location filename="core/production/tool_life.py" />
       <source>T{number}: tool life must be 0 to {seconds_most} cutting minutes; 0 means no limit</source>
       <translation>T{number}: la vida debe ser de 0 a {seconds_most} minutos de corte; 0 significa sin límite</translation>
     </message>
     <message>
-      <location filename="core/quality/tool_life.py" />
+      <location filename="core/production/tool_life.py" />
       <source>no limit</source>
       <translation>sin límite</translation>
     </message>
     <message>
-      <location filename="core/quality/tool_life.py" />
+      <location filename="core/production/tool_life.py" />
       <source>{parts} of {limit_parts} parts</source>
       <translation>{parts} de {limit_parts} piezas</translation>
     </message>
     <message>
-      <location filename="core/quality/tool_life.py" />
+      <location filename="core/production/tool_life.py" />
       <source>{parts} parts, {seconds} min</source>
       <translation>{parts} piezas, {seconds} min</translation>
     </message>
     <message>
-      <location filename="core/quality/tool_life.py" />
+      <location filename="core/production/tool_life.py" />
       <source>{seconds} of {limit_seconds} min</source>
       <translation>{seconds} de {limit_seconds} min</translation>
     </message>
     <message>
-      <location filename="core/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/wear_proposal.py" />
       <source>the correction would be less than the smallest offset step, so no correction is needed</source>
       <translation>la corrección sería menor que el paso mínimo del corrector, así que no hace falta corregir</translation>
     </message>
     <message>
-      <location filename="core/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/wear_proposal.py" />
       <source>the deviation is within the dead band, so no correction is needed</source>
       <translation>la desviación está dentro de la banda muerta, así que no hace falta corregir</translation>
     </message>
     <message>
-      <location filename="core/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/wear_proposal.py" />
       <source>{feature}: a correction of {change} mm is too large to be tool wear; touch the tool off</source>
       <translation>{feature}: una corrección de {change} mm es demasiado grande para ser desgaste; tome referencia de la herramienta</translation>
     </message>
     <message>
-      <location filename="core/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/wear_proposal.py" />
       <source>{feature}: a reading is not a number; delete that reading</source>
       <translation>{feature}: una lectura no es un número; borre esa lectura</translation>
     </message>
     <message>
-      <location filename="core/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/wear_proposal.py" />
       <source>{feature}: a reading is off by more than {distance} times the tolerance, which is too large for tool wear; measure again</source>
       <translation>{feature}: una lectura se desvía más de {distance} veces la tolerancia, demasiado para ser desgaste; mida de nuevo</translation>
     </message>
     <message>
-      <location filename="core/quality/wear_proposal.py" />
+      <location filename="core/extras/quality/wear_proposal.py" />
       <source>{feature}: no part has been measured since the last correction</source>
       <translation>{feature}: no se ha medido ninguna pieza desde la última corrección</translation>
     </message>

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 from app.desk.program_loading import Phase
-from app.quality.quality_functions import QualityFunctions
-from app.quality.readings_section import ReadingsSection
-from app.quality.tool_life_section import ToolLifeSection
+from app.screen.page_table import PAGES, class_of
+from app.special.special_functions import SpecialFunction, SpecialFunctions
+from app.special.tool_life_function import ToolLifeFunction
 from core.executor.commands import ForceOutput
 from core.executor.snapshot import State
 from core.store.production import measured_parts, tool_lives
@@ -231,11 +232,17 @@ class Operator:
 
     # --- measuring ------------------------------------------------------------------------------------------
 
+    def _sections(self) -> Sequence[SpecialFunction]:
+        """The sections of the page of measured parts; none where that feature is not installed."""
+        entry = next((page for page in PAGES if page.name == "MEASURED PARTS"), None)
+        found = self.desk.attached(class_of(entry.model)) if entry is not None else None
+        return found.functions if isinstance(found, SpecialFunctions) else ()
+
     def _measure(self) -> None:
         """Type what the gauge shows; behind a few readings ask for the correction and take it."""
-        found = self.desk.attached(QualityFunctions)
-        assert found is not None
-        readings = next(each for each in found.functions if isinstance(each, ReadingsSection))
+        readings: Any = next((each for each in self._sections() if each.name == "READINGS"), None)
+        if readings is None:
+            return
         self._kept()
         size = 2.0 * self.shift.witness.radius + self._worn + self.chance.gauss(0.0, SCATTER)
         readings.take(f"{size / INCH:.5f}")
@@ -245,7 +252,7 @@ class Operator:
         if self._readings >= SAMPLE:
             self._correct(readings)
 
-    def _correct(self, readings: ReadingsSection) -> None:
+    def _correct(self, readings: Any) -> None:
         changes = self.desk.book.changes
         for _ in range(20):
             readings.propose()
@@ -268,9 +275,11 @@ class Operator:
 
     def fresh_insert(self) -> None:
         """The insert has made its parts: a new one, and its wear is nought again."""
-        found = self.desk.attached(QualityFunctions)
-        assert found is not None
-        lives = next(each for each in found.functions if isinstance(each, ToolLifeSection))
+        functions = self.desk.attached(SpecialFunctions)
+        assert functions is not None
+        lives = next(
+            each for each in (*self._sections(), *functions.functions) if isinstance(each, ToolLifeFunction)
+        )
         lives.marked = 0  # T1
         self._kept()  # right behind the start its life may not be read yet
         self.shift.settle(lambda: 1 in self.shift.parts_book.now.lives)  # its worker may be late

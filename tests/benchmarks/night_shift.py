@@ -18,9 +18,9 @@ from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import stored_offsets
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.desk import Desk
+from app.production.parts_book import PartsBook
+from app.production.parts_watch import PartsWatch
 from app.programs.whole_file import write_whole
-from app.quality.parts_book import PartsBook
-from app.quality.parts_watch import PartsWatch
 from core.executor.executor import Executor
 from core.executor.snapshot import Alarm, Snapshot, State
 from core.store.store import Store

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,7 +13,14 @@ import pytest
 
 from app.cli.main import main
 from app.compose import headless_run
+from core.access.access_table import Level
 from core.message import CodedError
+from core.store import people
+from core.store.production import measured_parts, part_cycles, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.store import Store
+from core.store.store_rows import Kind, utc
 from drivers.waiting import StepClock
 from tests.coded import recorded_refusals
 from tests.worked import worked
@@ -83,3 +92,32 @@ def example() -> Callable[[str], Path]:
     """A worked example by name; skips where they are absent."""
 
     return worked
+
+
+@pytest.fixture
+def filled(home: Path) -> Path:
+    """A store with something in each of its tables."""
+    feature = FeatureRow(0, "peg.nc", "SPIGOT", "diameter", 12.7, -0.05, 0.05, "tool", 1, 1, 0, 1)
+    began = datetime.now(UTC) - timedelta(hours=2)
+    at = utc(began)
+    with Store.open(home) as store:
+        of = store.write(lambda c: measured_parts.save_feature(c, feature)).result(60)
+        for part in range(1, 13):
+            times = (utc(began + timedelta(minutes=part)), utc(began + timedelta(minutes=part, seconds=50)))
+            outcome = "COMPLETE" if part > 1 else "ALARM"
+            cycle = CycleRow(f"c{part}", "peg.nc", part if part > 1 else 0, *times, 50.0, outcome)
+            store.write(partial(part_cycles.save_cycle, row=cycle)).result(60)
+            store.count_part("peg.nc").result(60)
+            reading = ReadingRow(0, of, part, 12.69 if part % 2 else 12.79, "in", at, "gauge", "mic")
+            store.write(partial(measured_parts.add_reading, row=reading)).result(60)
+        stop = StopRow("s", "c1", "peg.nc", at, 4.0, "FEED HOLD", 7)
+        store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
+        store.write(lambda c: tool_lives.set_limits(c, tool_lives.LifeRow(1, 50))).result(60)
+        store.write(lambda c: tool_lives.change_insert(c, 1, "worn")).result(60)
+        store.set_tool(1, "first", x=0.0, z=0.0).result(60)
+        store.set_tool(1, "wear", wear_x=-0.01).result(60)
+        store.undo_offset("undone", kind=Kind.TOOL).result(60)
+        store.write(
+            lambda c: people.keep_person(c, people.PersonRow("ANN", Level.SERVICE, b"salt", b"hash"))
+        ).result(60)
+    return home

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import csv
-from datetime import UTC, datetime, timedelta
-from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,16 +12,10 @@ import resources
 from app.cli import json_keys
 from app.cli.json_page import document, main
 from app.shopfloor import json_keys as floor_keys
-from core.access.access_table import Level
-from core.access.pins import hashed
 from core.json_key import keys, row_keys
-from core.store import people
-from core.store.production import measured_parts, part_cycles, tool_lives
-from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.part_cycles import CycleRow, StopRow
 from core.store.store import Store
 from core.store.store_export import EVENTS, RUNS, TABLES
-from core.store.store_rows import EventRow, Kind, utc
+from core.store.store_rows import EventRow
 from core.store.table_keys import RUNS_FILE
 from core.store.table_keys import TABLES as PUBLIC
 from tests.cli.conftest import Turndesk
@@ -185,35 +177,6 @@ def test_alarms(turndesk: Turndesk) -> None:
 # --- The store.
 
 
-@pytest.fixture
-def filled(home: Path) -> Path:
-    """A store with something in each of its tables."""
-    feature = FeatureRow(0, "peg.nc", "SPIGOT", "diameter", 12.7, -0.05, 0.05, "tool", 1, 1, 0, 1)
-    began = datetime.now(UTC) - timedelta(hours=2)
-    at = utc(began)
-    with Store.open(home) as store:
-        of = store.write(lambda c: measured_parts.save_feature(c, feature)).result(60)
-        for part in range(1, 13):
-            times = (utc(began + timedelta(minutes=part)), utc(began + timedelta(minutes=part, seconds=50)))
-            outcome = "COMPLETE" if part > 1 else "ALARM"
-            cycle = CycleRow(f"c{part}", "peg.nc", part if part > 1 else 0, *times, 50.0, outcome)
-            store.write(partial(part_cycles.save_cycle, row=cycle)).result(60)
-            store.count_part("peg.nc").result(60)
-            reading = ReadingRow(0, of, part, 12.69 if part % 2 else 12.79, "in", at, "gauge", "mic")
-            store.write(partial(measured_parts.add_reading, row=reading)).result(60)
-        stop = StopRow("s", "c1", "peg.nc", at, 4.0, "FEED HOLD", 7)
-        store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
-        store.write(lambda c: tool_lives.set_limits(c, tool_lives.LifeRow(1, 50))).result(60)
-        store.write(lambda c: tool_lives.change_insert(c, 1, "worn")).result(60)
-        store.set_tool(1, "first", x=0.0, z=0.0).result(60)
-        store.set_tool(1, "wear", wear_x=-0.01).result(60)
-        store.undo_offset("undone", kind=Kind.TOOL).result(60)
-        store.write(
-            lambda c: people.keep_person(c, people.PersonRow("ANN", Level.SERVICE, *hashed("1234")))
-        ).result(60)
-    return home
-
-
 def test_offsets(turndesk: Turndesk, home: Path) -> None:
     for words in (
         ("T1", "x=1.25", "z=-.5", "kind=drill", "diameter=.25"),
@@ -232,31 +195,8 @@ def test_offsets(turndesk: Turndesk, home: Path) -> None:
     declared_alone([whole(turndesk("offsets", "show", "--json"))], json_keys.OFFSETS_SHOW.keys)
 
 
-def test_parts(turndesk: Turndesk, filled: Path) -> None:
-    declared_alone([whole(turndesk("parts", "--json"))], json_keys.PARTS.keys)
-
-
-def test_shift(turndesk: Turndesk, filled: Path) -> None:
-    with Store.open(filled) as store:
-        store.log_event("alarm", "FOLLOWING ERROR").result(60)
-    now = datetime.now()
-    first, last = (f"{now + timedelta(days=days):%Y-%m-%d %H:%M}" for days in (-2, 2))
-    found = whole(turndesk("shift", "--from", first, "--to", last, "--json"))
-    declared_alone([found], json_keys.SHIFT.keys)
-
-
-def test_jobs(turndesk: Turndesk, home: Path) -> None:
-    assert turndesk("jobs", "add", "pin.nc", "5").status == 0
-    declared_alone([whole(turndesk("jobs", "list", "--json"))], json_keys.JOBS.keys)
-
-
 def test_store_verify(turndesk: Turndesk, filled: Path) -> None:
     declared_alone([whole(turndesk("store", "verify", "--json"))], json_keys.STORE_VERIFY.keys)
-
-
-def test_access(turndesk: Turndesk, filled: Path) -> None:
-    declared_alone([whole(turndesk("access", "list", "--json"))], json_keys.ACCESS_LIST.keys)
-    declared_alone([whole(turndesk("access", "table", "--json"))], json_keys.ACCESS_TABLE.keys)
 
 
 def test_public_tables_have_the_declared_columns(home: Path) -> None:

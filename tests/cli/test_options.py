@@ -99,13 +99,6 @@ COVERED = {
     ("machine hal", "--out"): "tests/cli/test_machine_hal.py",
     ("machine hal", "--json"): "tests/cli/test_machine_hal.py",
     ("alarms", "--json"): "tests/cli/test_alarms.py",
-    ("parts", "--csv"): "tests/cli/test_parts.py",
-    ("jobs list", "--json"): "tests/cli/test_jobs.py",
-    **{("shift", option): "tests/quality/test_shift_figures.py"
-       for option in ("--back", "--from", "--to", "--report", "--json", "--metric")},
-    ("jobs add", "--note"): "tests/cli/test_jobs.py",
-    ("jobs clear", "--all"): "tests/cli/test_jobs.py",
-    ("parts", "--json"): "tests/cli/test_parts.py",
     ("scope", "--csv"): "tests/cli/test_scope.py",
     ("scope", "--json"): "tests/cli/test_scope.py",
     **{(f"serial {way}", option): "tests/drivers/transfer" for way in ("send", "receive")
@@ -117,17 +110,16 @@ COVERED = {
     ("setup desktop", "--remove"): "tests/cli/test_setup.py",
     **{(command, "--as"): "tests/cli/test_access.py"
        for command in ("prove", "run", "offsets set", "offsets clear", "offsets undo", "store restore",
-                       "store import", "setup load", "machine accept", "jobs add", "jobs move", "jobs remove",
-                       "jobs clear", "access add", "access pin", "access remove", "serial receive")},
-    **{("access " + action, "--json"): "tests/cli/test_access.py" for action in ("list", "table")},
-    ("access add", "--level"): "tests/cli/test_access.py",
+                       "store import", "setup load", "machine accept", "serial receive")},
     ("serial receive", "--out"): "tests/drivers/transfer",
     ("serial send", "--eol"): "tests/drivers/transfer",
     ("serial send", "--wait"): "tests/drivers/transfer",
     ("serial send", "--leader"): "tests/drivers/transfer",
 }  # fmt: skip
+REST: dict[str, list[str]] = {}  # arguments that commands of optional features need
 for each in of_extras("options"):
     COVERED |= each.COVERED
+    REST |= getattr(each, "REST", {})
 
 
 def test_every_option_of_every_command_is_in_the_table() -> None:
@@ -153,9 +145,7 @@ def test_an_option_before_a_command_acts_or_is_refused(
         "offsets clear": ["D"],
         "machine peer": ["gt75-bench"],
         "setup completion": ["bash"],
-        "jobs add": ["pin", "2"],
-        "jobs move": ["1", "2"],
-        "jobs remove": ["1"],
+        **REST,
     }
     bare = {
         "show",
@@ -169,7 +159,6 @@ def test_an_option_before_a_command_acts_or_is_refused(
         "desktop",
         "list",
         "clear",
-        "shift",
         "table",
         "reset",
         "begin",

@@ -4,27 +4,18 @@ from __future__ import annotations
 
 import re
 import sqlite3
-from collections.abc import Callable, Iterator
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TypeVar
 
 import pytest
 
-import resources
 from app.compose.journal import Journal
-from app.compose.screen_desk import desk_and_executor
-from app.compose.stored_offsets import stored_offsets
-from app.desk.access import Access
-from app.desk.access_reset import WAIT
-from app.desk.desk import Desk
 from app.editor.editor import Editor
 from app.offsets.offset_history import OffsetHistory
 from app.offsets.offset_questions import OffsetQuestions
+from app.production.parts_watch import PartsWatch
 from app.programs.program_list import ProgramList
-from app.quality.parts_watch import PartsWatch
-from app.special.access_levels import AccessLevels
 from app.special.inputs_outputs import InputsOutputs
 from app.special.inputs_outputs import Kind as Shown
 from app.special.lamps_and_sound import LampsAndSound
@@ -32,34 +23,26 @@ from app.special.logged_events import FILTERS
 from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.parts_counter import PartsCounterFunction
 from app.special.setup_sheet_function import SetupSheetFunction
-from app.special.special_functions import SpecialFunction, SpecialFunctions
 from app.special.spindle_limit import SpindleSpeedLimit
 from app.transfer.line_transfer import Received
 from app.transfer.serial_transfer import SerialTransfer
-from core.access import pins
 from core.access.access_page import page
 from core.access.access_table import RULES, Act, Level
-from core.access.pins import Hashed, PinError, WrongPins, check_pin, hashed, is_pin, wait_after
-from core.executor.executor import Executor
 from core.executor.snapshot import State
 from core.store import database
 from core.store.offsets.touch_off import Touch
-from core.store.people import PersonRow
 from core.store.production.tool_lives import insert_changes
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import FILE_NAME
 from core.store.store_rows import Kind
-from drivers.waiting import StepClock
+from tests.desk.levels_room import LIMIT, Room, room
 from tests.texts import begins, pattern, shows
 from tests.texts import text as wording
+from tests.whole_product import WHOLE_PRODUCT
 
-T = TypeVar("T", bound=SpecialFunction)
+__all__ = ["room"]
 HOUSE = Path(__file__).parents[2]
-LIMIT = 60.0
-TODAY = pins.COST  # before a test makes it cheap
-PINS = {"ANNA": "4711", "BEN": "2580", "CARLA": "9035"}
-LEVELS = {"ANNA": Level.SERVICE, "BEN": Level.SETUP, "CARLA": Level.OPERATOR}
 OPERATORS = {Act.WEAR, Act.COUNTS, Act.INSERTS, Act.READINGS, Act.JOBS, Act.SCREEN, Act.INPUTS, Act.BACKUPS}
 SERVICES = {Act.MACHINE_FILE, Act.RESTORE, Act.SHARED_PLACE, Act.PEOPLE}
 WRITES = re.compile(
@@ -73,11 +56,12 @@ BEHIND_A_RULE = {
     "compose/kept_stock.py": "asked by part_options.py and part_sheet.py",
     "compose/setup_file.py": "asked by setup_command.py",
     "extras/sharing/sharing_desk.py": "asked by share_command.py",
-    "desk/access.py": "asked by access_levels.py",
+    "extras/access/pin_question.py": "asked by who_changes.py, which has asked",
+    "extras/access/sign_in.py": "asked by access_levels.py",
     "desk/persistence.py": "as journal.py",
     "desk/screen_settings.py": "asked by desk.py",
     "editor/document.py": "asked by may_save of the editor",
-    "quality/parts_watch.py": "asked by features_section.py",
+    "extras/quality/sample_plan.py": "asked by features_section.py",
     "special/part_count.py": "asked by parts_counter.py",
     "transfer/line_transfer.py": "asked by serial_command.py and serial_transfer.py",
 }
@@ -86,7 +70,7 @@ NO_CHANGE = {
     "cli/json_page.py": "a page of the manual",
     "cli/proof_cache.py": "proofs that can be made again",
     "cli/report_file.py": "a report, to a file of whoever asks",
-    "cli/shift_command.py": "a report",
+    "extras/quality/shift_command.py": "a report",
     "cli/trace_command.py": "setpoints, to a file of whoever asks",
     "compose/demo_store.py": "a store for trying",
     "compose/dialects_page.py": "a page of the manual",
@@ -102,79 +86,12 @@ NO_CHANGE = {
     "jog/hand_functions.py": "coolant off: it brings to rest",
     "mdi/mdi_line.py": "the lines that were typed",
     "programs/whole_file.py": "how a file is written; who calls it asks",
-    "quality/readings_file.py": "readings, to a file of whoever asks",
-    "quality/shift_function.py": "a report",
+    "extras/quality/readings_file.py": "readings, to a file of whoever asks",
+    "extras/quality/shift_function.py": "a report",
     "scope/record_shelf.py": "how records are kept; asked by scope_model.py",
     "shopfloor/status_file.py": "what the machine does, for other programs",
     "special/setup_sheet_work.py": "the sheet on paper",
 }
-
-
-@dataclass
-class Room:
-    desk: Desk
-    executor: Executor
-    clock: StepClock
-    journal: Journal
-    at: float = 1000.0
-
-    @property
-    def access(self) -> Access:
-        return self.desk.access
-
-    @property
-    def store(self) -> Store:
-        store = self.journal._store
-        assert store is not None
-        return store
-
-    def run(self, ticks: int = 20) -> None:
-        for _ in range(ticks):
-            self.clock.advance(0.01)
-            self.executor.tick()
-        self.desk.look()
-
-    def settle(self) -> None:
-        """Until what was asked of workers and of the disk is there."""
-        self.access.worker.settle(LIMIT)
-        self.store.write(lambda _connection: None).result(LIMIT)
-        self.desk.look()
-        self.desk.book.poll()
-
-    def find(self, kind: type[T]) -> T:
-        special = self.desk.attached(SpecialFunctions)
-        assert special is not None
-        return next(each for each in special.functions if isinstance(each, kind))
-
-    def enter_people(self) -> None:
-        for name, pin in PINS.items():
-            self.journal.keep_person(PersonRow(name, LEVELS[name], *hashed(pin)))
-        self.access.reload()
-
-    def sign_in(self, name: str, pin: str = "") -> None:
-        row = self.access.people.named(name)
-        assert row is not None
-        self.access.sign_in(row, pin or PINS[name])
-        self.settle()
-
-    def log(self, kind: str) -> list[tuple[str, str]]:
-        self.settle()
-        return [(row.text, row.who) for row in self.store.events(kinds={kind})][::-1]
-
-
-@pytest.fixture
-def room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Room]:
-    file = tmp_path / "own.toml"
-    file.write_text(resources.machine_file("gt75.toml"))
-    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
-    clock, journal = StepClock(), Journal.at_home()
-    desk, executor = desk_and_executor(str(file), stored_offsets, clock, journal)
-    made = Room(desk, executor, clock, journal)
-    made.access.clock = lambda: made.at
-    made.run(2)
-    yield made
-    desk.close()
-    journal.close()
 
 
 # --- the table -------------------------------------------------------------------------------------------
@@ -195,6 +112,7 @@ def test_the_page_is_the_table() -> None:
     assert (HOUSE / "docs" / "access.md").read_text("utf-8") == page()
 
 
+@WHOLE_PRODUCT
 @pytest.mark.parametrize("act", list(Act))
 def test_somebody_asks_for_every_act(act: Act) -> None:
     """A rule that no page and no command asks for would be a promise that nobody keeps."""
@@ -236,6 +154,17 @@ def test_a_refusal_says_which_level_and_how_to_get_it(room: Room) -> None:
     assert why == wording("screen.level-needed", what="TOOL OFFSETS", level="SETUP", now="OPERATOR")
     room.settle()
     assert room.store.tools() == {}
+
+
+def test_where_nobody_can_sign_in_stored_people_still_have_levels(room: Room) -> None:
+    room.enter_people()
+    with_sign_in = room.access.refusal(Act.TOOLS)
+    session, room.access.session = room.access.session, None
+    assert {act for act in Act if not room.access.refusal(act)} == OPERATORS
+    assert room.access.refusal(Act.TOOLS) != with_sign_in
+    room.access.look(room.desk.snapshot())
+    room.access.used()
+    room.access.session = session
 
 
 def test_wear_is_the_operators_and_position_is_not(room: Room) -> None:
@@ -369,28 +298,6 @@ def test_what_stops_the_machine_is_behind_no_level(room: Room) -> None:
     assert "LEVEL" not in desk.notice
 
 
-def test_who_has_gone_away_finishes_nothing_by_other_hands(room: Room) -> None:
-    """What was begun in a level is not ended by whoever finds it open when that level has fallen back."""
-    room.enter_people()
-    room.sign_in("ANNA")
-    levels, programs = room.find(AccessLevels), room.desk.attached(ProgramList)
-    assert programs is not None
-    levels.keys()["F3"].action()
-    typed(levels, "eve", "3", "1357")
-    programs.transfer.begin((), None, out=False)
-    room.at += 600.0
-    room.run(1)
-    typed(levels, "1357")
-    assert shows(room.desk.notice, "screen.level-needed", what="USERS AND PINS", level="SERVICE")
-    room.desk.clear()
-    programs.transfer.worker.settle(LIMIT)
-    programs.transfer._carry((HOUSE / "setup.cfg",), HOUSE, replace=True)
-    assert shows(room.desk.notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
-    assert not programs.transfer.worker.busy
-    room.settle()
-    assert room.access.people.named("EVE") is None
-
-
 # --- who did it ------------------------------------------------------------------------------------------
 
 
@@ -455,143 +362,7 @@ def test_an_accepted_machine_file_has_the_name(room: Room) -> None:
     assert shows(room.log("machine")[-1][0], "desk.machine-file-accepted-by", name="ANNA")
 
 
-# --- signing in ------------------------------------------------------------------------------------------
-
-
-def test_the_header_says_who_is_in_force(room: Room) -> None:
-    room.enter_people()
-    assert room.access.words == "OPERATOR"
-    room.sign_in("BEN")
-    assert room.access.words.replace("\u2068", "").replace("\u2069", "") == "BEN · SETUP"
-    room.access.sign_out()
-    assert room.access.words == "OPERATOR"
-    assert room.log("access") == [
-        (wording("log.signed-in", name="BEN", level="SETUP"), "BEN"),
-        (wording("log.signed-out", name="BEN", why=""), "BEN"),
-    ]
-
-
-def test_wrong_pins_wait_longer_and_longer_and_are_logged(room: Room) -> None:
-    room.enter_people()
-    for _ in range(3):
-        room.sign_in("BEN", "0815")
-    assert shows(room.desk.notice, "desk.wrong-pin", seconds=5)
-    room.sign_in("BEN")  # the right one, but too early
-    assert room.access.name == ""
-    assert room.desk.notice == wording("desk.too-many-pins", seconds=5)
-    room.at += 5.0
-    room.sign_in("BEN")
-    assert room.access.name == "BEN"
-    assert room.log("access")[2] == (wording("log.wrong-pin", name="BEN", count=3), "operator")
-
-
-def test_a_new_start_does_not_forget_how_many_were_wrong(room: Room) -> None:
-    room.enter_people()
-    for _ in range(3):
-        room.sign_in("BEN", "0815")
-    room.settle()
-    again = Access(room.journal, clock=lambda: 7.0)
-    assert again.wrong.left(7.0) == 5.0
-
-
-def test_the_waits_are_bounded() -> None:
-    assert [wait_after(count) for count in range(12)] == [0, 0, 0, 5, 10, 20, 40, 80, 160, 300, 300, 300]
-    wrong = WrongPins()
-    for moment in (0.0, 1.0, 2.0):
-        wrong.wrong(moment)
-    assert wrong.left(4.0) == 3.0
-    wrong.right()
-    assert wrong.left(4.0) == 0.0
-
-
-@pytest.mark.parametrize("pin", ["", "123", "1234567890123", "12a4", "1111", "12 34", "١٢٣٤"])
-def test_what_is_no_pin_is_refused(pin: str) -> None:
-    with pytest.raises(PinError):
-        check_pin(pin)
-
-
-def test_what_is_kept_of_a_pin_is_scrypt() -> None:
-    """RFC 7914, chapter 12: the third vector has the N, r and p of older hashes, and our length in front."""
-    old = "7023bdcb3afd7348461c06cd81fd38ebfda8fbba904f8e3ea9b543f6545da1f2"
-    for kept in (
-        Hashed(b"SodiumChloride", bytes.fromhex(old)),
-        Hashed(b"SodiumChloride", bytes((14, 8, 1)) + bytes.fromhex(old)),
-        hashed("pleaseletmein", b"SodiumChloride"),
-    ):
-        assert is_pin("pleaseletmein", kept)
-        assert not is_pin("pleaseletmeIn", kept)
-    assert hashed("4711") != hashed("4711")  # each has a salt of its own
-
-
-def test_a_try_costs_what_half_a_second_holds() -> None:
-    """Older hashes took 0.03 s of an idle core: 32 times the work is 0.9 s."""
-    work = TODAY.r * TODAY.p << TODAY.log2_n
-    assert work >= 32 * (8 * 1 << 14)
-
-
-@pytest.mark.parametrize("damage", [b"", b"\x04\x08", bytes(31), bytes(34), bytes(40)])
-def test_no_pin_fits_a_hash_of_another_length(damage: bytes) -> None:
-    assert not is_pin("4711", Hashed(b"salt", damage))
-
-
-def test_an_old_hash_is_made_anew_when_its_pin_is_entered(
-    room: Room, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    room.enter_people()
-    old = room.access.people.rows
-    monkeypatch.setattr(pins, "COST", pins.Cost(5, 8, 1))
-    room.sign_in("BEN", "9999")
-    assert room.store.people().rows == old
-    room.at += 300.0
-    room.sign_in("BEN")
-    now = room.store.people().named("BEN")
-    assert now is not None
-    assert (room.access.name, room.access.people.named("BEN")) == ("BEN", now)
-    assert now.hash[:3] == bytes((5, 8, 1))
-    assert is_pin(PINS["BEN"], Hashed(now.salt, now.hash))
-    assert {row for row in old if row.name != "BEN"} < set(room.store.people().rows)
-
-
-def test_who_has_no_pin_is_let_in_by_none(room: Room) -> None:
-    room.journal.keep_person(PersonRow("DORA", Level.SERVICE, b"", b""))
-    room.access.reload()
-    room.sign_in("DORA", "4711")
-    assert room.access.name == ""
-    assert begins(room.desk.notice, "desk.no-pin", name="DORA")
-
-
-def test_the_store_does_not_hold_the_pin(room: Room, tmp_path: Path) -> None:
-    room.journal.keep_person(PersonRow("DORA", Level.SERVICE, *hashed("660391827455")))
-    room.settle()
-    for path in (tmp_path / "home").glob("turndesk.db*"):
-        assert b"660391827455" not in path.read_bytes()
-
-
-# --- time ------------------------------------------------------------------------------------------------
-
-
-def test_a_level_falls_back_and_says_so_before(room: Room) -> None:
-    room.enter_people()
-    room.sign_in("ANNA")
-    room.at += 569.0
-    room.desk.clear()
-    room.run(1)
-    assert room.desk.notice == ""
-    room.at += 1.0
-    room.run(1)
-    assert shows(room.desk.notice, "desk.level-ends", seconds=30)
-    room.access.used()
-    room.at += 599.0
-    room.run(1)
-    assert room.access.name == "ANNA"
-    room.at += 1.0
-    room.run(1)
-    assert (room.access.name, room.access.level) == ("", Level.OPERATOR)
-    assert shows(room.desk.notice, "desk.was-away")
-    assert room.log("access")[-1] == (
-        wording("log.signed-out", name="ANNA", why=wording("log.without-input", minutes=10)),
-        "ANNA",
-    )
+# --- people ------------------------------------------------------------------------------------------------
 
 
 def test_who_is_taken_away_is_not_in_force_any_more(room: Room) -> None:
@@ -602,100 +373,11 @@ def test_who_is_taken_away_is_not_in_force_any_more(room: Room) -> None:
     assert room.access.words == "OPERATOR"
 
 
-def test_levels_come_back_with_a_store_that_was_away_at_the_start(room: Room, tmp_path: Path) -> None:
-    """Else whoever was there then could enter himself as the first one, beside those of the store."""
-    room.enter_people()
-    store, room.journal._store = room.journal._store, None
-    folder, room.journal._folder = room.journal._folder, damaged_home(tmp_path)
-    room.desk.access = again = Access(room.journal, clock=lambda: room.at)
-    again.level = Level.OPERATOR
-    assert (again.people.on, again.people.rows) == (True, ())
-    room.journal._store, room.journal._folder = store, folder
-    room.at += 1.0
-    room.run(1)
-    assert shows(again.refusal(Act.PEOPLE), "screen.level-needed", level="SERVICE")
-    assert [row.name for row in again.people.rows] == ["ANNA", "BEN", "CARLA"]
-    again.close()
-
-
-def damaged_home(tmp_path: Path) -> Path:
-    folder = tmp_path / "damaged"
-    folder.mkdir()
-    (folder / FILE_NAME).write_bytes(b"SQLite format 3")
-    return folder
-
-
-def test_people_that_cannot_be_read_leave_the_strictest_level(room: Room, tmp_path: Path) -> None:
-    room.journal._store, store = None, room.journal._store
-    room.journal._folder = damaged_home(tmp_path)
-    room.access.reload()
-    may = {act for act in Act if not room.access.refusal(act)}
-    assert may == OPERATORS
-    reset = room.find(AccessLevels).service_reset
-    assert reset.why_not(room.desk.snapshot()) == wording("desk.press-e-stop-first")
-    reset.reset()
-    room.access.worker.settle(LIMIT)
-    room.at += 2.0
-    room.run(1)
-    assert [room.access.refusal(act) for act in Act] == [""] * len(Act)
-    room.journal._store = store
-
-
 def test_a_second_desk_has_the_levels_of_the_first(room: Room, tmp_path: Path) -> None:
     room.enter_people()
     beside = Journal(tmp_path / "home")
     assert beside.people() == room.store.people()
     beside.close()
-
-
-# --- people ----------------------------------------------------------------------------------------------
-
-
-def typed(levels: AccessLevels, *texts: str) -> None:
-    for text in texts:
-        for sign in text:
-            levels.typed(sign)
-        levels.typed("Enter")
-
-
-def test_the_first_one_is_of_service_and_switches_levels_on(room: Room) -> None:
-    levels = room.find(AccessLevels)
-    levels.keys()["F3"].action()
-    typed(levels, "anna", "4711")
-    assert levels.sheet(room.desk.snapshot()).question == wording("desk.same-pin-again")
-    typed(levels, "4711")
-    room.settle()
-    assert [(row.name, row.level) for row in room.access.people.rows] == [("ANNA", 3)]
-    levels.keys()["F3"].action()
-    assert shows(room.desk.notice, "screen.level-needed", what="USERS AND PINS", level="SERVICE")
-    typed(levels, "", "4711")  # Return on her name, and her PIN
-    room.settle()
-    levels.keys()["F3"].action()
-    typed(levels, "Ben", "2", "2580", "2580")
-    room.settle()
-    assert [(row.name, row.level) for row in room.access.people.rows] == [("ANNA", 3), ("BEN", 2)]
-    assert room.log("access")[-1] == (wording("log.entered", name="BEN", level="SETUP"), "ANNA")
-
-
-def test_two_different_pins_keep_nothing(room: Room) -> None:
-    levels = room.find(AccessLevels)
-    levels.keys()["F3"].action()
-    typed(levels, "anna", "4711", "4712")
-    room.settle()
-    assert not room.access.people.on
-    assert wording("desk.two-different-pins").upper() in room.desk.notice.upper()
-
-
-def test_a_pin_is_not_shown(room: Room) -> None:
-    room.enter_people()
-    levels = room.find(AccessLevels)
-    levels.act()
-    for sign in "4711":
-        levels.typed(sign)
-    assert levels.sheet(room.desk.snapshot()).text == "●●●●"
-    assert not levels.takes("x")
-    levels.left()
-    assert levels.entry.text == ""
 
 
 def test_one_of_service_stays(room: Room) -> None:
@@ -735,59 +417,3 @@ def test_a_store_of_before_has_no_levels_and_keeps_its_log(tmp_path: Path) -> No
         assert [(row.text, row.who) for row in store.events()] == [("pin.nc", "")]
         assert store.tools()[3].x == 1.0
         assert store.damaged() == ()
-
-
-# --- service reset ---------------------------------------------------------------------------------------
-
-
-def pressed(room: Room) -> Callable[[], None]:
-    room.enter_people()
-    room.desk.estop()
-    room.run()
-    levels = room.find(AccessLevels)
-    levels.keys()["F9"].action()
-    assert begins(room.desk.notice, "desk.take-all-pins-away")
-    levels.service_reset.begin()
-    return levels.service_reset.begin
-
-
-def test_ten_minutes_of_estop_take_all_pins_away(room: Room) -> None:
-    pressed(room)
-    room.at += WAIT - 1.0
-    room.run(1)
-    assert room.access.people.on
-    assert room.access.words == wording("desk.pins-reset-in", time="0:01")
-    room.at += 1.0
-    room.run(1)
-    room.settle()
-    assert not room.access.people.on
-    assert room.access.words == ""
-    told = [text for text, _who in room.log("access")]
-    assert begins(told[0], "desk.reset-begun")
-    assert told[-1] == wording("desk.reset-done")
-
-
-def test_the_reset_needs_the_estop_and_ends_with_it(room: Room) -> None:
-    room.enter_people()
-    room.find(AccessLevels).ask_reset()
-    assert begins(room.desk.notice, "desk.e-stop-for-reset")
-    pressed(room)
-    room.at += 300.0
-    room.run(1)
-    room.desk.hands.estop(pressed=False)
-    room.run()
-    room.at += WAIT
-    room.run(1)
-    room.settle()
-    assert room.access.people.on
-    assert room.log("access")[-1][0] == wording("desk.reset-given-up")
-
-
-def test_a_pin_ends_the_reset(room: Room) -> None:
-    pressed(room)
-    room.sign_in("ANNA")
-    room.run(1)
-    room.at += WAIT
-    room.run(1)
-    room.settle()
-    assert room.access.people.on

@@ -11,9 +11,9 @@ from contextlib import closing, suppress
 from functools import cache, partial
 from pathlib import Path
 
-from app.quality.parts_book import parts_data
+from app.production.parts_book import production
 from core.store import backup
-from core.store.production import measured_parts, tool_lives
+from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.production.tool_lives import LifeRow
 from core.store.store import Store
@@ -85,6 +85,20 @@ def _spoilt(data: bytes) -> Path:
     return home
 
 
+def _measured(store: Store) -> None:
+    """Read everything that is kept of measured parts."""
+    with store.read() as connection:
+        measured_parts.features(connection, "part.nc")
+        measured_parts.readings(connection, "part.nc", 1000)
+        measured_parts.last_corrections(connection)
+        part_cycles.cycles(connection, "part.nc", 1000)
+        part_cycles.stops(connection, None, 1000)
+        part_cycles.corrections(connection, "part.nc", 1000)
+        part_cycles.times_since(connection, "2026-01-01T00:00:00Z")
+    for tools in (Kind.TOOL, Kind.MILL_TOOL):
+        production(store, "part.nc", tools, {})
+
+
 def _read(data: bytes) -> Iterator[str]:
     """Opened as the desk opens it, and everything read that a page shows; each may refuse in a sentence."""
     home = _spoilt(data)
@@ -99,7 +113,7 @@ def _read(data: bytes) -> Iterator[str]:
             store.programs, lambda: store.versions("part.nc"), lambda: store.load_program("part.nc"),
             store.events, store.runs, store.jobs, lambda: store.parts("part.nc"),
             lambda: store.setting("target:part.nc"), lambda: store.setting("under_way"),
-            lambda: store.stock_of("part.nc"), lambda: parts_data(store, "part.nc"),
+            lambda: store.stock_of("part.nc"), lambda: _measured(store),
             lambda: export(store, home / "out"), lambda: store.set_tool(5, "x", x=1.0).result(),
             lambda: store.count_part("part.nc").result(), lambda: store.undo_last().result(),
             lambda: store.rename_program("part.nc", "other.nc").result(),

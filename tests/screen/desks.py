@@ -6,11 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from app.compose.desk_functions import furnish
-from app.compose.desk_quality import give_quality
 from app.compose.extra import drawing_endings, extras
 from app.compose.journal import Journal
 from app.compose.machine_files import load_machine
 from app.compose.machine_setup import setup_for
+from app.compose.production_desk import give_production
 from app.compose.scope_desk import give_scope
 from app.compose.workshop import drawer, proof_of
 from app.desk.desk import Desk
@@ -86,9 +86,9 @@ def desk_on(
     desk.attach(hand)
     desk.own_starts.append(hand)
     give_scope(desk, live)
-    give_quality(desk, lathe, keep if isinstance(keep, Journal) else None)
+    give_production(desk, lathe, keep if isinstance(keep, Journal) else None)
     for extra in extras().values():
-        extra.attach(desk, lathe, keep if isinstance(keep, Journal) else None)
+        extra.attach(desk, lathe, keep if isinstance(keep, Journal) else None, work)
     built.append(desk)
     machine.hear = desk.hear
     return desk

@@ -322,7 +322,7 @@ _OWN_SCENES = (
     Scene("charts", "F1 W 3"),
     Scene("life", "F1 W 4"),
     Scene("trends", "F1 W 5 Enter Down Down"),
-    Scene("jobs", "Jobs Down"),
+    Scene("jobs", "Shift+F6 Down"),
     Scene("speed", 'F10 1 Enter "1500'),
     Scene("parts", "F10 2 Enter"),
     Scene("outputs", "F10 3 Enter Down"),

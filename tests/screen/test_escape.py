@@ -49,8 +49,6 @@ KEYS = {
     Key.Key_G: page_table.ZERO,
     Key.Key_B: page_table.PART,
     Key.Key_Q: page_table.SCOPE,
-    Key.Key_W: page_table.MEASURED,
-    Key.Key_J: page_table.JOBS,
     **{
         getattr(Key, f"Key_{page.key}"): page.name
         for extra in extras().values()

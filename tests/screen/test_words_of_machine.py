@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from app.compose.machine_files import shipped_machine
-from app.compose.screen_desk import desk_and_executor
-from app.compose.stored_offsets import read_offsets
-from app.compose.workshop import samples
 from app.desk.readouts import spindle_figures
-from app.quality.features_section import FeaturesSection
-from app.quality.quality_functions import QualityFunctions
-from app.quality.trends_section import TrendsSection
 from app.screen.page_table import menu_keys
 from app.special.inputs_outputs import InputsOutputs
 from core.executor.snapshot import Snapshot
-from drivers.waiting import StepClock
-from tests.attached import attached
 from tests.screen.hands import Hands
 
 
@@ -79,34 +70,3 @@ def test_the_guard_is_asked_for_where_it_stops_the_cycle(hands: Hands, stops: bo
     section.keys()["F4"].action()
     inputs = {row.cells[0]: row.cells[3] for row in section.sheet(Snapshot()).rows}
     assert inputs["guard"] == asked
-
-
-def test_a_feature_is_corrected_by_what_this_machine_has(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """D offsets are OmniTurn's, wear a lathe's; a mill's tool life is in its tool table."""
-    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    found = {}
-    for name in ("gt75", "sinumerik-live", "ac-table-mill"):
-        desk, _executor = desk_and_executor(
-            name, lambda: read_offsets(samples() / "offsets.toml"), StepClock()
-        )
-        pages = attached(desk, QualityFunctions)
-        features, readings, *_, trends = pages.functions
-        assert isinstance(features, FeaturesSection)
-        assert isinstance(trends, TrendsSection)
-        names = [each.name for each in pages.functions]
-        found[name] = (
-            "CORRECTED BY" in features.fields,
-            "TOOL OR OFFSET NUMBER" in features.fields,
-            "F8" in dict(readings.keys()),
-            "TOOL LIFE" in names,
-            "WEAR" in trends.kinds,
-        )
-        desk.close()
-    assert found == {
-        "gt75": (True, True, True, True, True),
-        "sinumerik-live": (False, True, True, True, True),
-        "ac-table-mill": (False, False, False, False, False),
-    }
-    assert "W" in menu_keys("klartext")

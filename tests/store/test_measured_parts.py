@@ -11,7 +11,6 @@ from pathlib import Path
 
 import pytest
 
-from app.quality.parts_book import parts_data
 from core.store import backup, database, store_connection
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
@@ -151,8 +150,10 @@ def test_the_cycles_of_a_day_are_those_of_all_programs(store: Store) -> None:
     for hours, program in ((1, "other.nc"), (2, "pin.nc"), (47, "other.nc"), (49, "pin.nc")):
         started = at[hours]
         cycle(store, f"{hours}", 1, program=program, started=started, ended=started, seconds=8.0)
-    assert {row.started for row in parts_data(store, "pin.nc").day} == {at[1], at[2], at[47]}
-    assert {row.key for row in parts_data(store, "pin.nc").cycles} == {"2", "49"}
+    with store.read() as connection:
+        day = part_cycles.times_since(connection, utc(now - timedelta(hours=48)))
+        assert {row.started for row in day} == {at[1], at[2], at[47]}
+        assert {row.key for row in part_cycles.cycles(connection, "pin.nc", 10)} == {"2", "49"}
 
 
 def test_an_insert_is_changed_and_what_it_made_is_remembered(store: Store) -> None:

@@ -15,8 +15,6 @@ from app.editor.document import Document
 from app.editor.drafts import Drafts
 from app.editor.versions import NoArchive
 from app.programs.whole_file import FileError, write_new, write_out, write_whole
-from app.quality.parts_book import PartsData
-from app.quality.readings_file import write_readings
 from app.shopfloor.status_file import StatusFile
 from core.file_placing import write_in_place
 from core.records.record import Channel, Record
@@ -120,18 +118,6 @@ def test_a_new_program_is_there_whole_or_not(tmp_path: Path) -> None:
     told = cut_everywhere(again, lambda: path.read_bytes() if path.exists() else None)
     assert set(told) == {None, NEW}
     assert told[-1] == NEW
-
-
-def test_readings_for_a_spreadsheet_stay_whole(tmp_path: Path) -> None:
-    path = tmp_path / "pin-readings.csv"
-
-    def again() -> None:
-        path.write_bytes(OLD)
-        write_readings(PartsData("pin.nc"), tmp_path)
-
-    told = cut_everywhere(again, path.read_bytes)
-    assert len(set(told)) == 2
-    assert told[0] == OLD
 
 
 def test_a_record_of_the_scope_stays_whole(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from app.compose.extra import extras
 from core.alarms import CATALOGUE, Code
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator, Told
@@ -21,9 +22,7 @@ PAGES = (
     (("F1", "F10"), "SPECIAL FUNCTIONS"),
     (("F1", "b"), "PART"),
     (("F1", "q"), "SCOPE"),
-    (("F1", "w"), "MEASURED PARTS"),
-    (("F1", "j"), "JOBS"),
-    (("F1", "x"), "SHARED PROGRAMS"),
+    *((("F1", page.key.lower()), page.name) for extra in extras().values() for page in extra.pages),
     (("F1",), "MAIN MENU"),
 )
 OURS = ("setpoint", "too early", "splice", "Error", "queue")  # words of whoever wrote the control

@@ -11,6 +11,7 @@ from app.desk.page_description import PageEntry
 if TYPE_CHECKING:
     from app.compose.journal import Journal
     from app.desk.desk import Desk
+    from app.desk.program_loading import LoadingSteps
     from app.extras.analyses.analyses import Analyses
     from app.extras.analyses.drive_test_model import DriveTests
     from app.scope.scope_model import Scope
@@ -38,7 +39,7 @@ class ScopeAnalyses(Extra):
 
     pages = (ANALYSES, DRIVE_TEST)
 
-    def attach(self, desk: Desk, machine: Machine, journal: Journal | None) -> None:
+    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
         desk.attach_later(ANALYSES.model, partial(_analyses, desk, machine))
         desk.attach_later(DRIVE_TEST.model, partial(_drive_tests, desk, machine))
 

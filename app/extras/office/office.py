@@ -17,7 +17,7 @@ from app.desk.kept_part import kept_part
 from app.desk.prompt_line import UNDER_WAY
 from app.extras.office.office_status import OfficeLook
 from app.extras.office.page_server import PageServer, listening_at
-from app.quality.parts_watch import PartsWatch
+from app.production.parts_watch import PartsWatch
 from app.shopfloor.floor_reading import FloorReader
 from core.extras.office.shop_network_tables import AnnounceTable, StatusPageTable
 from core.ports import DriverError

@@ -11,6 +11,7 @@ from app.compose.extra import Extra
 if TYPE_CHECKING:
     from app.compose.journal import Journal
     from app.desk.desk import Desk
+    from app.desk.program_loading import LoadingSteps
     from app.extras.shapes.shapes_model import Shapes
     from core.json_key import Output
     from core.machine.machine_model import Machine
@@ -22,7 +23,7 @@ class ShapesAndCalculators(Extra):
     commands = {"shapes": "setup"}
     editor_panel = "app.extras.shapes.shapes_view.ShapesView"
 
-    def attach(self, desk: Desk, machine: Machine, journal: Journal | None) -> None:
+    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
         desk.attach_later("app.extras.shapes.shapes_model.Shapes", partial(_shapes, desk, machine))
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:

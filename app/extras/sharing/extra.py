@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from app.compose.check_rows import Answers
     from app.compose.journal import Journal
     from app.desk.desk import Desk
+    from app.desk.program_loading import LoadingSteps
     from core.json_key import Output
     from core.machine.machine_model import Machine
     from core.table_schema import Driver
@@ -39,7 +40,7 @@ class Sharing(Extra):
 
         return (DRIVER,)
 
-    def attach(self, desk: Desk, machine: Machine, journal: Journal | None) -> None:
+    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
         from app.extras.sharing.sharing_desk import attach_sharing
 
         attach_sharing(desk, machine, journal)

@@ -15,3 +15,4 @@ COVERED = {
         for action in ("begin", "publish", "take", "keep")
     },
 }
+REST: dict[str, list[str]] = {}

@@ -9,7 +9,7 @@ from app.extras.sharing.sharing import Sharing
 from app.extras.sharing.sharing_model import SharingModel
 from core.extras.sharing.shared_folder import SharedFolder
 from core.store.store import Store
-from tests.desk.test_access import LIMIT, Room, room
+from tests.desk.levels_room import LIMIT, Room, room
 from tests.texts import shows
 from tests.texts import text as wording
 

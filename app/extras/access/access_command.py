@@ -1,0 +1,168 @@
+"""``turndesk access``: people, their levels and PINs, and the service reset at the machine's own keyboard."""
+
+from __future__ import annotations
+
+import argparse
+import getpass
+import json
+import sys
+from typing import TYPE_CHECKING
+
+from app.cli.store_command import opened_store
+from app.cli.who_changes import RESET, add_as_option, demand_own_keyboard, who_changes
+from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
+from app.extras.access.pin_question import asked_pin
+from core.access.access_table import RULES, Act, Level
+from core.message import Message
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from core.store.people import PersonRow
+    from core.store.store import Store
+
+_DAMAGED = (
+    "levels are on, but an entry of the people is damaged and lets nobody in; enter it again, "
+    "or reset the levels: turndesk access reset\n"
+)
+_LEVELS = {level.name.lower(): level for level in Level}
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """The subcommand with its actions."""
+    parser = subparsers.add_parser("access", help="manage users, access levels and PINs")
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    for name, text in (
+        ("list", "list the users and their access levels"),
+        ("table", "show the access level that each type of change requires"),
+    ):
+        actions.add_parser(name, help=text).add_argument(
+            "--json", action="store_true", help="print only JSON on stdout"
+        )
+    add = actions.add_parser("add", help="add a user; adding the first user turns access levels on")
+    add.add_argument("name", metavar="NAME")
+    add.add_argument(
+        "--level",
+        choices=list(_LEVELS),
+        default="service",
+        help="access level (default: service); the first user must have the service level",
+    )
+    pin = actions.add_parser("pin", help="change the PIN of a user")
+    pin.add_argument("name", metavar="NAME")
+    gone = actions.add_parser("remove", help="remove a user; removing the last user turns access levels off")
+    gone.add_argument("name", metavar="NAME")
+    for each in (add, pin, gone):
+        add_as_option(each)
+    actions.add_parser(
+        "reset",
+        help="delete all users and PINs, which turns access levels off; works without a PIN, only "
+        "at the machine's own keyboard, and is logged",
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Does what ``args`` asks; raises CommandError with one sentence."""
+    if args.action == "table":
+        sys.stdout.write(_table(json_wanted=args.json))
+        return EXIT_OK
+    if args.action == "reset":
+        demand_own_keyboard(
+            Message(
+                "All users and their PINs will be deleted, and this will be logged. Type {reset} to "
+                "continue: ",
+                reset=RESET,
+            )
+        )
+    with opened_store(read_only=args.action == "list") as store:
+        sys.stdout.write(_ACTIONS[args.action](store, args))
+    return EXIT_OK
+
+
+def _table(*, json_wanted: bool) -> str:
+    if json_wanted:
+        rules = {act.value: {"level": rule.level.name, "what": rule.what} for act, rule in RULES.items()}
+        return json.dumps(rules) + "\n"
+    return "".join(f"{rule.level.name:<9} {rule.what}\n" for rule in RULES.values())
+
+
+def _list(store: Store, args: argparse.Namespace) -> str:
+    people = store.people()
+    if args.json:
+        rows = [{"name": row.name, "level": Level(row.level).name} for row in people.rows]
+        return json.dumps({"on": people.on, "damaged": people.damaged, "people": rows}) + "\n"
+    if not people.on:
+        return "levels are off: everybody may change everything\n"
+    lines = "".join(f"{Level(row.level).name:<9} {row.name}\n" for row in people.rows)
+    return lines + (_DAMAGED if people.damaged else "")
+
+
+def _add(store: Store, args: argparse.Namespace) -> str:
+    from core.store.people import check_person
+
+    level, name = _LEVELS[args.level], check_person(args.name)
+    if store.people().named(name) is not None:
+        raise CommandError(
+            Message("user {name} already exists; to change the PIN, use 'turndesk access pin'", name=name),
+            "name-in-use",
+        )
+    return _kept(store, args, name, level, "entered")
+
+
+def _person(store: Store, name: str) -> PersonRow:
+    row = store.people().named(name)
+    if row is None:
+        raise CommandError(
+            Message("user {name} does not exist; 'turndesk access list' shows all users", name=name),
+            "unknown-person",
+        )
+    return row
+
+
+def _pin(store: Store, args: argparse.Namespace) -> str:
+    row = _person(store, args.name)
+    return _kept(store, args, row.name, Level(row.level), "has a new PIN")
+
+
+def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done: str) -> str:
+    """Ask for the PIN twice and keep it."""
+    from core.extras.access.pins import PinError, check_pin, hashed
+    from core.store import people
+
+    who = who_changes(store, args, Act.PEOPLE)
+    pin = asked_pin(Message("new PIN for {name}: ", name=name))
+    with as_command_error(PinError):
+        check_pin(pin)
+    if asked_pin("repeat the new PIN: ") != pin:
+        raise CommandError("the two PINs do not match; nothing was saved", "pins-differ")
+    row = people.PersonRow(name, level, *hashed(pin))
+    store.write(lambda c: people.keep_person(c, row)).result()
+    store.log_event("access", f"{name} {done}: {level.name}", who=who).result()
+    return f"{name} {done}: {level.name}\n"
+
+
+def _remove(store: Store, args: argparse.Namespace) -> str:
+    from core.store import people
+
+    row = _person(store, args.name)
+    who = who_changes(store, args, Act.PEOPLE)
+    store.write(lambda c: people.remove_person(c, row.name)).result()
+    store.log_event("access", Message("{row} removed", row=row.name), who=who).result()
+    return f"{row.name} is taken away\n"
+
+
+# --- service reset ---------------------------------------------------------------------------------------
+
+
+def _reset(store: Store, _args: argparse.Namespace) -> str:
+    from core.store import people
+
+    count = store.write(people.remove_all).result()
+    store.set_setting("wrong PINs", None)
+    told = Message(
+        "service reset at the keyboard: {count} users and their PINs were deleted, and access levels are off",
+        count=count,
+    )
+    store.log_event("access", told, who=getpass.getuser()).result()
+    return f"{told}\n"
+
+
+_ACTIONS = {"list": _list, "add": _add, "pin": _pin, "remove": _remove, "reset": _reset}

@@ -1,0 +1,57 @@
+"""Registers the job queue."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from app.compose.extra import Extra
+from app.desk.page_description import PageEntry
+
+if TYPE_CHECKING:
+    from app.compose.journal import Journal
+    from app.desk.desk import Desk
+    from app.desk.latest import Latest
+    from app.desk.persistence import Persistence
+    from app.desk.program_loading import LoadingSteps
+    from app.special.special_functions import SpecialFunction
+    from core.json_key import Output
+    from core.machine.machine_model import Machine
+
+
+class Jobs(Extra):
+    """The page JOBS with its special function and its key in the program list, and ``turndesk jobs``."""
+
+    commands = {"jobs": "parts"}
+    pages = (
+        PageEntry(
+            "JOBS",
+            "app.extras.jobs.jobs_view.JobsPage",
+            "app.extras.jobs.jobs_model.JobsModel",
+            "J",
+            "JOBS",
+            "next job, number of parts, setup requirements",
+            after="MEASURED PARTS",
+            shortcut="Shift+F6",
+        ),
+    )
+
+    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
+        from app.extras.jobs.jobs_desk import attach_jobs
+
+        attach_jobs(desk, machine, journal, work)
+
+    def special_functions(
+        self, desk: Desk, machine: Machine, persistence: Persistence, worker: Latest
+    ) -> Sequence[tuple[SpecialFunction, str]]:
+        from app.extras.jobs.jobs_function import JobsFunction
+
+        return ((JobsFunction(desk), "MEASURED PARTS"),)
+
+    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+        from app.extras.jobs.jobs_json_keys import OUTPUTS
+
+        return OUTPUTS
+
+
+EXTRA = Jobs()

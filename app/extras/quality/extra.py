@@ -1,0 +1,69 @@
+"""Registers measured parts and the shift report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from app.compose.extra import Extra
+from app.desk.page_description import PageEntry
+
+if TYPE_CHECKING:
+    from app.compose.journal import Journal
+    from app.desk.desk import Desk
+    from app.desk.latest import Latest
+    from app.desk.persistence import Persistence
+    from app.desk.program_loading import LoadingSteps
+    from app.special.special_functions import SpecialFunction
+    from core.json_key import Output
+    from core.machine.machine_model import Machine
+    from core.table_schema import Driver
+
+
+class Quality(Extra):
+    """The page MEASURED PARTS, the shift report, their commands, and [gauge] of the machine file."""
+
+    commands = {"parts": "alarms", "shift": "parts"}
+    pages = (
+        PageEntry(
+            "MEASURED PARTS",
+            "app.extras.quality.quality_view.MeasuredPartsPage",
+            "app.extras.quality.quality_functions.QualityFunctions",
+            "W",
+            "MEASURED",
+            "features, readings, charts, trends",
+            later=("app.extras.quality.plots_view.PlotsPane", "app.extras.quality.sections_desk.sections"),
+            after="SCOPE",
+        ),
+    )
+    own_functions = ("TOOL LIFE",)
+    tables_follow = "dnc"
+
+    def machine_tables(self) -> Sequence[Driver]:
+        from app.extras.quality.gauge_table import DRIVER
+
+        return (DRIVER,)
+
+    def attach(self, desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
+        from app.extras.quality.quality_desk import attach_quality
+
+        attach_quality(desk, machine)
+
+    def special_functions(
+        self, desk: Desk, machine: Machine, persistence: Persistence, worker: Latest
+    ) -> Sequence[tuple[SpecialFunction, str]]:
+        from app.desk.data_folder import data_folder
+        from app.extras.quality.parts_function import MeasuredPartsFunction
+        from app.extras.quality.shift_function import ShiftReport
+
+        report = ShiftReport(desk, machine.name, worker, data_folder() / "sheets")
+        parts = MeasuredPartsFunction(desk)
+        return ((parts, "SCOPE"), (report, parts.name))
+
+    def json_outputs(self) -> Mapping[str, Sequence[Output]]:
+        from app.extras.quality.quality_json_keys import OUTPUTS
+
+        return OUTPUTS
+
+
+EXTRA = Quality()

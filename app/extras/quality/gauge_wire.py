@@ -1,0 +1,116 @@
+"""The gauge of a machine file: a thread listens to its serial line, the screen takes up what has come."""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from collections.abc import Callable, Sequence
+
+from app.compose.serial_ports import open_wire
+from app.desk.translation import tr
+from app.extras.quality.gauge_line import LineReader, Reading, reading_of
+from app.extras.quality.gauge_table import GaugeModel
+from core.message import Message
+from core.ports import DriverError
+from drivers.serial_line import LineSettings, Wire
+
+LISTEN = 0.1  # s that one look at the line lasts
+SILENT = 300.0  # s without a line after which the note says so
+Open = Callable[[LineSettings], Wire]
+
+
+class GaugeWire:
+    """``app.extras.quality.gauge_line.Gauge``. The line is opened and closed on its own thread."""
+
+    def __init__(
+        self, model: GaugeModel, wire: Open = open_wire, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._model, self._open_wire, self._clock = model, wire, clock
+        self._heard: queue.SimpleQueue[Reading | str] = queue.SimpleQueue()
+        self._ending = threading.Event()
+        self._thread: threading.Thread | None = None
+        self._last = 0.0  # when a line came, or listening began
+        self._count = 0
+
+    @property
+    def open(self) -> bool:
+        """Whether its line is listened to."""
+        return self._thread is not None and self._thread.is_alive() and not self._ending.is_set()
+
+    @property
+    def name(self) -> str:
+        """As the machine file calls it."""
+        return self._model.name
+
+    @property
+    def unit(self) -> str:
+        """Of lines that do not say theirs."""
+        return self._model.unit
+
+    @property
+    def words(self) -> str:
+        """Whether it is listened to, and whether it speaks."""
+        if not self.open:
+            return tr("Not listening to the gauge. Press F5 to start.")
+        silent = self._clock() - self._last
+        if silent > SILENT:
+            return tr(
+                Message(
+                    "No reading from the gauge for {minutes} min. Check its switch and cable.",
+                    minutes=int(silent / 60.0),
+                )
+            )
+        return tr(Message("Listening to the gauge: {count} readings.", count=self._count))
+
+    def turn(self) -> str:
+        """Listen, or no more."""
+        if self.open:
+            self.close()
+            return ""
+        self._ending = threading.Event()
+        self._last, self._count = self._clock(), 0
+        self._thread = threading.Thread(target=self._listen, args=(self._ending,), name="gauge", daemon=True)
+        self._thread.start()
+        return ""
+
+    def received(self) -> Sequence[Reading | str]:
+        """What has come since the last look."""
+        found = []
+        while not self._heard.empty():
+            found.append(self._heard.get())
+        return found
+
+    def close(self) -> None:
+        """Listen no more; the thread closes the line."""
+        self._ending.set()
+
+    def _listen(self, ending: threading.Event) -> None:
+        model = self._model
+        settings = LineSettings(model.port, model.baud, model.bits, model.parity, model.stop)
+        try:
+            wire = self._open_wire(settings)
+        except DriverError as error:
+            self._tell(error)
+            return
+        try:
+            reader = LineReader()
+            wire.discard()
+            while not ending.is_set():
+                for line in reader.lines(wire.receive(LISTEN)):
+                    self._take(line)
+        except DriverError as error:
+            self._tell(error)
+        finally:
+            wire.close()
+
+    def _tell(self, error: DriverError) -> None:
+        self._heard.put(tr(Message("GAUGE: {why}. F5: LISTEN AGAIN", why=error)))
+
+    def _take(self, line: str) -> None:
+        self._last = self._clock()
+        try:
+            self._heard.put(reading_of(line))
+            self._count += 1
+        except ValueError as error:
+            self._heard.put(tr(Message("GAUGE: {why}. MEASURE AGAIN", why=error)))

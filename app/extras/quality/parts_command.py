@@ -1,0 +1,175 @@
+"""``turndesk parts``: counts, times, readings and corrections of the parts that the store knows."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import sys
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from app.desk.command_errors import EXIT_OK, CommandError
+from core.message import Message
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from app.extras.quality.parts_data import PartsData
+    from core.store.store import Store
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser(
+        "parts", help="show the stored part counts, cycle times, readings and offset changes"
+    )
+    parser.add_argument("name", nargs="?", metavar="PROGRAM", help="program to show (default: all)")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument(
+        "--csv", action="store_true", help="print one line per reading on stdout, as CSV for a spreadsheet"
+    )
+    form.add_argument("--json", action="store_true", help="print only JSON on stdout")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Writes what is kept; raises CommandError for a program of which nothing is."""
+    from app.cli.store_command import opened_store
+
+    with opened_store(read_only=True) as store:
+        names = _names(store, args.name)
+        if args.json:
+            sys.stdout.write(json.dumps(_told(store, names), indent=1) + "\n")
+        elif args.csv:
+            _write_csv(store, names)
+        else:
+            sys.stdout.writelines(_lines(store, names))
+    return EXIT_OK
+
+
+def _names(store: Store, wanted: str | None) -> list[str]:
+    """The programs of which anything is kept, or the one that is asked for."""
+    from core.store.production import measured_parts, part_cycles
+
+    known = {row.program for row in store.runs()}
+    with store.read() as connection:
+        known |= {row.program for row in measured_parts.features(connection)}
+        known |= part_cycles.programs(connection)
+    if wanted is None:
+        return sorted(known)
+    if wanted not in known:
+        raise CommandError(
+            Message(
+                "no data is stored for {expected}; 'turndesk parts' lists the programs that have data",
+                expected=wanted,
+            ),
+            "unknown-program",
+        )
+    return [wanted]
+
+
+def _data(store: Store, name: str) -> PartsData:
+    from app.extras.quality.parts_data import parts_data
+
+    return parts_data(store, name, limit=-1)
+
+
+# --- JSON ------------------------------------------------------------------------------------------------
+
+
+def _told(store: Store, names: Sequence[str]) -> dict[str, object]:
+    """Lengths mm, times s and UTC; X of corrections a radius, as the tables of offsets have it."""
+    from core.store.production import part_cycles, tool_lives
+
+    with store.read() as connection:
+        lives = [row._asdict() for row in tool_lives.lives(connection).values()]
+        changes = [row._asdict() for row in tool_lives.insert_changes(connection, -1)]
+        stops = part_cycles.stops(connection, None, -1)
+    return {
+        "programs": [_program(store, name) for name in names],
+        "stops": [row._asdict() for row in stops if row.program in names],
+        "tool_lives": lives,
+        "insert_changes": changes,
+    }
+
+
+def _program(store: Store, name: str) -> dict[str, object]:
+    data = _data(store, name)
+    return {
+        "program": name,
+        "parts": store.parts(name),
+        "cycles": [row._asdict() for row in data.cycles],
+        "features": [
+            {
+                **row._asdict(),
+                "readings": [each._asdict() for each in data.readings_of(row.id)],
+                "capability": _capability(data, row.id),
+            }
+            for row in data.features
+        ],
+        "corrections": [row._asdict() for row in data.corrections],
+    }
+
+
+def _capability(data: PartsData, number: int) -> dict[str, object] | None:
+    """Cp, Cpk, Pp, Ppk of all readings; None while there are too few."""
+    from dataclasses import asdict
+
+    from app.extras.quality.parts_data import feature_of
+    from core.extras.quality.capability import capability
+    from core.extras.quality.quality_errors import QualityError
+
+    row = next(each for each in data.features if each.id == number)
+    values = [each.value for each in data.readings_of(number)]
+    try:
+        return asdict(capability(values, *feature_of(row).limits, row.sample))
+    except QualityError:
+        return None
+
+
+# --- for people and spreadsheets -------------------------------------------------------------------------
+
+
+def _write_csv(store: Store, names: Sequence[str]) -> None:
+    from app.extras.quality.readings_file import HEAD, reading_lines
+
+    table = csv.writer(sys.stdout, lineterminator="\n")
+    table.writerow(("program", *HEAD))
+    for name in names:
+        table.writerows((name, *line) for line in reading_lines(_data(store, name)))
+
+
+def _lines(store: Store, names: Sequence[str]) -> Iterator[str]:
+    """A line a program, a line a feature."""
+    if not names:
+        yield "no parts are known yet\n"
+    for name in names:
+        data = _data(store, name)
+        times = [row.seconds for row in data.whole_cycles]
+        mean = (
+            Message(
+                ", mean cycle time {times} s (cycles: {times_count})",
+                times=f"{sum(times) / len(times):.1f}",
+                times_count=len(times),
+            )
+            if times
+            else ""
+        )
+        yield f"{name}: parts {store.parts(name)}{mean}\n"
+        for row in data.features:
+            taken = data.readings_of(row.id)
+            found = _capability(data, row.id)
+            cpk = (
+                Message(", Cpk {value}", value=f"{found['cpk']:.2f}")
+                if found is not None and found["cpk"] is not None
+                else ""
+            )
+            last = (
+                Message(
+                    ", last reading {taken} mm (part {part})",
+                    taken=f"{taken[-1].value:.4f}",
+                    part=taken[-1].part,
+                )
+                if taken
+                else ""
+            )
+            yield f"  {row.name} {row.nominal:.4f} mm: readings {len(taken)}{last}{cpk}\n"

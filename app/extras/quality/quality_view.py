@@ -1,0 +1,88 @@
+"""W, measured parts: the list of sections at the left, the chosen one at the right, its chart below."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtWidgets import QWidget
+
+from app.desk.machine_status import MachineStatus
+from app.desk.program_loading import Loaded
+from app.extras.quality.quality_functions import QualityFunctions
+from app.extras.quality.section import QualitySection
+from app.screen.page_base import Host
+from app.special.special_view import LETTERS, LIST, PAD, SpecialPage
+from core.executor.snapshot import Snapshot
+
+if TYPE_CHECKING:
+    from app.extras.quality.plots_view import PlotsPane
+
+
+def _pane_class() -> type[PlotsPane]:
+    """On a worker: pyqtgraph takes a third of a second."""
+    from app.extras.quality.plots_view import PlotsPane
+
+    return PlotsPane
+
+
+class MeasuredPartsPage(SpecialPage):
+    """As the special functions, and a chart where a section draws one: loaded when the first is drawn."""
+
+    NAME = "MEASURED PARTS"
+    model: QualityFunctions
+
+    def __init__(self, host: Host, model: QualityFunctions, parent: QWidget) -> None:
+        super().__init__(host, model, parent)
+        self.items.title = self.NAME
+        self.chart: PlotsPane | None = None
+        self._share = 0.0
+        self._asked = False  # for the chart
+
+    def refresh(self, snapshot: Snapshot, view: MachineStatus, loaded: Loaded) -> None:
+        """Table and chart of this snapshot."""
+        super().refresh(snapshot, view, loaded)
+        shown = self.model.current
+        share = shown.chart_share if isinstance(shown, QualitySection) else 0.0
+        if share != self._share:
+            self._share = share
+            self._lay_out()
+        if share:
+            self._ask_pane()
+        if self.chart is not None and isinstance(shown, QualitySection) and share:
+            self.chart.show_drawing(shown.drawing())
+
+    def ahead(self) -> bool:
+        """The sections, then the chart and its plots."""
+        self._ask_pane()
+        self.model.worker.poll()
+        return not self.model.functions or self.chart is None or not self.chart.ahead()
+
+    def _ask_pane(self) -> None:
+        if not self._asked:
+            self._asked = True
+            self.model.worker.queue(_pane_class, self._pane_there, self.desk.say)
+
+    def _pane_there(self, pane: type[PlotsPane]) -> None:
+        self.chart = pane(self.look, self)
+        self.chart.show()
+        self._lay_out()
+
+    def dress(self) -> None:
+        """The chart keeps its own colours."""
+        if self.chart is not None:
+            self.chart.dress()
+
+    def _lay_out(self) -> None:
+        u = self.look.u
+        gap, left = max(4, round(0.7 * u)), round(LIST * u)
+        pad = 0 if self.pad.isHidden() else round(PAD * u) + gap
+        low = 0 if self.letters.isHidden() else round(LETTERS * u) + gap
+        right, room = self.width() - left - gap, self.height() - low
+        drawn = round(self._share * room)
+        self.items.setGeometry(0, 0, left, self.height())
+        self.table.setGeometry(left + gap, 0, right - pad, room - drawn)
+        self.letters.setGeometry(left + gap, room + gap, right, max(0, low - gap))
+        self.pad.setGeometry(self.width() - pad + gap, 0, max(0, pad - gap), self.height())
+        if self.chart is not None:
+            self.chart.setVisible(drawn > 0)
+            self.chart.setGeometry(left + gap, room - drawn + gap, right - pad, max(0, drawn - gap))

@@ -1,0 +1,104 @@
+"""The sample plan: which features of the part just made are to be measured, and whether parts wait for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from app.desk.desk import Desk
+from app.desk.translation import tr
+from app.extras.quality.parts_data import PartsData, parts_of
+from app.production.parts_watch import PartsWatch
+from core.executor.snapshot import Snapshot
+from core.message import Message
+from core.store.store_errors import StoreError
+
+
+def due(data: PartsData, made: int) -> dict[str, int]:
+    """By feature the part that is to be measured: the last of its plan that was made and not read yet."""
+    found = {}
+    for row in data.features:
+        planned = made // row.every * row.every if row.every else 0
+        if planned and not any(each.part >= planned for each in data.readings_of(row.id)):
+            found[row.name] = planned
+    return found
+
+
+def notice(found: dict[str, int]) -> str:
+    """What to measure, for the prompt line; empty where nothing is due."""
+    part, names = _newest(found)
+    return tr(Message("MEASURE PART {part}: {names}", part=part, names=names)) if found else ""
+
+
+def bar(found: dict[str, int]) -> str:
+    """Why no other part begins where parts wait for the plan; empty where nothing is due."""
+    part, names = _newest(found)
+    return (
+        Message("part {part} must be measured before the next part starts: {names}", part=part, names=names)
+        if found
+        else ""
+    )
+
+
+def _newest(found: dict[str, int]) -> tuple[int, str]:
+    """The newest of the parts, and the names of what is due of it."""
+    part = max(found.values(), default=0)
+    return part, ", ".join(name for name, planned in found.items() if planned == part)
+
+
+@dataclass(slots=True)
+class SamplePlan:
+    """What the plan asks for of the program on the desk, and whether its parts wait for it."""
+
+    desk: Desk
+    watch: PartsWatch
+    _plans: dict[int, dict[str, int]] = field(default_factory=dict)  # by parts made, of ``_planned_of``
+    _planned_of: object = None
+    _waits: tuple[str, bool] = ("", False)  # whether parts of a program wait for their measuring
+
+    def bar(self, snapshot: Snapshot) -> str:
+        """Why no other part begins; the part under way counts already."""
+        if not self.waits:
+            return ""
+        made = self.desk.counter.count + (1 if snapshot.counts else 0)
+        return bar(self._planned(made))
+
+    def due(self) -> str:
+        """What to measure; empty: nothing."""
+        return notice(self._planned(self.desk.counter.count))
+
+    def _planned(self, made: int) -> dict[str, int]:
+        """What the plan asks for behind so many parts; worked out when something has changed."""
+        data = parts_of(self.watch.book)
+        if made not in self._plans or self._planned_of is not data:
+            kept = self._plans if self._planned_of is data else {}
+            self._plans, self._planned_of = {**kept, made: due(data, made)}, data
+        return self._plans[made]
+
+    @property
+    def waits(self) -> bool:
+        """Whether parts of this program wait until the sample plan is done."""
+        program = self.watch.program
+        if self._waits[0] != program:
+            try:
+                kept = self.desk.counter.persistence.setting(_key(program)) is True
+            except StoreError:
+                kept = False
+            self._waits = program, kept
+        return self._waits[1]
+
+    def turn_waits(self) -> None:
+        """Parts wait for the plan, or go on. Raises StoreError when it is not kept."""
+        on, program = not self.waits, self.watch.program
+        self._waits = program, on
+        persistence = self.desk.counter.persistence
+        persistence.save_setting(_key(program), on or None)
+        template = (
+            "program {program}: the next part cannot start before the required parts are measured"
+            if on
+            else "program {program}: the next part can start before the required parts are measured"
+        )
+        persistence.note_change(Message(template, program=program))
+
+
+def _key(program: str) -> str:
+    return f"measuring:{program}"

@@ -1,0 +1,33 @@
+"""The sections of the page of measured parts, put together; loaded once the desk has started."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from app.desk.data_folder import data_folder
+from app.desk.desk import Desk
+from app.extras.quality.charts_section import ChartsSection
+from app.extras.quality.features_section import FeaturesSection
+from app.extras.quality.gauge_table import GaugeModel
+from app.extras.quality.gauge_wire import GaugeWire
+from app.extras.quality.readings_section import ReadingsSection
+from app.extras.quality.sample_plan import SamplePlan
+from app.extras.quality.trends_section import TrendsSection
+from app.production.parts_watch import PartsWatch
+from app.special.special_functions import SpecialFunction
+from app.special.tool_life_function import ToolLifeFunction
+from core.machine.machine_model import Machine
+
+
+def sections(desk: Desk, machine: Machine, watch: PartsWatch, plan: SamplePlan) -> Sequence[SpecialFunction]:
+    """Features, readings, charts, tool life (of a lathe) and trends, in the order of the page."""
+    model = machine.hardware.table(GaugeModel)
+    gauge = GaugeWire(model) if model is not None else None
+    lives = () if machine.kind == "mill" else (ToolLifeFunction(desk, watch),)  # columns of its tool table
+    return (
+        FeaturesSection(desk, watch, plan),
+        ReadingsSection(desk, watch, data_folder() / "parts", gauge),
+        ChartsSection(desk, watch),
+        *lives,
+        TrendsSection(desk, watch),
+    )

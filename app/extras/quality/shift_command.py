@@ -1,0 +1,154 @@
+"""``turndesk shift``: what was made in a shift, how long it stood and why; as text, JSON or HTML."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.cli.store_command import opened_store
+from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
+from core.message import Message
+
+if TYPE_CHECKING:
+    from app.cli.program_options import SubParsers
+    from app.extras.quality.shift_figures import ShiftFigures
+    from app.extras.quality.shift_times import Shift
+    from core.store.store import Store
+
+
+def add_parser(subparsers: SubParsers) -> None:
+    """Declare the command."""
+    parser = subparsers.add_parser(
+        "shift", help="print a shift report: parts, times, stops, alarms, offsets, readings"
+    )
+    parser.add_argument(
+        "--back",
+        type=int,
+        default=0,
+        metavar="N",
+        help="number of shifts to go back (default: the current shift or, between shifts, the "
+        "last shift that ended)",
+    )
+    parser.add_argument(
+        "--from", dest="since", metavar="TIME", help='start time in local time, such as "2026-11-23 06:00"'
+    )
+    parser.add_argument("--to", dest="until", metavar="TIME")
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--report", metavar="FILE", help="write the report as one HTML page")
+    form.add_argument("--json", action="store_true", help="print only JSON on stdout")
+    parser.add_argument(
+        "--metric", action="store_true", help="show lengths on the HTML page in mm (default: inches)"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Writes the report; raises CommandError with one sentence."""
+    from app.extras.quality.shift_figures import shift_figures
+
+    if args.metric and not args.report:
+        raise CommandError("--metric is only for the HTML page; add --report FILE", "metric-needs-report")
+    with opened_store(read_only=True) as store:
+        found = shift_figures(store, _shift(store, args), datetime.now().timestamp())
+    if args.report:
+        _write(found, Path(args.report), metric=args.metric)
+    elif args.json:
+        sys.stdout.write(json.dumps(_told(found), indent=1) + "\n")
+    else:
+        sys.stdout.write(_text(found))
+    return EXIT_OK
+
+
+def _shift(store: Store, args: argparse.Namespace) -> Shift:
+    from app.extras.quality.shift_times import SETTING, between, hours_of, shift_of
+
+    if (args.since is None) != (args.until is None):
+        raise CommandError("--from and --to must be used together; specify both", "from-and-to")
+    if args.since is not None:
+        if args.back:
+            raise CommandError(
+                "--back counts shifts, but --from and --to specify times; use one or the other",
+                "back-and-times",
+            )
+        with as_command_error(ValueError):
+            return between(args.since, args.until)
+    if not 0 <= args.back <= 10_000:
+        raise CommandError(
+            Message("--back {back} is out of range; use 0 to 10000 shifts", back=args.back), "back"
+        )
+    return shift_of(hours_of(store.setting(SETTING)), datetime.now().astimezone(), args.back)
+
+
+def _write(found: ShiftFigures, path: Path, *, metric: bool) -> None:
+    from app.extras.quality.shift_page import shift_html
+    from app.programs.whole_file import FileError, write_out
+
+    made = datetime.now().strftime("%Y-%m-%d %H:%M")
+    with as_command_error(FileError, OSError):
+        write_out(path, shift_html(found, "", made, metric=metric).encode("utf-8", "backslashreplace"))
+    sys.stdout.write(f"report saved to {path}: {found.parts} parts\n")
+
+
+def _text(found: ShiftFigures) -> str:
+    from app.desk.formats import duration
+    from app.extras.quality.shift_page import facts, title_of
+
+    lines = [title_of(found, ""), *found.notes, *(f"{name}: {words}" for name, words in facts(found))]
+    for each in found.programs:
+        mean = (
+            Message(", mean cycle time {times} s", times=f"{sum(each.times) / len(each.times):.1f}")
+            if each.times
+            else ""
+        )
+        lines.append(
+            Message("{program}: {parts} parts{mean}", program=each.program, parts=each.parts, mean=mean)
+        )
+    lines += [
+        Message(
+            "{reason}: stopped {times} times, {seconds} in total",
+            reason=each.reason,
+            times=each.times,
+            seconds=duration(each.seconds),
+        )
+        for each in found.stood
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _told(found: ShiftFigures) -> dict[str, object]:
+    """Lengths mm, times s and UTC, X of offsets a radius."""
+    first, last = found.shift.utc
+    share = found.availability
+    return {
+        "from": first,
+        "to": last,
+        "notes": list(found.notes),
+        "parts": found.parts,
+        "programs": [
+            {"program": p.program, "parts": p.parts, "no_part": dict(p.others), "cycle_times": list(p.times)}
+            for p in found.programs
+        ],
+        "planned": share.planned if share is not None else 0.0,
+        "producing": share.producing if share is not None else 0.0,
+        "stopped": found.stopped,
+        "not_recorded": found.untold,
+        "stops": [row._asdict() for row in found.stops],
+        "reasons": [row._asdict() for row in found.stood],
+        "alarms": [row._asdict() for row in found.alarms],
+        "tool_lives": [row._asdict() for row in found.lives],
+        "insert_changes": [row._asdict() for row in found.inserts],
+        "offset_changes": [
+            {"at": c.at, "kind": c.kind.value, "number": c.number, "why": c.why, "who": c.who,
+             "old": c.old._asdict() if c.old is not None else None,
+             "new": c.new._asdict() if c.new is not None else None}
+            for c in found.offsets
+        ],
+        "readings": found.measured,
+        "out_of_tolerance": [
+            {"program": f.program, "feature": f.name, "part": r.part, "value": r.value, "at": r.at}
+            for f, r in found.bad
+        ],
+    }  # fmt: skip

@@ -1,0 +1,1 @@
+"""What is counted and kept while parts are made: tool lives, cycles and stops."""

@@ -1,0 +1,218 @@
+"""Tool life while parts run: what each tool has cut is counted, told, and stops the next part when asked."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from app.desk.translation import tr
+from app.production.parts_book import PartsBook
+from core.access.access_table import Act
+from core.executor.snapshot import CYCLE, Snapshot
+from core.message import Message
+from core.production.tool_life import LifeState, ToolLife
+from core.store.production import tool_lives
+from core.store.production.tool_lives import LifeRow
+from core.store.store_rows import Kind
+
+KEEP = 10.0  # s at feed after which the count is kept, so that a power cut loses no more
+
+
+def life_of(row: LifeRow) -> ToolLife:
+    """A kept life as it is reckoned with."""
+    return ToolLife(
+        row.number, row.limit_parts, row.limit_seconds, row.parts, row.seconds, row.warn, row.stops
+    )
+
+
+@dataclass(slots=True)
+class ToolLifeWatch:
+    """Looks at every snapshot. Counts are its own once the store has been read; limits are the store's.
+
+    What is said of an insert holds for a whole tool of a mill.
+    """
+
+    book: PartsBook
+    counted: dict[int, tuple[int, float]] = field(default_factory=dict)  # parts and seconds since the insert
+    _kept: dict[int, float] = field(default_factory=dict)  # seconds that are kept
+    _cut: Mapping[int, float] = field(default_factory=dict)  # of the last snapshot
+    _in_part: set[int] = field(default_factory=set)  # tools that have cut since the last end
+    _ends: int = -1
+    _told: dict[int, LifeState] = field(default_factory=dict)
+    _changes: int = 0  # of ``counted``
+    _lives: tuple[object, dict[int, ToolLife]] = field(default=(None, {}))
+    _due: tuple[object, str] = (None, "")
+    _seen: object = None
+
+    def lives(self) -> dict[int, ToolLife]:
+        """Of every tool that has a limit or has cut, as of now; the same object while nothing changes."""
+        of = (self.book.loads, self._changes)
+        if self._lives[0] != of:
+            self._lives = of, self._found()
+        return self._lives[1]
+
+    def _found(self) -> dict[int, ToolLife]:
+        rows = self.book.now.lives
+        found = {}
+        for number in sorted({*rows, *self.counted}):
+            row = rows.get(number, LifeRow(number))
+            parts, seconds = self.counted.get(number, (row.parts, row.seconds))
+            found[number] = replace(life_of(row), parts=parts, seconds=seconds)
+        return found
+
+    def see(self, snapshot: Snapshot, say: Callable[[str], None]) -> None:
+        """One frame: seconds at feed, ends of parts, and what is to be told."""
+        if self._ends < 0:
+            self._ends, self._cut = snapshot.ends, snapshot.cutting
+        if not self.book.loads and self.book.store is not None:
+            return  # nothing is known of the days before yet; the snapshot's sums wait
+        for number, seconds in snapshot.cutting.items():
+            more = seconds - self._cut.get(number, 0.0)
+            if number and more > 0.0:
+                self._in_part.add(number)
+                self._add(number, 0, more)
+        self._cut = snapshot.cutting
+        if snapshot.ends > self._ends:
+            for number in self._in_part:
+                self._add(number, 1, 0.0)
+            self._keep(self._in_part)
+            self._in_part = set()
+        elif snapshot.state not in CYCLE:
+            self._keep({number for number in self._in_part if self._unkept(number)})
+        self._ends = snapshot.ends
+        self._tell(say)
+
+    def _add(self, number: int, parts: int, seconds: float) -> None:
+        row = self.book.now.lives.get(number, LifeRow(number))
+        before = self.counted.get(number, (row.parts, row.seconds))
+        self.counted[number] = before[0] + parts, before[1] + seconds
+        self._changes += 1
+        if self._unkept(number) > KEEP:
+            self._keep({number})
+
+    def _unkept(self, number: int) -> float:
+        return self.counted[number][1] - self._kept.get(number, 0.0)
+
+    def _keep(self, numbers: set[int]) -> None:
+        for number in numbers:
+            parts, seconds = self.counted[number]
+            self._kept[number] = seconds
+            self.book.keep_use(LifeRow(number, parts=parts, seconds=seconds))
+
+    def keep_all(self) -> None:
+        """The desk shuts."""
+        self._keep({number for number in self.counted if self._unkept(number)})
+
+    def _tell(self, say: Callable[[str], None]) -> None:
+        """Once when it is time to think of the next insert, once when it is spent."""
+        if self._seen is self.lives():
+            return
+        self._seen = self.lives()
+        for number, life in self.lives().items():
+            before = self._told.get(number)
+            self._told[number] = life.state
+            if before is not None and life.state is not before and life.state in _WORTH_TELLING:
+                say(notice(life))
+
+    # --- inserts -------------------------------------------------------------------------------------
+
+    def change_insert(self, number: int, why: str, said: Callable[[str], None]) -> None:
+        """A fresh insert is in the holder: counting begins at nought. ``said`` is told what became of it."""
+        parts, seconds = self.counted.get(number, (0, 0.0))
+        known, who = number in self.counted, self.book.access.persistence.who()
+
+        def operation(connection: sqlite3.Connection) -> None:
+            if known:
+                tool_lives.set_use(connection, number, parts, seconds, self.book.tools)
+            tool_lives.change_insert(connection, number, why, self.book.tools, who)
+
+        def done() -> None:
+            more_parts, more_seconds = self.counted.get(number, (parts, seconds))
+            self.counted[number] = max(0, more_parts - parts), max(0.0, more_seconds - seconds)
+            self._kept[number] = 0.0
+            self._changes += 1
+            words = tr("T{number}: NEW INSERT, TOOL LIFE STARTS AT ZERO")
+            if self.book.tools is Kind.MILL_TOOL:
+                words = tr("T{number}: NEW TOOL, TOOL LIFE STARTS AT ZERO")
+            said(tr(Message(words, number=number)))
+
+        self.book.write(Act.INSERTS, operation, done, said)
+
+    def set_used(self, number: int, seconds: float, said: Callable[[str], None]) -> None:
+        """A tool that has cut so long already is in the spindle; 0: a fresh one."""
+        life = self.lives().get(number)
+        if seconds <= 0.0:
+            self.change_insert(number, life.words if life is not None else "", said)
+            return
+        parts = life.parts if life is not None else 0
+
+        def done() -> None:
+            self.counted[number], self._kept[number] = (parts, seconds), seconds
+            self._changes += 1
+            said(tr(Message("T{number} SAVED", number=number)))
+
+        self.book.write(
+            Act.INSERTS,
+            lambda connection: tool_lives.set_use(connection, number, parts, seconds, self.book.tools),
+            done,
+            said,
+            Message(
+                "cutting time of T{number} set to {seconds} min",
+                number=number,
+                seconds=f"{seconds / 60.0:.1f}",
+            ),
+        )
+
+    def forget(self) -> None:
+        """Another store is in place: its counts are those that count."""
+        self.counted, self._kept = {}, {}
+        self._changes += 1
+
+    # --- what is told and what it stops ------------------------------------------------------------------
+
+    def due(self) -> str:
+        """The tool whose life is nearest its end, where one is to be told of; empty while none is."""
+        lives = self.lives()
+        if self._due[0] is not lives:
+            told = [life for life in lives.values() if life.state in _WORTH_TELLING]
+            self._due = lives, notice(max(told, key=lambda life: life.share)) if told else ""
+        return self._due[1]
+
+    def bar(self, snapshot: Snapshot, tools: Collection[int]) -> str:
+        """Why no other part that uses these tools may begin; the part under way counts already."""
+        for life in self._stopping(tools):
+            after = replace(life, parts=life.parts + 1) if snapshot.counts else life
+            if after.state is LifeState.SPENT:
+                return spent(after, self.book.tools)
+        return ""
+
+    def _stopping(self, used: Collection[int]) -> Iterator[ToolLife]:
+        yield from (life for life in self.lives().values() if life.stops and life.number in used)
+
+
+_WORTH_TELLING = frozenset({LifeState.WARNED, LifeState.SPENT})
+
+
+def notice(life: ToolLife) -> str:
+    """What the operator reads of a life that ends."""
+    if life.state is LifeState.SPENT:
+        return tr(Message("TOOL {number} LIFE USED UP: {words}", number=life.number, words=tr(life.words)))
+    return tr(Message("TOOL {number} LIFE: {words} USED", number=life.number, words=tr(life.words)))
+
+
+def spent(life: ToolLife, tools: Kind) -> str:
+    """Why no part begins with it."""
+    if tools is Kind.MILL_TOOL:
+        how = "fit a new tool and set its CUR.TIME to 0 in the tool table (F8)"
+        return Message(
+            "T{number} tool life is used up ({life}): {method}",
+            number=life.number,
+            life=life.words,
+            method=how,
+        )
+    return Message(
+        "T{number} tool life is used up ({life}): change the insert and confirm the change in TOOL LIFE",
+        number=life.number,
+        life=life.words,
+    )

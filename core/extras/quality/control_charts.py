@@ -1,0 +1,227 @@
+"""Control charts of Shewhart: average and range (X-bar/R), individuals and moving range (I-MR).
+
+Limits are three standard deviations of the process within its samples, by the constants of ISO 7870-2 and
+ASTM E2587 for normally distributed values. Lengths are whatever unit the values have. The rules that tell
+drift on a chart are those of Western Electric (1956) and Nelson (1984), in Nelson's numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from core.extras.quality.quality_errors import QualityError
+from core.message import Message
+
+FloatArray = npt.NDArray[np.float64]
+SETTLED = 20  # samples from which on limits are called settled; below it they still move with every sample
+
+
+class Constants(NamedTuple):
+    """Factors of a sample of n values: limits of averages, of ranges, and range in standard deviations."""
+
+    a2: float
+    d3: float
+    d4: float
+    d2: float
+
+
+# ISO 7870-2, table of factors for X-bar and R; n from 2 to 10.
+CONSTANTS: dict[int, Constants] = {
+    2: Constants(1.880, 0.0, 3.267, 1.128),
+    3: Constants(1.023, 0.0, 2.575, 1.693),
+    4: Constants(0.729, 0.0, 2.282, 2.059),
+    5: Constants(0.577, 0.0, 2.114, 2.326),
+    6: Constants(0.483, 0.0, 2.004, 2.534),
+    7: Constants(0.419, 0.076, 1.924, 2.704),
+    8: Constants(0.373, 0.136, 1.864, 2.847),
+    9: Constants(0.337, 0.184, 1.816, 2.970),
+    10: Constants(0.308, 0.223, 1.777, 3.078),
+}
+SAMPLE_SIZES = range(2, 11)
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """One chart: its points in order, the centre line and the two limits."""
+
+    points: FloatArray
+    centre: float
+    lower: float
+    upper: float
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of its points that the limits stand for; 0: they do not scatter."""
+        return (self.upper - self.centre) / 3.0
+
+    @property
+    def settled(self) -> bool:
+        """Whether there are enough points for the limits to stay where they are."""
+        return len(self.points) >= SETTLED
+
+
+@dataclass(frozen=True, slots=True)
+class ChartPair:
+    """Where the process lies and how far it scatters; ``within`` is its standard deviation within samples."""
+
+    location: Chart
+    spread: Chart
+    within: float
+    size: int  # values in a sample, 1: individuals
+
+
+def charts_of(values: Sequence[float], size: int) -> ChartPair:
+    """Charts of values in the order of the parts: individuals where ``size`` is 1, else X-bar/R.
+
+    An incomplete last sample is left out. Raises QualityError.
+    """
+    if size == 1:
+        return individuals(values)
+    if size not in SAMPLE_SIZES:
+        raise QualityError(
+            Message(
+                "a control chart is not possible for samples of {size}; use samples of 1 to "
+                "{sample_sizes} parts",
+                size=size,
+                sample_sizes=SAMPLE_SIZES[-1],
+            ),
+            "sample-size",
+        )
+    whole = len(values) // size * size
+    return average_and_range(np.asarray(values[:whole], dtype=np.float64).reshape(-1, size))
+
+
+def average_and_range(samples: npt.ArrayLike) -> ChartPair:
+    """X-bar/R of samples, one a row. Raises QualityError."""
+    table = np.asarray(samples, dtype=np.float64)
+    if table.ndim != 2 or table.shape[1] not in SAMPLE_SIZES:
+        raise QualityError(
+            "the samples of an X-bar chart must all have the same size, 2 to 10 values", "sample-size"
+        )
+    _demand_finite(table)
+    if len(table) < 2:
+        raise QualityError(
+            Message(
+                "an X-bar chart needs at least 2 complete samples of {shape} parts; measure more parts",
+                shape=table.shape[1],
+            ),
+            "too-few-readings",
+        )
+    factors = CONSTANTS[table.shape[1]]
+    means, ranges = table.mean(axis=1), np.ptp(table, axis=1)
+    mean, spread = float(means.mean()), float(ranges.mean())
+    return ChartPair(
+        Chart(means, mean, mean - factors.a2 * spread, mean + factors.a2 * spread),
+        Chart(ranges, spread, factors.d3 * spread, factors.d4 * spread),
+        spread / factors.d2,
+        table.shape[1],
+    )
+
+
+def individuals(values: Sequence[float]) -> ChartPair:
+    """Individuals and moving ranges of two; limits at 3/d2 = 2.660 mean ranges. Raises QualityError."""
+    points = np.asarray(values, dtype=np.float64)
+    _demand_finite(points)
+    if len(points) < 2:
+        raise QualityError(
+            "an individuals chart needs at least 2 values; measure more parts", "too-few-readings"
+        )
+    factors = CONSTANTS[2]
+    moving = np.abs(np.diff(points))
+    mean, spread = float(points.mean()), float(moving.mean())
+    reach = 3.0 / factors.d2 * spread
+    return ChartPair(
+        Chart(points, mean, mean - reach, mean + reach),
+        Chart(moving, spread, factors.d3 * spread, factors.d4 * spread),
+        spread / factors.d2,
+        1,
+    )
+
+
+def _demand_finite(values: FloatArray) -> None:
+    if not np.isfinite(values).all():
+        raise QualityError("a value is not a number; delete that reading", "not-a-number")
+
+
+Zones = npt.NDArray[np.float64]
+
+
+class Finding(NamedTuple):
+    """A rule that is broken: at which point (from 0, the last of its run), which rule, and in words."""
+
+    point: int
+    rule: int
+    words: str
+
+
+def findings(chart: Chart) -> tuple[Finding, ...]:
+    """What the rules find, point by point; nothing where the points do not scatter."""
+    if chart.sigma <= 0.0 or not len(chart.points):
+        return ()
+    zones = (chart.points - chart.centre) / chart.sigma
+    found = [
+        Finding(point, number, words) for number, (words, rule) in RULES.items() for point in rule(zones)
+    ]
+    return tuple(sorted(found))
+
+
+def _beyond(zones: Zones) -> Iterator[int]:
+    yield from (int(at) for at in np.nonzero(np.abs(zones) > 3.0)[0])
+
+
+def _runs(zones: Zones, length: int, whole: Callable[[Zones], bool]) -> Iterator[int]:
+    """The last point of each stretch of ``length`` points of which ``whole`` is true."""
+    for end in range(length, len(zones) + 1):
+        if whole(zones[end - length : end]):
+            yield end - 1
+
+
+def _one_side(zones: Zones) -> bool:
+    return bool((zones > 0.0).all() or (zones < 0.0).all())
+
+
+def _steady(zones: Zones) -> bool:
+    steps = np.diff(zones)
+    return bool((steps > 0.0).all() or (steps < 0.0).all())
+
+
+def _alternating(zones: Zones) -> bool:
+    steps = np.diff(zones)
+    return bool((steps[1:] * steps[:-1] < 0.0).all())
+
+
+def _so_many(zones: Zones, count: int, beyond: float) -> bool:
+    """The last point and others, ``count`` together, lie beyond so many sigmas on its side."""
+    side = 1.0 if zones[-1] > 0.0 else -1.0
+    far = zones * side > beyond
+    return bool(far[-1] and far.sum() >= count)
+
+
+RULES: dict[int, tuple[str, Callable[[Zones], Iterator[int]]]] = {
+    1: ("one point beyond a control limit", _beyond),
+    2: ("nine points in a row on one side of the center line", lambda z: _runs(z, 9, _one_side)),
+    3: ("six points in a row rising or falling", lambda z: _runs(z, 6, _steady)),
+    4: ("fourteen points in a row alternating up and down", lambda z: _runs(z, 14, _alternating)),
+    5: (
+        "two of three points beyond two sigma on one side",
+        lambda z: _runs(z, 3, lambda s: _so_many(s, 2, 2.0)),
+    ),
+    6: (
+        "four of five points beyond one sigma on one side",
+        lambda z: _runs(z, 5, lambda s: _so_many(s, 4, 1.0)),
+    ),
+    7: (
+        "fifteen points in a row within one sigma",
+        lambda z: _runs(z, 15, lambda s: bool((np.abs(s) < 1.0).all())),
+    ),
+    8: (
+        "eight points in a row beyond one sigma",
+        lambda z: _runs(z, 8, lambda s: bool((np.abs(s) > 1.0).all())),
+    ),
+}
+"""By Nelson's number: in words, and the points at which it is broken. 1, 5, 6 are Western Electric's too."""

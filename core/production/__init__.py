@@ -1,0 +1,1 @@
+"""What tools have cut: their lives by parts and by minutes."""

@@ -1,0 +1,114 @@
+"""Tool life by parts and by cutting minutes: what is counted, when to warn, when the insert is spent."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from core.message import CodedError, Message
+
+PARTS_MOST = 1_000_000
+SECONDS_MOST = 60.0 * 100_000
+WARN = 0.9  # share of the life at which it is told
+
+
+class ToolLifeError(CodedError, ValueError):
+    """Limits of a tool life that nobody can mean; the text says which and what to do."""
+
+
+class LifeState(Enum):
+    """How far a tool's life is gone."""
+
+    NO_LIMIT = "no limit"
+    GOOD = "good"
+    WARNED = "warned"
+    SPENT = "spent"
+
+
+@dataclass(frozen=True, slots=True)
+class ToolLife:
+    """Of one tool since its insert was changed; a limit of 0 is none. ``stops``: no other part when spent."""
+
+    number: int
+    limit_parts: int = 0
+    limit_seconds: float = 0.0
+    parts: int = 0
+    seconds: float = 0.0
+    warn: float = WARN
+    stops: bool = False
+
+    @property
+    def share(self) -> float:
+        """How much of the life is gone, by the limit that is nearer; 0 without one."""
+        by_parts = self.parts / self.limit_parts if self.limit_parts else 0.0
+        by_time = self.seconds / self.limit_seconds if self.limit_seconds else 0.0
+        return max(by_parts, by_time)
+
+    @property
+    def state(self) -> LifeState:
+        """Spent at the limit, warned from its share on."""
+        if not (self.limit_parts or self.limit_seconds):
+            return LifeState.NO_LIMIT
+        if self.share >= 1.0 - 1e-9:
+            return LifeState.SPENT
+        return LifeState.WARNED if self.share >= self.warn - 1e-9 else LifeState.GOOD
+
+    @property
+    def parts_left(self) -> int | None:
+        """Whole parts that the insert still makes, by what a part has taken of it; None: nobody knows."""
+        left = []
+        if self.limit_parts:
+            left.append(max(0, self.limit_parts - self.parts))
+        if self.limit_seconds and self.parts and self.seconds > 0.0:
+            left.append(
+                math.ceil(max(0.0, self.limit_seconds - self.seconds) / (self.seconds / self.parts) - 1e-9)
+            )
+        return min(left) if left else None
+
+    @property
+    def words(self) -> str:
+        """What is used of it: ``50 of 50 parts``, ``31 of 30 min``; the limit that is nearer."""
+        by_parts = self.parts / self.limit_parts if self.limit_parts else -1.0
+        by_time = self.seconds / self.limit_seconds if self.limit_seconds else -1.0
+        if by_parts < 0.0 and by_time < 0.0:
+            return Message(
+                "{parts} parts, {seconds} min", parts=self.parts, seconds=f"{self.seconds / 60.0:.1f}"
+            )
+        if by_parts >= by_time:
+            return Message("{parts} of {limit_parts} parts", parts=self.parts, limit_parts=self.limit_parts)
+        return Message(
+            "{seconds} of {limit_seconds} min",
+            seconds=f"{self.seconds / 60.0:.1f}",
+            limit_seconds=f"{self.limit_seconds / 60.0:g}",
+        )
+
+
+def check_life(life: ToolLife) -> None:
+    """Raises ToolLifeError for limits that nobody can mean."""
+    if not 0 <= life.limit_parts <= PARTS_MOST:
+        raise ToolLifeError(
+            Message(
+                "T{number}: tool life must be 0 to {parts_most} parts; 0 means no limit",
+                number=life.number,
+                parts_most=PARTS_MOST,
+            ),
+            "limit-in-parts",
+        )
+    if not (math.isfinite(life.limit_seconds) and 0.0 <= life.limit_seconds <= SECONDS_MOST):
+        raise ToolLifeError(
+            Message(
+                "T{number}: tool life must be 0 to {seconds_most} cutting minutes; 0 means no limit",
+                number=life.number,
+                seconds_most=f"{SECONDS_MOST / 60.0:g}",
+            ),
+            "limit-in-minutes",
+        )
+    if not 0.0 < life.warn <= 1.0:
+        raise ToolLifeError(
+            Message(
+                "T{number}: the tool-life warning must be set between 1 and 100 % of the tool life",
+                number=life.number,
+            ),
+            "warning-share",
+        )

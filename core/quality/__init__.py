@@ -1,1 +1,0 @@
-"""Measured parts: control charts, capability, drift, proposed wear; tool life, stops, availability."""

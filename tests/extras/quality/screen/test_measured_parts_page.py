@@ -1,0 +1,547 @@
+"""Measured parts, tool life and trends at the lathe: keys alone, the product's desk, machine and store."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from threading import Event
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.desk.sheet import Sheet
+from app.extras.quality.gauge_line import NoGauge, Reading
+from app.extras.quality.quality_functions import QualityFunctions
+from app.extras.quality.quality_view import MeasuredPartsPage
+from app.extras.quality.readings_section import ReadingsSection
+from app.production.parts_watch import PartsWatch
+from core.executor.snapshot import State
+from tests.screen.day import Day, Key, begun
+from tests.screen.yes import yes
+from tests.texts import Pattern, begins, fragment, pattern, shows
+from tests.texts import text as wording
+
+PEG = "(PEG)\nG90G94F300G72\nT1\nM03S2000\nG00X.7Z.1\nX.5\nG01G94F60Z-.3\nX.7\nG00Z1\nM05\nM30\n"
+NUMBER = Pattern(r"\d+")
+FEATURES, READINGS, CHARTS, LIFE, TRENDS = "12345"
+
+
+@pytest.fixture
+def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Day]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
+    (tmp_path / "peg.nc").write_text(PEG)
+    with begun(qtbot) as day:
+        day.store.set_tool(1, "test", x=-12.7, z=-50.8).result(60)
+        day.desk.book.read()
+        day.run(0.02)
+        day.key(Key.Key_D)
+        day.desk.put_on_desk(tmp_path / "peg.nc")
+        day.sees(lambda: day.prompt.startswith(wording("screen.to-start")))
+        yield day
+
+
+def model(day: Day) -> QualityFunctions:
+    found = day.desk.attached(QualityFunctions)
+    assert found is not None
+    return found
+
+
+def section(day: Day, number: str) -> None:
+    """The section of this number, from wherever the operator is."""
+    day.key(Key.Key_F1)
+    day.run(0.05)
+    day.type("w")
+    day.sees(lambda: day.page == "MEASURED PARTS")
+    day.type(number)
+    day.key(Key.Key_Return)
+    day.run(0.05)
+
+
+def settled(day: Day) -> bool:
+    """What is known is what is kept."""
+    watch = day.desk.attached(PartsWatch)
+    assert watch is not None
+    return watch.book.settled
+
+
+def sheet(day: Day) -> Sheet:
+    day.window.refresh()
+    return model(day).current.sheet(day.shot)
+
+
+def cells(day: Day) -> list[tuple[str, ...]]:
+    return [row.cells for row in sheet(day).rows]
+
+
+def texts(day: Day) -> dict[str, str]:
+    """What stands beside each name, on a sheet of two columns."""
+    return {name: text for name, text, *_ in cells(day)}
+
+
+def feature(day: Day, *fields: str, name: str = "spigot") -> None:
+    """Nominal, upper, lower, number, every, sample of a diameter that wear of a tool corrects."""
+    nominal, upper, lower, number, every, sample = fields
+    section(day, FEATURES)
+    day.key(Key.Key_F2)
+    day.enter(name)
+    day.key(Key.Key_Down)
+    day.enter(nominal, upper, lower)
+    day.key(Key.Key_Down)
+    day.enter(number)
+    day.key(Key.Key_Down)
+    day.enter(every, sample)
+    day.key(Key.Key_F6)
+    day.sees(lambda: bool(re.search(r"SAVED|REJECTED", day.prompt)))
+
+
+def spigot(day: Day, every: str = "0", sample: str = "1") -> None:
+    feature(day, ".5", ".001", "-.001", "1", every, sample)
+    day.sees(lambda: len(cells(day)) == 1)
+
+
+def has_made_more(day: Day, before: int) -> bool:
+    return day.shot.parts > before
+
+
+def parts(day: Day, count: int) -> None:
+    """So many parts, one Cycle Start each."""
+    day.key(Key.Key_F1)
+    day.key(Key.Key_F2)
+    day.run(0.1)
+    day.key(Key.Key_Escape)
+    for _ in range(count):
+        before = day.shot.parts
+        day.palms()
+        day.until(partial(has_made_more, day, before))
+        day.reaches(State.IDLE)
+    day.run(0.1)
+
+
+def measured(day: Day, *sizes: str) -> None:
+    """A part after the other, the last one the last that was made."""
+    section(day, READINGS)
+    for _ in range(len(sizes) - 1):
+        day.key(Key.Key_F2)
+    for number, size in enumerate(sizes):
+        if number:
+            day.key(Key.Key_F3)
+        day.enter(size)
+        day.sees(lambda: shows(day.prompt, "measure.reading-kept") and settled(day))
+
+
+# --- features ---------------------------------------------------------------------------------------------
+
+
+def test_a_feature_is_entered_once(day: Day) -> None:
+    spigot(day, every="10")
+    assert cells(day) == [("SPIGOT", "Ø 0.50000", "+0.00100  −0.00100", "T1 X", "every 10 parts", "1")]
+
+
+@pytest.mark.parametrize(
+    ("fields", "why"),
+    [
+        ((".5", ".001", ".001", "1", "0", "1"), fragment("measure.limits-crossed")),
+        (("0", ".001", "-.001", "1", "0", "1"), fragment("measure.nominal-range")),
+        ((".5", ".001", "-.001", "33", "0", "1"), fragment("measure.offsets-to", last=32, number=33)),
+        ((".5", ".001", "-.001", "1", "0", "11"), "1 to 10 parts"),
+    ],
+)
+def test_a_feature_that_cannot_be_is_refused_and_stays_to_be_mended(
+    day: Day, fields: tuple[str, ...], why: str
+) -> None:
+    feature(day, *fields)
+    assert shows(day.prompt, "screen.refused")
+    assert why in day.prompt
+    assert sheet(day).title == "FEATURE"
+
+
+def test_half_a_number_is_refused(day: Day) -> None:
+    section(day, FEATURES)
+    day.key(Key.Key_F2)
+    day.enter("spigot")
+    for _ in range(5):
+        day.key(Key.Key_Down)
+    day.enter("1.5")
+    assert shows(day.prompt, "measure.no-whole-number")
+
+
+def test_the_same_name_twice_is_refused(day: Day) -> None:
+    spigot(day)
+    feature(day, ".3", ".001", "-.001", "1", "0", "1")
+    day.sees(lambda: shows(day.prompt, "measure.feature-exists"))
+
+
+def test_a_feature_is_removed_after_asking(day: Day) -> None:
+    spigot(day)
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F4)
+    assert shows(day.prompt, "measure.measure-no-more", name="SPIGOT")
+    day.key(Key.Key_Escape)
+    assert len(cells(day)) == 1
+    day.key(Key.Key_F4)
+    yes(day.window)
+    day.sees(lambda: cells(day) == [])
+
+
+# --- readings and correction ------------------------------------------------------------------------------
+
+
+def test_readings_are_kept_and_judged(day: Day) -> None:
+    spigot(day)
+    parts(day, 2)
+    measured(day, ".5004", ".5012")
+    day.sees(lambda: cells(day) == [("SPIGOT", "Ø 0.50000", "2", "Ø 0.50120", "+0.00120", "TOO LARGE")])
+
+
+def test_a_size_that_is_far_off_is_asked_about(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    section(day, READINGS)
+    day.enter("5.001")
+    assert shows(day.prompt, "measure.far-off")
+    day.key(Key.Key_Escape)
+    assert cells(day)[0][3] == ""
+    day.enter("-.001")
+    assert shows(day.prompt, "measure.size-not-deviation")
+
+
+def test_a_reading_is_taken_out(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5004")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F9)
+    yes(day.window)
+    day.sees(lambda: cells(day)[0][3] == "")
+
+
+def test_the_correction_goes_the_way_of_a_typed_one_and_back(day: Day) -> None:
+    """Mean Ø .5012: half of .0012 off as a diameter, .0003 at the offset; then undone."""
+    spigot(day)
+    parts(day, 2)
+    measured(day, ".5012", ".5012")
+    day.key(Key.Key_Escape)
+    day.sees(lambda: cells(day)[0][2] == "2")
+    day.key(Key.Key_F8)
+    assert begins(day.prompt, "measure.correct", words="T1 X −0.00060: SPIGOT 0.50120 → 0.50060")
+    assert day.store.tools()[1].wear_x == 0.0, "nothing is changed unasked"
+    yes(day.window)
+    day.sees(lambda: not day.desk.book.busy)
+    assert day.store.tools()[1].wear_x == pytest.approx(-0.0003 * 25.4)
+    assert day.store.history(limit=1)[0].why == wording(
+        "measure.reason-of-correction", name="SPIGOT", mean="0.50120", count=2, change="−0.00060"
+    )
+    day.key(Key.Key_F4)
+    yes(day.window)
+    day.sees(lambda: not day.desk.book.busy)
+    assert day.store.tools()[1].wear_x == 0.0
+
+
+def test_what_a_correction_would_do_is_shown_before_it_is_taken_over(day: Day) -> None:
+    """The peg's diameter is .5 as programmed; .0006 less of wear makes it .4994. Nothing is changed."""
+    spigot(day)
+    parts(day, 2)
+    measured(day, ".5012", ".5012")
+    day.key(Key.Key_Escape)
+    day.sees(lambda: cells(day)[0][2] == "2")
+    shown = model(day).current
+    assert isinstance(shown, ReadingsSection)
+    assert (shown.chart_share, shown.drawing().plots) == (0.0, ())
+    day.key(Key.Key_F8)
+    asked = day.prompt
+    day.sees(lambda: sheet(day).title.startswith(wording("screen.effect-on-part")))
+    (diameter,) = [row.cells for row in sheet(day).rows if row.lit]
+    assert diameter[1:] == ("0.50000", "0.49940", "−0.00060")
+    (plot,) = shown.drawing().plots
+    taken, now, then = plot.curves
+    assert list(taken.y) == pytest.approx([0.5012, 0.5012])
+    assert list(now.y) == pytest.approx([0.5012, 0.5012])
+    assert list(then.y) == pytest.approx([0.5006, 0.5006])
+    assert then.x[0] == taken.x[-1] + 1.0
+    assert [each.value for each in plot.levels] == pytest.approx([0.5, 0.499, 0.501])
+    assert shown.chart_share > 0.0
+    assert (day.prompt, day.store.tools()[1].wear_x) == (asked, 0.0)
+    day.key(Key.Key_Escape)
+    assert cells(day)[0][0].upper() == "SPIGOT", "the readings are back"
+    assert (shown.chart_share, shown.drawing().plots) == (0.0, ())
+
+
+def test_a_refused_proposal_shows_no_effect(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5001")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F8)
+    assert shows(day.prompt, "measure.dead-band")
+    shown = model(day).current
+    assert isinstance(shown, ReadingsSection)
+    assert not shown.effect.stands
+    assert shown.drawing().plots == ()
+
+
+def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5012")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F8)
+    watch, read = day.desk.attached(PartsWatch), Event()
+    assert watch is not None
+    yes(day.window)
+    watch.book.worker.queue(lambda: read.wait(60.0), lambda _read: None, day.desk.say)
+    day.sees(lambda: not day.desk.book.busy)
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F8)
+    assert shows(day.prompt, "measure.still-reading"), "what is on its way would be proposed once more"
+    read.set()
+    day.sees(lambda: settled(day))
+    day.key(Key.Key_F8)
+    assert shows(day.prompt, "measure.none-since-change", what="T1 X")
+    parts(day, 1)
+    measured(day, ".5006")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F8)
+    assert day.prompt.startswith("T1 X −0.00030: SPIGOT 0.50060 → 0.50030")
+
+
+def test_what_another_hand_changed_is_not_taken_back_here(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5012")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F8)
+    yes(day.window)
+    day.sees(lambda: not day.desk.book.busy)
+    day.store.set_tool(1, "by hand", wear_z=0.01).result(60)
+    day.key(Key.Key_F4)
+    assert shows(day.prompt, "measure.another-change-after")
+    assert day.store.tools()[1].wear_z == 0.01
+
+
+def test_without_readings_there_is_no_proposal(day: Day) -> None:
+    spigot(day)
+    section(day, READINGS)
+    day.key(Key.Key_F8)
+    assert shows(day.prompt, "measure.none-since-correction")
+    day.key(Key.Key_F4)
+    assert shows(day.prompt, "measure.no-correction-here")
+    day.key(Key.Key_F5)
+    assert shows(day.prompt, "measure.no-gauge")
+
+
+def test_the_file_for_a_spreadsheet(day: Day, tmp_path: Path) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5004")
+    day.key(Key.Key_F6)
+    day.sees(lambda: begins(day.prompt, "screen.written"))
+    head, line = (tmp_path / "home" / "parts" / "peg-readings.csv").read_text().splitlines()
+    assert head.startswith("feature,part,value,unit,nominal,lower,upper,good")
+    assert line.startswith("SPIGOT,1,0.5004,in,0.5,0.499,0.501,yes,")
+
+
+# --- the sample plan --------------------------------------------------------------------------------------
+
+
+def test_the_plan_asks_at_part_end_and_parts_go_on(day: Day) -> None:
+    spigot(day, every="2")
+    parts(day, 1)
+    assert not shows(day.prompt, "measure.measure-part")
+    parts(day, 2)
+    day.key(Key.Key_Escape)
+    assert day.prompt.startswith(wording("measure.measure-part", part=2, names="SPIGOT · "))
+    measured(day, ".5000")
+    day.key(Key.Key_F1)
+    day.key(Key.Key_F2)
+    day.key(Key.Key_Escape)
+    day.sees(lambda: not shows(day.prompt, "measure.measure-part"))
+
+
+def test_parts_wait_for_the_plan_when_asked(day: Day) -> None:
+    spigot(day, every="2")
+    day.key(Key.Key_F5)
+    day.key(Key.Key_F1)
+    day.key(Key.Key_F2)
+    day.run(0.1)
+    day.key(Key.Key_Escape)
+    day.type("c")
+    day.palms()
+    day.until(lambda: day.shot.parts == 2)
+    day.reaches(State.IDLE)
+    day.run(1.0)
+    assert day.shot.parts == 2
+    day.palms()
+    assert wording("measure.part-first", part=2, names="SPIGOT") in day.prompt
+    assert day.shot.state is State.IDLE
+    measured(day, ".5000")
+    day.sees(lambda: day.shot.next_barred == "")
+
+
+# --- charts -----------------------------------------------------------------------------------------------
+
+
+def test_the_chart_is_loaded_when_it_is_opened(day: Day) -> None:
+    spigot(day)
+    parts(day, 1)
+    measured(day, ".5001")
+    section(day, FEATURES)
+    page = day.frame.page
+    assert isinstance(page, MeasuredPartsPage)
+    assert page.chart is None
+    section(day, CHARTS)
+    day.sees(lambda: page.chart is not None)
+    assert page.chart is not None
+    assert not page.chart.isHidden()
+    assert "9 of 10" not in str(cells(day))
+    assert shows(cells(day)[0][5], "measure.readings-for-cpk", count=1, needed=10)
+    section(day, READINGS)
+    assert page.chart.isHidden()
+
+
+# --- tool life --------------------------------------------------------------------------------------------
+
+
+def life(day: Day, limit: str, *, stops: bool = True) -> None:
+    section(day, LIFE)
+    day.enter(limit)
+    day.sees(lambda: shows(day.prompt, "screen.saved"))
+    if stops:
+        day.sees(lambda: cells(day)[0][1] == limit)
+        day.key(Key.Key_Escape)
+        day.key(Key.Key_F3)
+        day.sees(lambda: cells(day)[0][3] == "STOP")
+
+
+def test_a_spent_tool_stops_the_next_part_and_a_fresh_insert_lets_it_go(day: Day) -> None:
+    life(day, "2")
+    day.key(Key.Key_F1)
+    day.key(Key.Key_F2)
+    day.run(0.1)
+    day.key(Key.Key_Escape)
+    day.type("c")
+    day.palms()
+    day.until(lambda: day.shot.parts == 2)
+    day.reaches(State.IDLE)
+    day.run(2.0)
+    assert day.shot.parts == 2, "no other part begins"
+    day.palms()
+    assert (
+        wording("measure.life-gone", number=1, words="2 of 2 parts", what="change the insert") in day.prompt
+    )
+    section(day, LIFE)
+    assert cells(day)[0][4:] == ("0 parts", "2 of 2 parts")
+    day.key(Key.Key_F4)
+    yes(day.window)
+    day.sees(lambda: cells(day)[0][5] == "0 of 2 parts")
+    day.sees(lambda: day.shot.next_barred == "")
+    with day.store.read() as connection:
+        assert connection.execute("SELECT number, parts FROM insert_changes").fetchall() == [(1, 2)]
+
+
+def test_without_the_stop_it_is_only_told(day: Day) -> None:
+    life(day, "1", stops=False)
+    parts(day, 2)
+    day.key(Key.Key_Escape)
+    assert day.prompt.startswith(wording("measure.life-is-gone", number=1, words="2 of 1 parts · "))
+
+
+def test_minutes_are_those_at_feed(day: Day) -> None:
+    """.4 in of Z and .1 in of radius at 60 in/min are half a second."""
+    parts(day, 2)
+    section(day, LIFE)
+    day.sees(lambda: cells(day)[0][5].startswith("2 parts"))
+    day.saved()
+    with day.store.read() as connection:
+        ((number, made, seconds),) = connection.execute("SELECT number, parts, seconds FROM tool_lives")
+    assert (number, made) == (1, 2)
+    assert seconds == pytest.approx(2 * 0.5, abs=0.15)
+
+
+@pytest.mark.parametrize(("limit", "why"), [("2.5", "whole number"), ("-1", "0 to 1000000 parts")])
+def test_a_limit_that_is_none(day: Day, limit: str, why: str) -> None:
+    section(day, LIFE)
+    day.enter(limit)
+    assert why in day.prompt
+
+
+# --- trends -----------------------------------------------------------------------------------------------
+
+
+def test_trends_of_what_was_made(day: Day, tmp_path: Path) -> None:
+    parts(day, 3)
+    section(day, TRENDS)
+    day.sees(lambda: "3 parts" in cells(day)[0][1])
+    rows = texts(day)
+    last = day.shot.last_cycle
+    assert begins(rows["CYCLE TIME"], "measure.cycle-times", last=f"{last:.1f} s", count=3)
+    assert rows["WEAR"] == wording("measure.no-correction-yet")
+    assert "BETWEEN CYCLES" in rows["STOPS"]
+    assert re.fullmatch(pattern("measure.loads", last=NUMBER, highest=NUMBER), rows["SPINDLE LOAD"])
+    for _ in range(4):
+        day.key(Key.Key_Down)
+        day.run(0.05)
+    day.enter("25-3")
+    assert shows(day.prompt, "measure.shift-hours")
+    day.key(Key.Key_Delete)
+    day.enter("0-24")
+    day.run(0.05)
+    ran = texts(day)["AVAILABILITY"]
+    assert re.fullmatch(r"0–24: \d+ %, in cycle for \d:\d\d of .+", ran)
+    # of the machine, whatever program is on the desk
+    (tmp_path / "other.nc").write_text(PEG)
+    day.desk.put_on_desk(tmp_path / "other.nc")
+    day.sees(lambda: texts(day)["CYCLE TIME"] == wording("measure.no-part-made") and settled(day))
+    assert texts(day)["AVAILABILITY"] >= ran  # the clock on the wall goes on
+
+
+def test_a_reading_that_nobody_sees_is_not_kept(day: Day) -> None:
+    """Of which feature and part it is must be seen when it comes."""
+
+    class Sent(NoGauge):
+        def __init__(self) -> None:
+            self.lines: list[Reading | str] = [Reading(0.5003, "in")]
+
+        def received(self) -> list[Reading | str]:
+            taken, self.lines = self.lines, []
+            return taken
+
+    spigot(day)
+    parts(day, 1)
+    section(day, CHARTS)
+    readings = next(each for each in model(day).functions if isinstance(each, ReadingsSection))
+    readings.gauge = Sent()
+    day.run(0.05)
+    assert shows(day.prompt, "measure.reading-not-shown")
+    section(day, READINGS)
+    assert cells(day)[0][3] == ""
+    readings.gauge = Sent()
+    day.run(0.05)
+    day.sees(lambda: wording("measure.reading-kept", name="SPIGOT", part=1, size="0.50030") in day.prompt)
+
+
+def test_a_secondary_offset_is_corrected_as_a_radius(day: Day) -> None:
+    """Ø .0012 too large: half of it is .0006 of the diameter, .0003 of D4, which was never set."""
+    section(day, FEATURES)
+    day.key(Key.Key_F2)
+    day.enter("groove")
+    day.key(Key.Key_Down)
+    day.enter(".5", ".001", "-.001")
+    day.key(Key.Key_Return, Key.Key_Down)
+    day.enter("4")
+    day.key(Key.Key_F6)
+    day.sees(lambda: shows(day.prompt, "measure.feature-kept"))
+    parts(day, 1)
+    measured(day, ".5012")
+    day.key(Key.Key_Escape)
+    day.key(Key.Key_F8)
+    assert begins(day.prompt, "measure.correct", words="D4 X −0.00060: GROOVE 0.50120 → 0.50060")
+    yes(day.window)
+    day.sees(lambda: not day.desk.book.busy)
+    assert day.store.secondary()[4].x == pytest.approx(-0.0003 * 25.4)
+    day.sees(lambda: settled(day))
+    day.key(Key.Key_F4)
+    yes(day.window)
+    day.sees(lambda: not day.desk.book.busy)
+    assert 4 not in day.store.secondary()

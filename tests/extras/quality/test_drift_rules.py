@@ -1,0 +1,51 @@
+"""Each rule at its point and one point short of it. Sigma is 1 and the centre 0 in all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.extras.quality.control_charts import RULES, Chart, findings
+
+
+def rules(points: list[float]) -> list[tuple[int, int]]:
+    return [(each.point, each.rule) for each in findings(Chart(np.asarray(points), 0.0, -3.0, 3.0))]
+
+
+@pytest.mark.parametrize(
+    ("rule", "points"),
+    [
+        (1, [0.5, -3.1]),
+        (2, [0.2, 0.3, 0.2, 0.3, 0.2, 0.3, 0.2, 0.3, 0.2]),
+        (3, [-0.9, -0.5, -0.1, 0.1, 0.3, 0.6]),
+        (3, [0.9, 0.5, 0.1, -0.1, -0.3, -0.6]),
+        (4, [0.2, -0.2] * 7),
+        (5, [2.1, 0.0, 2.5]),
+        (5, [-2.1, -2.2]),
+        (6, [1.2, 1.3, 0.0, 1.1, 1.4]),
+        (7, [0.1, 0.1, -0.1, -0.1, 0.1] * 3),
+        (8, [1.2, -1.2, -1.2, 1.2, 1.2, -1.2, -1.2, 1.2]),
+    ],
+)
+def test_found_at_its_last_point(rule: int, points: list[float]) -> None:
+    padded = [0.0, *points] if rule == 5 and len(points) == 2 else points
+    assert (len(padded) - 1, rule) in rules(padded)
+    assert rule not in {each for _, each in rules(padded[:-1])}, "one point short of it"
+
+
+def test_what_is_no_drift() -> None:
+    assert rules([0.4, -1.2, 0.9, -0.3, 1.6, -0.7, 0.1, -2.2, 0.8]) == []
+    assert rules([3.0, -3.0]) == [], "on the limit is within it"
+    assert rules([2.1, 0.0, -2.1]) == [], "two of three on different sides"
+    assert rules([1.2, 1.3, 1.1, 1.4, 0.2]) == [], "the point itself has to lie out there"
+    assert 2 not in {rule for _, rule in rules([0.2] * 4 + [0.0] + [0.2] * 4)}, "on the line is on no side"
+
+
+def test_points_that_do_not_scatter_tell_nothing() -> None:
+    assert findings(Chart(np.ones(30), 1.0, 1.0, 1.0)) == ()
+    assert findings(Chart(np.zeros(0), 0.0, -3.0, 3.0)) == ()
+
+
+def test_each_has_words() -> None:
+    assert len({words for words, _ in RULES.values()}) == 8
+    assert findings(Chart(np.asarray([4.0]), 0, -3, 3))[0].words == ("one point beyond a control limit")

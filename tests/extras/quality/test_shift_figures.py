@@ -1,0 +1,246 @@
+"""The figures of a shift, worked out by hand; and nights in which the clock moves."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from app.cli.main import main
+from app.extras.quality.shift_figures import ShiftFigures, shift_figures
+from app.extras.quality.shift_page import shift_html
+from app.extras.quality.shift_times import Shift, ShiftTimesError, between, moment_of, shift_of
+from core.store.event_log import log
+from core.store.production import measured_parts, part_cycles, tool_lives
+from core.store.production.measured_parts import FeatureRow, ReadingRow
+from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.tool_lives import LifeRow
+from core.store.store import Store
+from core.store.store_rows import EventRow
+from tests.coded import raises_code, recorded_refusals
+from tests.texts import text
+
+DAY = "2026-03-02T"
+EIGHT = Shift(
+    datetime(2026, 3, 2, 6, tzinfo=UTC).timestamp(), datetime(2026, 3, 2, 14, tzinfo=UTC).timestamp()
+)
+
+
+@pytest.fixture(autouse=True)
+def zone(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A shop in Berlin, whatever the computer says: +1 h, +2 h from 2026-03-29 to 2026-10-25."""
+    monkeypatch.setenv("TZ", "Europe/Berlin")
+    time.tzset()
+    yield
+    monkeypatch.undo()
+    time.tzset()
+
+
+def cycle(
+    key: str, at: str, end: str | None, seconds: float, part: int = 0, outcome: str = "COMPLETE"
+) -> CycleRow:
+    ended = f"{DAY}{end}.000Z" if end is not None else None
+    return CycleRow(
+        key, "pin.nc" if key[0] == "p" else "cap.nc", part, f"{DAY}{at}.000Z", ended, seconds, outcome
+    )
+
+
+ROWS = (
+    cycle("p0", "05:50:00", "06:10:00", 1200.0, 7),  # over the beginning: 10 min of it are this shift's
+    cycle("p1", "06:10:00", "07:10:00", 3600.0, 8),
+    cycle("p2", "07:20:00", "07:50:00", 1500.0, 9),  # held for 5 min
+    cycle("c1", "08:00:00", "08:15:00", 900.0, 0, "GIVEN UP"),
+    cycle("c2", "09:00:00", None, 0.0, 0, ""),  # the control was killed
+    cycle("c3", "13:40:00", "14:20:00", 2400.0, 1),  # over the end: a part of the next shift, 20 min of this
+)
+STOPS = (
+    StopRow("s0", "", "pin.nc", f"{DAY}07:10:00.000Z", 600.0, "BETWEEN CYCLES"),
+    StopRow("s1", "p2", "pin.nc", f"{DAY}07:30:00.000Z", 300.0, "FEED HOLD", 12),
+    StopRow("s2", "", "cap.nc", f"{DAY}13:30:00.000Z", 3600.0, "BETWEEN CYCLES"),  # 30 min of it
+    StopRow("s3", "", "cap.nc", f"{DAY}03:00:00.000Z", 60.0, "FEED HOLD"),  # of the night before
+)
+
+
+@pytest.fixture
+def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Store]:
+    monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
+    with Store.open(tmp_path) as store:
+        for row in ROWS:
+            store.write(partial(part_cycles.save_cycle, row=row)).result()
+        for stop in STOPS:
+            store.write(partial(part_cycles.save_stop, row=stop)).result()
+        events = [
+            EventRow(f"{DAY}08:15:00.000Z", "alarm", "102 following error: X", 9),
+            EventRow(f"{DAY}14:00:00.000Z", "alarm", "of the next shift"),
+            EventRow(f"{DAY}08:16:00.000Z", "switch", "no alarm"),
+        ]
+        store.write(lambda c: log(c, events)).result()
+        feature = FeatureRow(0, "pin.nc", "SPIGOT", "diameter", 10.0, -0.05, 0.05, "tool", 1, 1, 0, 1)
+        number = store.write(lambda c: measured_parts.save_feature(c, feature)).result()
+        for at, size in (("06:30", 10.05), ("07:00", 10.051), ("15:00", 11.0)):
+            reading = ReadingRow(0, number, 8, size, "mm", f"{DAY}{at}:00.000Z", "typed", "")
+            store.write(partial(measured_parts.add_reading, row=reading)).result()
+        store.write(lambda c: tool_lives.set_limits(c, LifeRow(1, 50))).result()
+        store.write(lambda c: tool_lives.set_use(c, 1, 20, 60.0)).result()
+        yield store
+
+
+def figures(store: Store, shift: Shift = EIGHT) -> ShiftFigures:
+    return shift_figures(store, shift, datetime(2026, 3, 3, tzinfo=UTC).timestamp())
+
+
+def test_parts_are_those_that_were_finished_in_the_shift(store: Store) -> None:
+    found = figures(store)
+    assert [(p.program, p.parts, dict(p.others)) for p in found.programs] == [
+        ("pin.nc", 3, {}),
+        ("cap.nc", 0, {"GIVEN UP": 1, "CUT OFF": 1}),
+    ]
+    assert found.programs[0].times == (1200.0, 3600.0, 1500.0)
+    assert found.parts == 3
+
+
+def test_availability_and_stops_by_hand(store: Store) -> None:
+    found = figures(store)
+    assert found.availability is not None
+    # 10 + 60 + 25 + 15 + 20 min of cycles in 8 h; 10 + 5 + 30 min of stops
+    assert (found.availability.planned, found.availability.producing) == (28_800.0, 7_800.0)
+    assert [(r.reason, r.times, r.seconds) for r in found.stood] == [
+        ("BETWEEN CYCLES", 2, 2400.0),
+        ("FEED HOLD", 1, 300.0),
+    ]
+    assert (found.stopped, found.untold) == (2700.0, 28_800.0 - 7_800.0 - 2_700.0)
+
+
+def test_alarms_readings_and_lives(store: Store) -> None:
+    found = figures(store)
+    assert [row.text for row in found.alarms] == ["102 following error: X"]
+    assert found.measured == 2
+    assert [row.value for _, row in found.bad] == [10.051]  # on the limit is good
+    assert [(row.number, row.parts) for row in found.lives] == [(1, 20)]
+
+
+def test_offsets_are_told_with_who_and_when(store: Store) -> None:
+    store.set_tool(1, "wear", x=1.0, wear_x=-0.01, who="proposed").result()
+    now = datetime.now(UTC).timestamp()
+    found = shift_figures(store, Shift(now - 60.0, now + 60.0), now)
+    assert [(c.number, c.why, c.who) for c in found.offsets] == [(1, "wear", "proposed")]
+    page = shift_html(found, "GT-75", "now", metric=True)
+    assert "proposed" in page
+    assert "The shift is still running" in page
+
+
+def test_an_empty_shift_says_so(store: Store) -> None:
+    found = figures(store, Shift(EIGHT.start - 30 * 86_400, EIGHT.end - 30 * 86_400))
+    assert (found.parts, found.programs, found.notes) == (0, (), ("No part was started in this period.",))
+    assert found.untold == 28_800.0
+    assert "none" in shift_html(found, "", "now", metric=False)
+
+
+def test_a_clock_that_was_set_back_is_told_and_lengths_stay(store: Store) -> None:
+    store.write(lambda c: part_cycles.save_cycle(c, cycle("p9", "07:00:00", "06:40:00", 600.0, 10))).result()
+    found = figures(store)
+    assert any("was set back" in note for note in found.notes)
+    assert 600.0 in found.programs[0].times
+    assert found.availability is not None
+    assert found.availability.producing == 7_800.0  # it overlaps what ran: nothing is counted twice
+
+
+@pytest.mark.parametrize(
+    ("now", "hours", "moved"),
+    [
+        (datetime(2026, 3, 29, 8, tzinfo=UTC), 7.0, 3600.0),  # forward in the night
+        (datetime(2026, 10, 25, 9, tzinfo=UTC), 9.0, -3600.0),  # back
+        (datetime(2026, 11, 23, 9, tzinfo=UTC), 8.0, 0.0),
+    ],
+)
+def test_a_night_in_which_the_clock_moves_is_as_long_as_it_was(
+    now: datetime, hours: float, moved: float
+) -> None:
+    shift = shift_of((22, 6), now)
+    assert (shift.end - shift.start) / 3600 == hours
+    assert shift.clock_moved == moved
+    assert datetime.fromtimestamp(shift.start).hour == 22
+    assert datetime.fromtimestamp(shift.end).hour == 6
+
+
+def test_the_shift_that_is_on_and_those_before_it() -> None:
+    at = datetime(2026, 11, 23, 9, tzinfo=UTC)  # 10 h in Berlin
+    assert shift_of((6, 14), at).start == moment_of("2026-11-23 06:00")
+    assert shift_of((6, 14), at, 1).start == moment_of("2026-11-22 06:00")
+    assert shift_of((14, 22), at).start == moment_of("2026-11-22 14:00")
+    assert shift_of((6, 6), at).end == moment_of("2026-11-24 06:00")
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "code", "value"),
+    [
+        ("yesterday", "2026-03-02", "not-a-time", "yesterday"),
+        ("2026-03-02 14:00", "2026-03-02 06:00", "ends-first", "2026-03-02 06:00"),
+        ("2026-01-01", "2026-06-01", "too-many-days", "62"),
+        ("2026-02-30", "2026-03-02", "not-a-time", "2026-02-30"),
+    ],
+)
+def test_times_that_are_none_are_refused(first: str, last: str, code: str, value: str) -> None:
+    with raises_code(ShiftTimesError, code, value):
+        between(first, last)
+
+
+def test_names_of_others_are_text_on_the_page(store: Store) -> None:
+    row = cycle("p7", "10:00:00", "10:10:00", 600.0, 11)._replace(program="<script>alert(1)</script>")
+    store.write(lambda c: part_cycles.save_cycle(c, row)).result()
+    page = shift_html(figures(store), "<b>", "now", metric=True)
+    assert "<script>" not in page
+    assert "&lt;script&gt;" in page
+    assert "http" not in page.replace("http-equiv", "")  # nothing is loaded from anywhere
+
+
+@pytest.mark.usefixtures("store")
+class TestCommand:
+    """``turndesk shift`` beside a desk that has the store."""
+
+    TIMES = ("--from", "2026-03-02 07:00", "--to", "2026-03-02 15:00")  # 6 to 14 h UTC
+
+    def test_text_json_and_page_have_one_figure(
+        self, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    ) -> None:
+        assert main(["shift", *self.TIMES]) == 0
+        said = capsys.readouterr().out
+        assert "Parts: 3\n" in said
+        assert text("quality.in-cycle", share=27.1, run="2:10:00", planned="8:00:00") in said
+        assert main(["shift", *self.TIMES, "--json"]) == 0
+        told = json.loads(capsys.readouterr().out)
+        assert (told["parts"], told["producing"], told["stopped"]) == (3, 7800.0, 2700.0)
+        assert main(["shift", *self.TIMES, "--report", str(tmp_path / "r.html"), "--metric"]) == 0
+        assert "10.051 mm" in (tmp_path / "r.html").read_text()
+        assert main(["shift", "--back", "1"]) == 0
+
+    @pytest.mark.parametrize(
+        ("argv", "code", "value"),
+        [
+            (("--from", "2026-03-02"), "from-and-to", "--from"),
+            (("--from", "2026-03-02", "--to", "2026-03-01"), "ends-first", "2026-03-02"),
+            ((*TIMES, "--back", "2"), "back-and-times", "--back"),
+            (("--back", "-1"), "back", "--back -1"),
+            (("--metric",), "metric-needs-report", "--metric"),
+            (("--report", "/nonexistent/r.html"), "cannot-write", "/nonexistent"),
+        ],
+    )
+    def test_refusals(
+        self,
+        capsys: pytest.CaptureFixture[str],
+        monkeypatch: pytest.MonkeyPatch,
+        argv: tuple[str, ...],
+        code: str,
+        value: str,
+    ) -> None:
+        refusals = recorded_refusals(monkeypatch)
+        assert main(["shift", *argv]) == 2
+        said = capsys.readouterr().err
+        assert [each.code for each in refusals] == [code]
+        assert value in said
+        assert said.count("\n") == 1

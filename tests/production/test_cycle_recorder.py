@@ -1,0 +1,207 @@
+"""Cycles and stops from runs of the executor: times by hand, and what is no part."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from app.production.cycle_recorder import BETWEEN, COMPLETE, GIVEN_UP, RESTARTED, UNCOUNTED, CycleRecorder
+from core.executor.commands import CycleStart, FeedHold, PartsMade, Renew, Reset, SetSwitch
+from core.executor.job import Proof
+from core.executor.snapshot import Event, State
+from core.store.production import part_cycles
+from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.store import Store
+from tests.executor.rig import Rig
+from tests.executor.test_changed_offsets import corrected, running
+from tests.executor.test_restart import broken_off, restart
+
+SHORT = "G90G94F300\nX.5\nX0\nM30\n"
+
+
+class Recorded:
+    """A rig, and what its events have left in a store."""
+
+    def __init__(self, folder: Path) -> None:
+        self.store = Store.open(folder)
+        self.rig = Rig()
+        self.recorder = CycleRecorder()
+        self._heard = 0
+
+    def settle(self) -> None:
+        for event in self.rig.events[self._heard :]:
+            self.recorder.hear(event, self.store)
+        self._heard = len(self.rig.events)
+        self.store.set_setting("settled", True).result(60)
+
+    @property
+    def cycles(self) -> tuple[CycleRow, ...]:
+        self.settle()
+        with self.store.read() as connection:
+            return part_cycles.cycles(connection, None, 100)
+
+    @property
+    def stops(self) -> tuple[StopRow, ...]:
+        self.settle()
+        with self.store.read() as connection:
+            return part_cycles.stops(connection, None, 100)
+
+    def outcomes(self) -> list[tuple[int, str]]:
+        return [(row.part, row.outcome) for row in self.cycles]
+
+
+@pytest.fixture
+def recorded(tmp_path: Path) -> Iterator[Recorded]:
+    recorded = Recorded(tmp_path)
+    yield recorded
+    recorded.store.close()
+
+
+def test_a_part_is_a_row_with_its_time_and_its_number(recorded: Recorded) -> None:
+    recorded.rig.post(PartsMade(41))
+    recorded.rig.start(SHORT)
+    recorded.rig.until(State.IDLE)
+    (row,) = recorded.cycles
+    assert (row.program, row.part, row.outcome) == ("PART", 42, COMPLETE)
+    assert row.seconds == pytest.approx(recorded.rig.shot.last_cycle, abs=0.021)
+    assert row.ended is not None
+
+
+def test_each_part_of_cycle_repeat_is_a_row(recorded: Recorded) -> None:
+    rig = recorded.rig
+    rig.post(SetSwitch("cycle_repeat", True))
+    rig.start(SHORT)
+    rig.until_true(lambda shot: shot.parts == 2)
+    assert recorded.cycles[-1].ended is None, "the third is under way, and a kill would find it begun"
+    rig.post(SetSwitch("cycle_repeat", False))
+    rig.until(State.IDLE)
+    assert recorded.outcomes() == [(1, COMPLETE), (2, COMPLETE), (3, COMPLETE)]
+    assert recorded.cycles[1].seconds == pytest.approx(rig.shot.last_cycle, abs=0.03)
+
+
+def test_a_hold_is_a_stop_and_not_cycle_time(recorded: Recorded) -> None:
+    rig = recorded.rig
+    rig.start(SHORT)
+    rig.run(0.1)
+    rig.post(FeedHold("the test"))
+    rig.until(State.HOLD)
+    rig.run(7.0)
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    (row,), (stop,) = recorded.cycles, recorded.stops
+    assert (stop.reason, stop.cycle) == ("FEED HOLD", row.key)
+    assert stop.seconds == pytest.approx(7.0, abs=0.05)
+    assert row.seconds == pytest.approx(rig.shot.last_cycle, abs=0.05)
+
+
+def test_a_program_stop_has_its_name(recorded: Recorded) -> None:
+    rig = recorded.rig
+    rig.start("G90G94F300\nX.5\nM00\nX0\nM30\n")
+    rig.until(State.PROGRAM_STOP)
+    rig.run(3.0)
+    rig.post(CycleStart())
+    rig.until(State.IDLE)
+    (stop,) = recorded.stops
+    assert stop.reason.startswith("PROGRAM STOP")
+    assert stop.seconds == pytest.approx(3.0, abs=0.05)
+
+
+def test_time_between_two_starts_is_a_stop_of_its_own(recorded: Recorded) -> None:
+    rig = recorded.rig
+    rig.start(SHORT)
+    rig.until(State.IDLE)
+    rig.run(20.0)
+    rig.start(SHORT)
+    rig.until(State.IDLE)
+    (stop,) = recorded.stops
+    assert (stop.reason, stop.cycle) == (BETWEEN, "")
+    assert stop.seconds == pytest.approx(20.3, abs=0.1)
+
+
+def test_an_estop_costs_until_the_next_start(recorded: Recorded) -> None:
+    rig = recorded.rig
+    rig.start(SHORT)
+    rig.run(0.1)
+    rig.sim.machine.press_estop()
+    rig.until(State.ESTOP)
+    rig.run(4.0)
+    rig.sim.machine.release_estop()
+    rig.until(State.DISABLED)
+    rig.run(2.0)
+    rig.ready()
+    rig.start(SHORT)
+    rig.until(State.IDLE)
+    assert recorded.outcomes() == [(0, State.ESTOP.value), (1, COMPLETE)]
+    (stop,) = recorded.stops
+    assert "E-STOP" in stop.reason
+    assert stop.seconds == pytest.approx(7.3, abs=0.3)
+
+
+def test_given_up_and_dry_runs_are_no_parts(recorded: Recorded) -> None:
+    rig = recorded.rig
+    rig.start(SHORT)
+    rig.run(0.1)
+    rig.post(Reset())
+    rig.until(State.IDLE)
+    rig.post(SetSwitch("no_count", True))
+    rig.start(SHORT)
+    rig.until(State.IDLE)
+    assert recorded.outcomes() == [(0, GIVEN_UP), (0, UNCOUNTED)]
+
+
+def test_a_part_that_was_finished_by_a_restart_says_so(recorded: Recorded) -> None:
+    """Its time is that of the rest of it."""
+    broken_off(recorded.rig)
+    restart(recorded.rig, 8)
+    recorded.rig.until(State.IDLE)
+    assert recorded.outcomes() == [(0, State.ESTOP.value), (1, RESTARTED)]
+
+
+def test_the_wait_for_a_proof_is_not_a_parts_time(recorded: Recorded) -> None:
+    rig = recorded.rig
+    job = running(rig)
+    rig.post(Renew())
+    rig.until(State.WAIT)
+    rig.run(5.0)
+    new = corrected(job, -0.0254)
+    rig.post(Renew(new, Proof(new.digest, ())))
+    rig.until(State.RUN)
+    rig.post(SetSwitch("cycle_repeat", False))
+    rig.until(State.IDLE)
+    assert [part for part, _ in recorded.outcomes()] == [1, 2]
+    assert recorded.cycles[1].seconds == pytest.approx(rig.shot.last_cycle, abs=0.05)
+
+
+def test_a_program_that_is_not_repeated_has_begun_no_other_part(recorded: Recorded) -> None:
+    rig = recorded.rig
+    job = running(rig)
+    new = corrected(job, 99.0)
+    rig.post(Renew())
+    rig.until(State.WAIT)
+    rig.run(1.0)
+    rig.post(Renew(new, Proof(new.digest, ("line 4: X leaves its travel",))))
+    rig.until(State.IDLE)
+    assert recorded.outcomes() == [(1, COMPLETE)]
+
+
+def test_events_without_a_cycle_leave_nothing(recorded: Recorded) -> None:
+    for kind, text in (
+        ("state", "RUNNING"),
+        ("state", "FEED HOLD"),
+        ("mdi", "G90"),
+        ("restart", "from line 3"),
+    ):
+        recorded.recorder.hear(Event(0.0, kind, text), recorded.store)
+    assert recorded.cycles == ()
+    assert recorded.stops == ()
+
+
+def test_the_load_that_a_part_tells_is_kept_with_its_cycle(recorded: Recorded) -> None:
+    for kind, text in (("load", "peg.nc"), ("start", "peg.nc")):
+        recorded.recorder.hear(Event(0.0, kind, text), recorded.store)
+    recorded.recorder.hear(Event(9.0, "part", "part 1", part=1, load=31.5), recorded.store)
+    recorded.recorder.hear(Event(10.0, "start", "peg.nc"), recorded.store)
+    recorded.recorder.hear(Event(19.0, "part", "part 2", part=2), recorded.store)
+    assert [row.load for row in recorded.cycles] == [31.5, None]
