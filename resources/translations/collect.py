@@ -89,6 +89,7 @@ APART = frozenset(
             "sharing/version_record.py",
             "share_command.py",
             "place_answer.py",
+            "pin_question.py",
         ),
         *("sharing_table.py", "sharing_check.py", "share_json_keys.py"),
         *("mtconnect/shop_floor.py", "mtconnect_command.py", "mtconnect_check.py", "pendant_wire.py"),

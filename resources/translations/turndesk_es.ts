@@ -695,16 +695,6 @@
     </message>
     <message>
       <location filename="" />
-      <source>DRAWING UNIT: AS DRAWN</source>
-      <translation>LA DEL DIBUJO</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>DRAWING UNIT: INCH</source>
-      <translation>PULGADAS</translation>
-    </message>
-    <message>
-      <location filename="" />
       <source>Declares a subprogram that has parameters and is stored in a separate file.</source>
       <translation>Declara un subprograma que tiene parámetros y está guardado en un archivo aparte.</translation>
     </message>
@@ -1422,11 +1412,6 @@
       <location filename="" />
       <source>KIND: RADIUS</source>
       <translation>RADIO</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>LAYER: ALL</source>
-      <translation>TODAS</translation>
     </message>
     <message>
       <location filename="" />
@@ -2417,11 +2402,6 @@
       <location filename="" />
       <source>SCREEN SETTINGS</source>
       <translation>AJUSTES DE PANTALLA</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>SERIES</source>
-      <translation>SERIE</translation>
     </message>
     <message>
       <location filename="" />
@@ -5429,31 +5409,6 @@
       <translation>El material en bruto indicado no se puede usar ({why}). En su lugar se emplea uno supuesto.</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>GAUGE: {why}. F5: LISTEN AGAIN</source>
-      <translation>CALIBRADOR: {why}. F5: ESCUCHAR OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>GAUGE: {why}. MEASURE AGAIN</source>
-      <translation>CALIBRADOR: {why}. MIDA DE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>Listening to the gauge: {count} readings.</source>
-      <translation>Calibrador a la escucha: {count} lecturas.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>No reading from the gauge for {minutes} min. Check its switch and cable.</source>
-      <translation>Sin lecturas del calibrador desde hace {minutes} min. Revise su interruptor y su cable.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_wire.py" />
-      <source>Not listening to the gauge. Press F5 to start.</source>
-      <translation>Calibrador sin escuchar. Pulse F5 para empezar.</translation>
-    </message>
-    <message>
       <location filename="app/compose/journal.py" />
       <source>loaded to run</source>
       <translation>cargado para correr</translation>
@@ -5490,21 +5445,6 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
-      <source>MQTT AND WEBHOOK</source>
-      <translation>MQTT Y WEBHOOK</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>MQTT BROKER CONNECTION</source>
-      <translation>CONEXIÓN CON EL BROKER MQTT</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>MTCONNECT</source>
-      <translation>MTCONNECT</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
       <source>NO DAILY BACKUP: {why}</source>
       <translation>SIN COPIA DIARIA: {why}</translation>
     </message>
@@ -5520,18 +5460,8 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
-      <source>PENDANT CONNECTION</source>
-      <translation>CONEXIÓN CON EL MANDO COLGANTE</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
       <source>PROGRAM FILE MONITOR</source>
       <translation>VIGILANCIA DEL ARCHIVO DEL PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>PROGRAM SHARING</source>
-      <translation>COMPARTICIÓN DE PROGRAMAS</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -5550,18 +5480,8 @@
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
-      <source>STATUS PAGE</source>
-      <translation>PÁGINA DE ESTADO</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
       <source>STORAGE OF OFFSETS AND COUNTS</source>
       <translation>ALMACENAMIENTO DE CORRECTORES Y CUENTAS</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>WEBHOOK</source>
-      <translation>WEBHOOK</translation>
     </message>
     <message>
       <location filename="app/compose/screen_desk.py" />
@@ -5572,21 +5492,6 @@
       <location filename="app/compose/screen_desk.py" />
       <source>{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK</source>
       <translation>{what}: DETENIDO. GUARDE LA BITÁCORA Y REINICIE TURNDESK</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>PROGRAMS NOT SHARED: {why}</source>
-      <translation>PROGRAMAS SIN COMPARTIR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>{name} WAS CHANGED ON {machine}. F1, X: SHOW CHANGES</source>
-      <translation>{name} SE CAMBIÓ EN {machine}. F1, X: MOSTRAR LOS CAMBIOS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_desk.py" />
-      <source>{path} cannot be used: {error}</source>
-      <translation>{path} no se puede usar: {error}</translation>
     </message>
     <message>
       <location filename="app/compose/stored_offsets.py" />
@@ -5605,78 +5510,8 @@
     </message>
     <message>
       <location filename="app/desk/access.py" />
-      <source>, after {minutes} min without input</source>
-      <translation>, tras {minutes} min sin actividad</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>CHECKING THE PIN OF {name}</source>
-      <translation>COMPROBANDO EL PIN DE {name}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>NOT SAVED: {why}</source>
-      <translation>SIN GUARDAR: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S</source>
-      <translation>DEMASIADOS PIN ERRÓNEOS. REINTENTE EN {seconds} S</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S</source>
-      <translation>PIN ERRÓNEO DE {name}. REINTENTE EN {seconds} S</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>access minutes</source>
-      <translation>access minutes</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>automatic sign-out after {minutes} min without input</source>
-      <translation>cierre de sesión automático tras {minutes} min sin actividad</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>wrong PIN for {row}; consecutive wrong PINs: {count}</source>
-      <translation>PIN erróneo de {row}; PIN erróneos seguidos: {count}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>wrong PINs</source>
-      <translation>wrong PINs</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>{name} HAS NO PIN. A SERVICE USER MUST SET THE PIN</source>
-      <translation>{name} NO TIENE PIN. UN USUARIO DE SERVICIO DEBE FIJAR EL PIN</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>{name} HAS SIGNED IN: {level}</source>
-      <translation>{name} HA ENTRADO: {level}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>{name} SIGNED OUT (NO INPUT). LEVEL: OPERATOR. F10: SIGN IN</source>
-      <translation>{name}: SESIÓN CERRADA (SIN ACTIVIDAD). NIVEL: OPERADOR. F10: ENTRAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
       <source>{name} has signed out{why}</source>
       <translation>{name} ha salido{why}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>{name}: SIGN-OUT IN {seconds} S. PRESS ANY KEY TO STAY SIGNED IN</source>
-      <translation>{name}: CIERRE DE SESIÓN EN {seconds} S. PULSE CUALQUIER TECLA PARA SEGUIR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/access.py" />
-      <source>{row} has signed in: {level}</source>
-      <translation>{row} ha entrado: {level}</translation>
     </message>
     <message>
       <location filename="app/desk/access.py" />
@@ -5684,39 +5519,9 @@
       <translation>{what}: SE REQUIERE {level} (AHORA {now}). F10, NIVELES DE ACCESO: ENTRAR</translation>
     </message>
     <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>NO ACCESS LEVELS TO RESET</source>
-      <translation>NO HAY NIVELES DE ACCESO QUE BORRAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>PIN RESET IN {time}</source>
-      <translation>BORRADO DE PIN EN {time}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS</source>
-      <translation>PULSE ANTES EL PARO DE EMERGENCIA. DÉJELO PULSADO 10 MIN PARA BORRAR LOS NIVELES DE ACCESO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>SERVICE RESET CANCELED: ACCESS LEVELS UNCHANGED</source>
-      <translation>BORRADO DE SERVICIO CANCELADO: NIVELES DE ACCESO SIN CAMBIOS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>service reset canceled</source>
-      <translation>borrado de servicio cancelado</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>service reset done: all users and PINs removed, access levels off</source>
-      <translation>borrado de servicio hecho: usuarios y PIN eliminados, niveles de acceso desactivados</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_reset.py" />
-      <source>service reset started: the E-stop must stay pressed for 10 min</source>
-      <translation>borrado de servicio iniciado: el paro de emergencia debe seguir pulsado 10 min</translation>
+      <location filename="app/desk/access.py" />
+      <source>{what}: {level} REQUIRED (NOW {now}). THIS TURNDESK IS INSTALLED WITHOUT SIGN-IN</source>
+      <translation>{what}: SE REQUIERE {level} (AHORA {now}). ESTE TURNDESK SE INSTALÓ SIN ENTRADA DE USUARIOS</translation>
     </message>
     <message>
       <location filename="app/desk/arithmetic.py" />
@@ -7520,18 +7325,8 @@
     </message>
     <message>
       <location filename="app/editor/heading_view.py" />
-      <source>CALCULATOR ⇧F4</source>
-      <translation>CÁLCULO ⇧F4</translation>
-    </message>
-    <message>
-      <location filename="app/editor/heading_view.py" />
       <source>KEYBOARD</source>
       <translation>TECLADO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/heading_view.py" />
-      <source>SHAPES ⇧F3</source>
-      <translation>FORMAS ⇧F3</translation>
     </message>
     <message>
       <location filename="app/editor/live_proof.py" />
@@ -7639,6 +7434,1086 @@
       <translation>{size} bytes</translation>
     </message>
     <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>ACCESS LEVELS</source>
+      <translation>NIVELES DE ACCESO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED</source>
+      <translation>TODOS LOS PIN QUITADOS. NIVELES DE ACCESO DESACTIVADOS: TODO PERMITIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>Access levels are off: anyone can change anything, and no PIN is required.</source>
+      <translation>Niveles de acceso desactivados: cualquiera puede cambiarlo todo y no se pide PIN.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>After {minutes} minutes without input, the level returns to OPERATOR.</source>
+      <translation>Tras {minutes} minutos sin actividad, el nivel vuelve a OPERADOR.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>CONFIRM PIN:</source>
+      <translation>CONFIRME EL PIN:</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>E-stop, feed hold, Reset and Drives Off work at every level.</source>
+      <translation>Paro de emergencia, retención de avance, Reset y servos apagados funcionan en todos los niveles.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>F3 adds the first user, with SERVICE level, and turns access levels on.</source>
+      <translation>F3 añade el primer usuario, de nivel SERVICIO, y activa los niveles de acceso.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>F3: ADD USER, TURN ACCESS LEVELS ON   ESC: BACK TO THE LIST</source>
+      <translation>F3: AÑADIR UN USUARIO, ACTIVAR LOS NIVELES DE ACCESO   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>LEVEL? 1 OPERATOR, 2 SETUP, 3 SERVICE</source>
+      <translation>¿NIVEL? 1 OPERADOR, 2 PREPARADOR, 3 SERVICIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>LEVELS</source>
+      <translation>NIVELES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>NAME?</source>
+      <translation>¿NOMBRE?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>NEW PIN FOR {name}?</source>
+      <translation>¿PIN NUEVO DE {name}?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>PIN FOR {name}?</source>
+      <translation>¿PIN DE {name}?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL</source>
+      <translation>SE BORRARÁN LOS PIN. SUELTE EL PARO DE EMERGENCIA O ENTRE PARA CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN</source>
+      <translation>PULSE Y PARA ELIMINAR A {name}, N PARA CONSERVAR EL USUARIO Y EL PIN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>REMOVE</source>
+      <translation>QUITAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK</source>
+      <translation>ELIJA SU NOMBRE   ENTER: ENTRAR   F2: SALIR   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>SIGN OUT</source>
+      <translation>SALIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>SIGNED OUT: OPERATOR LEVEL IS ACTIVE</source>
+      <translation>SESIÓN CERRADA: NIVEL OPERADOR ACTIVO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>TIME</source>
+      <translation>TIEMPO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>TYPE OF CHANGE</source>
+      <translation>TIPO DE CAMBIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL</source>
+      <translation>ESCRIBA EL DATO   ENTER: ACEPTAR   ESC: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>USERS</source>
+      <translation>USUARIOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>Y: REMOVE ALL PINS IN 10 MINUTES (LOGGED)   N: KEEP THEM</source>
+      <translation>Y: BORRAR TODOS LOS PIN EN 10 MINUTOS (SE REGISTRA)   N: CONSERVARLOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>sign in</source>
+      <translation>sign in</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>sign in, users, PINs</source>
+      <translation>entrar, usuarios, PIN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>the level must be 1, 2 or 3</source>
+      <translation>el nivel debe ser 1, 2 o 3</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>the two PINs do not match; nothing was saved. Enter the PIN again</source>
+      <translation>los dos PIN no coinciden; no se guardó nada. Introduzca el PIN de nuevo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>user {draft} saved with level {level} and a new PIN</source>
+      <translation>usuario {draft} guardado con nivel {level} y PIN nuevo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>{draft} already exists; press F4 to change the PIN</source>
+      <translation>{draft} ya existe; pulse F4 para cambiar el PIN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>{name} REMOVED</source>
+      <translation>{name} ELIMINADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>{name}: {level}, PIN SAVED</source>
+      <translation>{name}: {level}, PIN GUARDADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_levels.py" />
+      <source>{row} removed</source>
+      <translation>{row} eliminado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>NO ACCESS LEVELS TO RESET</source>
+      <translation>NO HAY NIVELES DE ACCESO QUE BORRAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>PIN RESET IN {time}</source>
+      <translation>BORRADO DE PIN EN {time}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>PRESS E-STOP FIRST. LEAVE IT PRESSED 10 MIN TO RESET ACCESS LEVELS</source>
+      <translation>PULSE ANTES EL PARO DE EMERGENCIA. DÉJELO PULSADO 10 MIN PARA BORRAR LOS NIVELES DE ACCESO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>SERVICE RESET CANCELED: ACCESS LEVELS UNCHANGED</source>
+      <translation>BORRADO DE SERVICIO CANCELADO: NIVELES DE ACCESO SIN CAMBIOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>service reset canceled</source>
+      <translation>borrado de servicio cancelado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>service reset done: all users and PINs removed, access levels off</source>
+      <translation>borrado de servicio hecho: usuarios y PIN eliminados, niveles de acceso desactivados</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/access_reset.py" />
+      <source>service reset started: the E-stop must stay pressed for 10 min</source>
+      <translation>borrado de servicio iniciado: el paro de emergencia debe seguir pulsado 10 min</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/extra.py" />
+      <source>LAMPS AND SOUND</source>
+      <translation>LÁMPARAS Y SONIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>, after {minutes} min without input</source>
+      <translation>, tras {minutes} min sin actividad</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>CHECKING THE PIN OF {name}</source>
+      <translation>COMPROBANDO EL PIN DE {name}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>TOO MANY WRONG PINS. TRY AGAIN IN {seconds} S</source>
+      <translation>DEMASIADOS PIN ERRÓNEOS. REINTENTE EN {seconds} S</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>WRONG PIN FOR {name}. TRY AGAIN IN {seconds} S</source>
+      <translation>PIN ERRÓNEO DE {name}. REINTENTE EN {seconds} S</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>access minutes</source>
+      <translation>access minutes</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>automatic sign-out after {minutes} min without input</source>
+      <translation>cierre de sesión automático tras {minutes} min sin actividad</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>wrong PIN for {row}; consecutive wrong PINs: {count}</source>
+      <translation>PIN erróneo de {row}; PIN erróneos seguidos: {count}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>wrong PINs</source>
+      <translation>wrong PINs</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>{name} HAS NO PIN. A SERVICE USER MUST SET THE PIN</source>
+      <translation>{name} NO TIENE PIN. UN USUARIO DE SERVICIO DEBE FIJAR EL PIN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>{name} HAS SIGNED IN: {level}</source>
+      <translation>{name} HA ENTRADO: {level}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>{name} SIGNED OUT (NO INPUT). LEVEL: OPERATOR. F10: SIGN IN</source>
+      <translation>{name}: SESIÓN CERRADA (SIN ACTIVIDAD). NIVEL: OPERADOR. F10: ENTRAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>{name}: SIGN-OUT IN {seconds} S. PRESS ANY KEY TO STAY SIGNED IN</source>
+      <translation>{name}: CIERRE DE SESIÓN EN {seconds} S. PULSE CUALQUIER TECLA PARA SEGUIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/access/sign_in.py" />
+      <source>{row} has signed in: {level}</source>
+      <translation>{row} ha entrado: {level}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>A dash means that the arc is too short to calculate the value.</source>
+      <translation>Una raya indica que el arco es demasiado corto para calcular el valor.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>ADDED DEPTH</source>
+      <translation>PROF. AÑADIDA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Axis positions are measured from home, X as a radius.</source>
+      <translation>Las posiciones de los ejes se miden desde la referencia, X como radio.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Axis positions are measured from home.</source>
+      <translation>Las posiciones de los ejes se miden desde la referencia.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>BACKLASH {axis}</source>
+      <translation>JUEGO {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>BALL BAR</source>
+      <translation>BALL BAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>CALCULATING …</source>
+      <translation>CALCULANDO …</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>ENTRY ANGLE</source>
+      <translation>ÁNG. DE ENTRADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Flank infeed shifts the entry angle with the depth.</source>
+      <translation>La penetración por un flanco desplaza el ángulo de entrada según la profundidad.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>LEAD ERROR</source>
+      <translation>ERROR DE PASO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Largest error: {distance}</source>
+      <translation>Error mayor: {distance}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Lead: {lead} per revolution</source>
+      <translation>Paso: {lead} por vuelta</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Line {line}, arc {number} of {count}: radius {radius}, {angle}°</source>
+      <translation>Línea {line}, arco {number} de {count}: radio {radius}, {angle}°</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>PASS</source>
+      <translation>Nº</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>PATH DEVIATION</source>
+      <translation>DESVIACIÓN DE TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>PATH ERROR</source>
+      <translation>ERROR DE TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>Positive values are to the left of the direction of travel.</source>
+      <translation>Los valores positivos quedan a la izquierda del sentido de avance.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>RADIUS ERROR</source>
+      <translation>ERROR DE RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>RESPONSE</source>
+      <translation>RESPUESTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>REVERSAL SPIKE {axis}</source>
+      <translation>PICO DE INVERSIÓN {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>ROUNDNESS</source>
+      <translation>REDONDEZ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>RPM DROP</source>
+      <translation>CAÍDA RPM</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>SCALE OF {value} RELATIVE TO {v}</source>
+      <translation>ESCALA DE {value} RESPECTO A {v}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>SQUARENESS ERROR</source>
+      <translation>ERROR DE PERPENDICULARIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>THREAD</source>
+      <translation>ROSCA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>THREAD DEVIATION</source>
+      <translation>DESVIACIÓN DE LA ROSCA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>The axis is fast enough to cut this lead at up to {rpm} rpm</source>
+      <translation>El eje es bastante rápido para tallar este paso hasta {rpm} rpm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>The encoder cannot measure backlash between the encoder and the tool.</source>
+      <translation>El encoder no puede medir el juego entre el encoder y la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>The table shows the worst point of each line.</source>
+      <translation>La tabla muestra el peor punto de cada línea.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>The thread entry angles agree within {angle}°</source>
+      <translation>Los ángulos de entrada de la rosca coinciden en {angle}°</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>a path needs two linear axes, but the record contains fewer than two</source>
+      <translation>una trayectoria necesita dos ejes lineales, pero el registro contiene menos de dos</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>error magnified {times}x; press Z to change the scale</source>
+      <translation>error ampliado {times}x; pulse Z para cambiar la escala</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>last move: commanded position, actual position and following error over time in seconds</source>
+      <translation>último movimiento: posición de consigna, posición real y error de seguimiento en segundos</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>last spindle speed change: commanded and actual speed over time in seconds</source>
+      <translation>último cambio de velocidad del husillo: velocidad de consigna y real en segundos</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>this time range does not contain an arc of 60 degrees or more; cut an arc of this size while recording</source>
+      <translation>este intervalo no contiene ningún arco de 60 grados o más; corte un arco de ese tamaño mientras graba</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>thread passes overlaid by spindle angle: deviation from the thread, and spindle speed</source>
+      <translation>pasadas de rosca superpuestas por ángulo del husillo: desviación de la rosca, y velocidad del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>{fixed} mm/m</source>
+      <translation>{fixed} mm/m</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses.py" />
+      <source>{title}  rpm</source>
+      <translation>{title}  rpm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses_view.py" />
+      <source>ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE</source>
+      <translation>FLECHAS: ELEGIR FILA   Z: AMPLIAR   MISMA TECLA F: ACTUALIZAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses_view.py" />
+      <source>DRIVE TEST</source>
+      <translation>PRUEBA DE ACCIONAMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses_view.py" />
+      <source>NEXT ARC</source>
+      <translation>OTRO ARC</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses_view.py" />
+      <source>TEST</source>
+      <translation>PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>AT {share} SPEED</source>
+      <translation>A {share} DE VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>ERROR LIMIT AT THIS SPEED</source>
+      <translation>LÍMITE A ESTA VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>FOLLOWING LAG</source>
+      <translation>RETRASO DE SEGUIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>For a good result, jog a single step on the Jog page, or press F9 on this page to open the drive tests.</source>
+      <translation>Para un buen resultado, mueva un solo paso en la página Manual, o pulse F9 en esta página para abrir las pruebas de accionamiento.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>LARGEST ERROR</source>
+      <translation>ERROR MAYOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>LIMIT REDUCED TO {share}</source>
+      <translation>LÍMITE REDUCIDO A {share}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>Last move of {axis}. These values are for information only; no setting was changed.</source>
+      <translation>Último movimiento de {axis}. Estos valores son solo informativos; no se cambió ningún ajuste.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>MAXIMUM SPEED</source>
+      <translation>VELOCIDAD MÁXIMA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>OVERSHOOT</source>
+      <translation>SOBREPASO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>RISE, 10 TO 90 %</source>
+      <translation>SUBIDA, 10 A 90 %</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>SMALLEST LIMIT WITHOUT A TRIP</source>
+      <translation>LÍMITE MÍNIMO SIN DISPARO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>SPEED AT WHICH LAG EQUALS LIMIT</source>
+      <translation>VELOCIDAD CON RETRASO = LÍMITE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>TIME UNTIL IN POSITION</source>
+      <translation>TIEMPO HASTA EN POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>TRAVEL</source>
+      <translation>RECORRIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>no trip</source>
+      <translation>sin disparo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>the limit is not reached in the axis speed range</source>
+      <translation>el límite no se alcanza en el rango de velocidad del eje</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>this time range contains no complete move of an axis from rest to rest; jog one step on the Jog page</source>
+      <translation>en este intervalo no hay ningún movimiento completo de un eje de reposo a reposo; mueva un paso en la página Manual</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/axis_response.py" />
+      <source>trips at {position}</source>
+      <translation>dispara a los {position}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>90° PHASE LAG</source>
+      <translation>DESFASE DE 90°</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>BANDWIDTH, −3 dB</source>
+      <translation>ANCHO DE BANDA, −3 dB</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>DELAY</source>
+      <translation>RETARDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>GAIN</source>
+      <translation>GANANCIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>LAG AT CONSTANT SPEED</source>
+      <translation>RETRASO A VELOCIDAD CONSTANTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>Nothing was written to the drive.</source>
+      <translation>No se escribió nada en el accionamiento.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>OUTBOUND</source>
+      <translation>IDA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>PHASE LAG</source>
+      <translation>DESFASE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>RAMP</source>
+      <translation>RAMPA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>RETURN</source>
+      <translation>VUELTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>SINE</source>
+      <translation>SENO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>SPEED / LAG (GAIN)</source>
+      <translation>VELOCIDAD / RETRASO (GANANCIA)</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>drive test</source>
+      <translation>prueba de accionamiento</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>the key was released before the test ended; hold the key until the axis has returned</source>
+      <translation>la tecla se soltó antes de terminar la prueba; mantenga la tecla hasta que el eje haya vuelto</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>this machine has no {axis} axis</source>
+      <translation>esta máquina no tiene eje {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>{words}, {item} Hz</source>
+      <translation>{words}, {item} Hz</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_figures.py" />
+      <source>−3 dB is not reached at frequencies up to {maximum} Hz</source>
+      <translation>no se alcanzan −3 dB en frecuencias hasta {maximum} Hz</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>DRIVE TEST HAS NO RAPID. PRESS THE ARROW WITHOUT SHIFT</source>
+      <translation>LA PRUEBA DE ACCIONAMIENTO NO TIENE RÁPIDO. PULSE LA FLECHA SIN MAYÚS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>DRIVE TEST NOT POSSIBLE: {why}</source>
+      <translation>PRUEBA DE ACCIONAMIENTO NO POSIBLE: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>FOLLOWING ERROR LIMIT {axis}</source>
+      <translation>LÍMITE ERROR SEGUIMIENTO {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>FREQUENCY</source>
+      <translation>FRECUENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>KEEP HOLDING THE KEY UNTIL THE AXIS HAS RETURNED</source>
+      <translation>MANTENGA LA TECLA HASTA QUE EL EJE HAYA VUELTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>KEY</source>
+      <translation>TECLA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>NO TEST VALUES YET. RUN A TEST FIRST</source>
+      <translation>AÚN NO HAY VALORES. HAGA ANTES UNA PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>NOT ENOUGH TRAVEL IN {axis}. JOG AWAY FROM THE END OF TRAVEL</source>
+      <translation>RECORRIDO INSUFICIENTE EN {axis}. ALÉJELO A MANO DEL FINAL DE RECORRIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>PRESS AN ARROW TO SHOW THE TRAVEL. HOLD IT TO RUN THE TEST</source>
+      <translation>PULSE UNA FLECHA PARA VER EL RECORRIDO. MANTÉNGALA PARA HACER LA PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>PRESS ARROW: SHOW TRAVEL   HOLD ARROW: RUN TEST   F5: VALUES</source>
+      <translation>PULSAR FLECHA: VER RECORRIDO   MANTENER: PRUEBA   F5: VALORES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>SETTING</source>
+      <translation>AJUSTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>SIZE is the travel of the axis; in X, the diameter changes by twice this travel.</source>
+      <translation>TAMAÑO es el recorrido del eje; en X, el diámetro cambia el doble de ese recorrido.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>SPINDLE IS TURNING. STOP IT FIRST</source>
+      <translation>EL HUSILLO GIRA. PÁRELO ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>TEST STOPPED: ANOTHER TEST WAS SELECTED</source>
+      <translation>PRUEBA DETENIDA: SE ELIGIÓ OTRA PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS</source>
+      <translation>PRUEBA DETENIDA: ESTA PÁGINA YA NO TIENE EL FOCO DEL TECLADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>The test does not write any data to the drive.</source>
+      <translation>La prueba no escribe ningún dato en el accionamiento.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>as fast as possible</source>
+      <translation>lo más rápido posible</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>drive test {axis} {shape}</source>
+      <translation>prueba de accionamiento {axis} {shape}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>no test has been run yet</source>
+      <translation>aún no se ha hecho ninguna prueba</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>{axis} FROM {position} TO {present} AND BACK IN {seconds} S</source>
+      <translation>{axis} DE {position} A {present} Y VUELTA EN {seconds} S</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>{axis} NOT HOMED, SO TRAVEL CANNOT BE CHECKED. HOME IT FIRST</source>
+      <translation>{axis} SIN REFERENCIA: NO SE COMPRUEBA EL RECORRIDO. REFERÉNCIELO ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_model.py" />
+      <source>{travel}: HOLD {key} TO RUN THE TEST, RELEASE TO STOP</source>
+      <translation>{travel}: MANTENGA {key} PARA HACER LA PRUEBA, SUELTE PARA PARAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_view.py" />
+      <source>DRIVE TEST  ·  PRESS ARROW, THEN HOLD IT</source>
+      <translation>PRUEBA  ·  PULSAR FLECHA, LUEGO MANTENERLA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/drive_test_view.py" />
+      <source>HOLD {direction}</source>
+      <translation>MANTENGA {direction}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/extra.py" />
+      <source>SHARED PROGRAMS</source>
+      <translation>PROGRAMAS COMPARTIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>Last change of spindle speed. These values are for information only; no setting was changed.</source>
+      <translation>Último cambio de velocidad del husillo. Estos valores son solo informativos; no se cambió ningún ajuste.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>MEAN SPEED ERROR</source>
+      <translation>DESVÍO MEDIO DE VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>Mean error and variation are calculated from the last second. A dash means that the speed did not stay within the tolerance band.</source>
+      <translation>El desvío medio y la variación se calculan del último segundo. Una raya indica que la velocidad no se mantuvo en la banda de tolerancia.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>SPEED VARIATION</source>
+      <translation>VARIACIÓN DE VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>TIME TO SETTLE WITHIN {share}</source>
+      <translation>TIEMPO HASTA ESTABLE DENTRO DE {share}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>The acceleration in the machine file is {accel} rpm/s; a speed within {share} of the target counts as reached.</source>
+      <translation>La aceleración en el archivo de máquina es {accel} rpm/s; una velocidad dentro de {share} del valor cuenta como alcanzada.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>no device on this machine reports the measured spindle speed</source>
+      <translation>ningún dispositivo de esta máquina informa la velocidad medida del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>spindle {name}</source>
+      <translation>husillo {name}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>the spindle speed did not change in this time range; start the spindle from a program or in MDI</source>
+      <translation>la velocidad del husillo no cambió en este intervalo; arranque el husillo con un programa o en MDI</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>this machine has no spindle</source>
+      <translation>esta máquina no tiene husillo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>{acceleration} rpm/s</source>
+      <translation>{acceleration} rpm/s</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>{speed} rpm</source>
+      <translation>{speed} rpm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/spindle_response.py" />
+      <source>{target} → {target2} rpm</source>
+      <translation>{target} → {target2} rpm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/added_drawing.py" />
+      <source>CALCULATING THE CONTOUR. PRESS F6 TO CANCEL</source>
+      <translation>CALCULANDO EL CONTORNO. PULSE F6 PARA CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/added_drawing.py" />
+      <source>LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS</source>
+      <translation>IZQUIERDA/DERECHA: CAMBIAR   TOCAR DIBUJO: CONTORNO O EJE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/added_drawing.py" />
+      <source>READ</source>
+      <translation>LEÍDAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/added_drawing.py" />
+      <source>READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL</source>
+      <translation>LEYENDO EL DIBUJO: {seconds} s. PULSE F6 PARA CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/added_drawing.py" />
+      <source>THE DRAWING CANNOT BE PROCESSED: {why}</source>
+      <translation>NO SE PUEDE PROCESAR EL DIBUJO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>AXIS</source>
+      <translation>EJE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>BLADE</source>
+      <translation>BLADE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>COMP</source>
+      <translation>COMP</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>CONTOUR</source>
+      <translation>CONTORNO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>DRAWING UNIT</source>
+      <translation>UNIDAD DEL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>DUNIT</source>
+      <translation>DUNIT</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>FACE SIDE IN DRAWING</source>
+      <translation>LADO DE LA CARA EN EL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>FROM</source>
+      <translation>FROM</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>FRONT</source>
+      <translation>FRENTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>GROOVING TOOL</source>
+      <translation>ÚTIL DE RANURAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>HOLE</source>
+      <translation>HOLE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>HOLE DIAMETER</source>
+      <translation>DIÁMETRO DEL AGUJERO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>LAYER</source>
+      <translation>CAPA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>MATERIAL</source>
+      <translation>MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>NOSE COMPENSATION: D NUMBER</source>
+      <translation>COMPENSACIÓN DE PUNTA: NÚMERO D</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8.</source>
+      <translation>No hay dibujos en la carpeta de programas: copie en ella un archivo DXF o SVG con F6 y luego F8.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>ROUGH</source>
+      <translation>ROUGH</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>ROUGHING DEPTH OF CUT</source>
+      <translation>PROFUNDIDAD DE DESBASTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>Reading was canceled. Press F6 to read the drawing again.</source>
+      <translation>Lectura cancelada. Pulse F6 para leer el dibujo de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>SHIFT</source>
+      <translation>SHIFT</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>STEEL</source>
+      <translation>ACERO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>STOCK DIAMETER</source>
+      <translation>DIÁMETRO DEL MATERIAL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>STOCK ON THE FACE</source>
+      <translation>MATERIAL EN LA CARA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>Z OF REFERENCE POINT</source>
+      <translation>Z DEL PUNTO DE REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>Z REFERENCE POINT</source>
+      <translation>PUNTO DE REFERENCIA Z</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_form.py" />
+      <source>facing, roughing, finishing and grooving of a profile from a DXF or SVG drawing</source>
+      <translation>refrentado, desbastado, acabado y ranurado de un perfil de un dibujo DXF o SVG</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>AS DRAWN</source>
+      <translation>COMO EN EL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>Boring needs a predrilled hole: enter its diameter.</source>
+      <translation>El mandrinado necesita un agujero previo: introduzca su diámetro.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>CONTOUR {item}</source>
+      <translation>CONTORNO {item}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} does not specify its unit: choose MM or INCH.</source>
+      <translation>{drawing} no indica su unidad: elija MM o PULGADAS.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} has no contour for the selected axis: choose another layer or axis.</source>
+      <translation>{drawing} no tiene ningún contorno para el eje elegido: elija otra capa u otro eje.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} has no contour on layer {layer}: choose another layer or axis.</source>
+      <translation>{drawing} no tiene ningún contorno en la capa {layer}: elija otra capa u otro eje.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} has no layer {layer}: choose another layer.</source>
+      <translation>{drawing} no tiene la capa {layer}: elija otra capa.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} has {nets_count} contours: choose 1 to {nets_count2}.</source>
+      <translation>{drawing} tiene {nets_count} contornos: elija de 1 a {nets_count2}.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} is {wrong}, which is too large for this machine. The drawing fits if its unit is {wrong2}: choose {wrong3}.</source>
+      <translation>{drawing} mide {wrong}, demasiado para esta máquina. El dibujo cabe si su unidad es {wrong2}: elija {wrong3}.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{path} cannot be read: {cause}.</source>
+      <translation>no se puede leer {path}: {cause}.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/extra.py" />
+      <source>DRAWING UNIT: AS DRAWN</source>
+      <translation>LA DEL DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/extra.py" />
+      <source>DRAWING UNIT: INCH</source>
+      <translation>PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/extra.py" />
+      <source>LAYER: ALL</source>
+      <translation>TODAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/extra.py" />
+      <source>JOBS</source>
+      <translation>TRABAJOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/extra.py" />
+      <source>MEASURED PARTS</source>
+      <translation>PIEZAS MEDIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/jobs/extra.py" />
+      <source>next job, number of parts, setup requirements</source>
+      <translation>trabajo siguiente, número de piezas, lo necesario para la preparación</translation>
+    </message>
+    <message>
       <location filename="app/extras/jobs/job_setup.py" />
       <source>no offset set: touch off the tool</source>
       <translation>sin corrector: tome referencia de la herramienta</translation>
@@ -7664,6 +8539,11 @@
       <translation>vida de la herramienta agotada, {words}: cambie la plaquita</translation>
     </message>
     <message>
+      <location filename="app/extras/jobs/jobs_desk.py" />
+      <source>{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST</source>
+      <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, LUEGO F6: REVISE LA LISTA</translation>
+    </message>
+    <message>
       <location filename="app/extras/jobs/jobs_function.py" />
       <source>ENTER: OPEN JOBS   ESC: BACK TO THE LIST</source>
       <translation>ENTER: ABRIR TRABAJOS   ESC: VOLVER A LA LISTA</translation>
@@ -7675,11 +8555,6 @@
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_function.py" />
-      <source>JOBS</source>
-      <translation>TRABAJOS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_function.py" />
       <source>Press Enter to open the JOBS page. Shift+F6 opens it from any page, and J opens it from the main menu.</source>
       <translation>Pulse Enter para abrir la página TRABAJOS. Mayús+F6 la abre desde cualquier página, y J desde el menú principal.</translation>
     </message>
@@ -7687,16 +8562,6 @@
       <location filename="app/extras/jobs/jobs_function.py" />
       <source>WAITING</source>
       <translation>ESPERANDO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_function.py" />
-      <source>next job, number of parts, setup requirements</source>
-      <translation>trabajo siguiente, número de piezas, lo necesario para la preparación</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_model.py" />
-      <source>ADD</source>
-      <translation>SUMAR</translation>
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_model.py" />
@@ -7737,11 +8602,6 @@
       <location filename="app/extras/jobs/jobs_model.py" />
       <source>JOBS CANNOT BE SAVED: NO DATA STORE</source>
       <translation>NO SE PUEDEN GUARDAR TRABAJOS: NO HAY ALMACÉN DE DATOS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_model.py" />
-      <source>LINE {line}</source>
-      <translation>LÍNEA {line}</translation>
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_model.py" />
@@ -7790,11 +8650,6 @@
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_model.py" />
-      <source>REMOVE</source>
-      <translation>QUITAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_model.py" />
       <source>SETUP SHEET</source>
       <translation>HOJA DE PREPARACIÓN</translation>
     </message>
@@ -7802,21 +8657,6 @@
       <location filename="app/extras/jobs/jobs_model.py" />
       <source>STATE</source>
       <translation>ESTADO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_model.py" />
-      <source>STOCK</source>
-      <translation>MATERIAL EN BRUTO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_model.py" />
-      <source>TIME</source>
-      <translation>TIEMPO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_model.py" />
-      <source>TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL</source>
-      <translation>ESCRIBA EL DATO   ENTER: ACEPTAR   ESC: CANCELAR</translation>
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_model.py" />
@@ -7885,11 +8725,6 @@
     </message>
     <message>
       <location filename="app/extras/jobs/jobs_watch.py" />
-      <source>NOT PROVED YET</source>
-      <translation>AÚN NO COMPROBADO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/jobs/jobs_watch.py" />
       <source>THE PROGRAM HAS ERRORS</source>
       <translation>EL PROGRAMA TIENE ERRORES</translation>
     </message>
@@ -7904,184 +8739,1369 @@
       <translation>{count} PUNTOS DE PREPARACIÓN SIN TERMINAR</translation>
     </message>
     <message>
-      <location filename="app/extras/jobs/jobs_watch.py" />
-      <source>{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST</source>
-      <translation>{name} NO ESTÁ EN LA LISTA DE PROGRAMAS. F1, LUEGO F6: REVISE LA LISTA</translation>
+      <location filename="app/extras/mtconnect/extra.py" />
+      <source>MTCONNECT</source>
+      <translation>MTCONNECT</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>DRIVE TEST</source>
-      <translation>PRUEBA DE ACCIONAMIENTO</translation>
+      <location filename="app/extras/office/agent_desk.py" />
+      <source>the MTConnect agent reports that the machine is unavailable</source>
+      <translation>el agente MTConnect indica que la máquina no está disponible</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>DRIVE TEST HAS NO RAPID. PRESS THE ARROW WITHOUT SHIFT</source>
-      <translation>LA PRUEBA DE ACCIONAMIENTO NO TIENE RÁPIDO. PULSE LA FLECHA SIN MAYÚS</translation>
+      <location filename="app/extras/office/announcements.py" />
+      <source>part {number} of {program} is finished</source>
+      <translation>pieza {number} de {program} terminada</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>DRIVE TEST NOT POSSIBLE: {why}</source>
-      <translation>PRUEBA DE ACCIONAMIENTO NO POSIBLE: {why}</translation>
+      <location filename="app/extras/office/extra.py" />
+      <source>MQTT AND WEBHOOK</source>
+      <translation>MQTT Y WEBHOOK</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>FOLLOWING ERROR LIMIT {axis}</source>
-      <translation>LÍMITE ERROR SEGUIMIENTO {axis}</translation>
+      <location filename="app/extras/office/extra.py" />
+      <source>MQTT BROKER CONNECTION</source>
+      <translation>CONEXIÓN CON EL BROKER MQTT</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>FREQUENCY</source>
-      <translation>FRECUENCIA</translation>
+      <location filename="app/extras/office/extra.py" />
+      <source>STATUS PAGE</source>
+      <translation>PÁGINA DE ESTADO</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>KEEP HOLDING THE KEY UNTIL THE AXIS HAS RETURNED</source>
-      <translation>MANTENGA LA TECLA HASTA QUE EL EJE HAYA VUELTO</translation>
+      <location filename="app/extras/office/extra.py" />
+      <source>WEBHOOK</source>
+      <translation>WEBHOOK</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>KEY</source>
-      <translation>TECLA</translation>
+      <location filename="app/extras/office/mqtt_broker.py" />
+      <source>the MQTT broker {host}:{port}</source>
+      <translation>el broker MQTT {host}:{port}</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>NO TEST VALUES YET. RUN A TEST FIRST</source>
-      <translation>AÚN NO HAY VALORES. HAGA ANTES UNA PRUEBA</translation>
+      <location filename="app/extras/office/network_causes.py" />
+      <source>the server certificate cannot be verified: {verify_message}</source>
+      <translation>el certificado del servidor no se puede verificar: {verify_message}</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>NOT ENOUGH TRAVEL IN {axis}. JOG AWAY FROM THE END OF TRAVEL</source>
-      <translation>RECORRIDO INSUFICIENTE EN {axis}. ALÉJELO A MANO DEL FINAL DE RECORRIDO</translation>
+      <location filename="app/extras/office/other_desks.py" />
+      <source>access token rejected</source>
+      <translation>token de acceso rechazado</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>PRESS AN ARROW TO SHOW THE TRAVEL. HOLD IT TO RUN THE TEST</source>
-      <translation>PULSE UNA FLECHA PARA VER EL RECORRIDO. MANTÉNGALA PARA HACER LA PRUEBA</translation>
+      <location filename="app/extras/office/other_desks.py" />
+      <source>no response for {age} s</source>
+      <translation>sin respuesta desde hace {age} s</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>PRESS ARROW: SHOW TRAVEL   HOLD ARROW: RUN TEST   F5: VALUES</source>
-      <translation>PULSAR FLECHA: VER RECORRIDO   MANTENER: PRUEBA   F5: VALORES</translation>
+      <location filename="app/extras/office/other_desks.py" />
+      <source>the server at this address is not a TurnDesk server</source>
+      <translation>el servidor de esta dirección no es un servidor TurnDesk</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>RAMP</source>
-      <translation>RAMPA</translation>
+      <location filename="app/extras/office/other_desks.py" />
+      <source>the server returns HTTP status {answer}</source>
+      <translation>el servidor devuelve el estado HTTP {answer}</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SAVED: {path}</source>
-      <translation>GUARDADO: {path}</translation>
+      <location filename="app/extras/office/status_page.py" />
+      <source>Following errors recorded before the last alarm</source>
+      <translation>Errores de seguimiento registrados antes de la última alarma</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SETTING</source>
-      <translation>AJUSTE</translation>
+      <location filename="app/extras/office/status_page.py" />
+      <source>Last cycle</source>
+      <translation>Último ciclo</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SHAPE</source>
-      <translation>FORMA</translation>
+      <location filename="app/extras/office/status_page.py" />
+      <source>Last stops</source>
+      <translation>Últimos paros</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SINE</source>
-      <translation>SENO</translation>
+      <location filename="app/extras/office/status_page.py" />
+      <source>NO RESPONSE: the values below are out of date</source>
+      <translation>SIN RESPUESTA: los valores de abajo no están actualizados</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SIZE</source>
-      <translation>TAMAÑO</translation>
+      <location filename="app/extras/office/status_page.py" />
+      <source>Parts</source>
+      <translation>Piezas</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SIZE is the travel of the axis; in X, the diameter changes by twice this travel.</source>
-      <translation>TAMAÑO es el recorrido del eje; en X, el diámetro cambia el doble de ese recorrido.</translation>
+      <location filename="app/extras/office/status_page.py" />
+      <source>Program</source>
+      <translation>Programa</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>SPINDLE IS TURNING. STOP IT FIRST</source>
-      <translation>EL HUSILLO GIRA. PÁRELO ANTES</translation>
+      <location filename="app/extras/office/status_page.py" />
+      <source>The part made by the loaded program</source>
+      <translation>La pieza del programa cargado</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>STEP</source>
-      <translation>PASO</translation>
+      <location filename="app/extras/office/status_page.py" />
+      <source>Time remaining</source>
+      <translation>Tiempo restante</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>TEST STOPPED: ANOTHER TEST WAS SELECTED</source>
-      <translation>PRUEBA DETENIDA: SE ELIGIÓ OTRA PRUEBA</translation>
+      <location filename="app/extras/office/web_hook.py" />
+      <source>, redirected to {to}; set [announce] hook to that address</source>
+      <translation>, redirigido a {to}; ponga esa dirección en [announce] hook</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS</source>
-      <translation>PRUEBA DETENIDA: ESTA PÁGINA YA NO TIENE EL FOCO DEL TECLADO</translation>
+      <location filename="app/extras/office/web_hook.py" />
+      <source>HTTP response {code} {reason}{place}</source>
+      <translation>respuesta HTTP {code} {reason}{place}</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>The test does not write any data to the drive.</source>
-      <translation>La prueba no escribe ningún dato en el accionamiento.</translation>
+      <location filename="app/extras/pendant/extra.py" />
+      <source>PENDANT CONNECTION</source>
+      <translation>CONEXIÓN CON EL MANDO COLGANTE</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>as fast as possible</source>
-      <translation>lo más rápido posible</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS</source>
+      <translation>FLECHAS: ELEGIR CARACTERÍSTICA. A TRAZOS: LÍMITES DE CONTROL, PUNTOS: TOLERANCIA, CÍRCULOS: REGLAS INCUMPLIDAS</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>drive test {axis} {shape}</source>
-      <translation>prueba de accionamiento {axis} {shape}</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>AVERAGE</source>
+      <translation>PROMEDIO</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>no test has been run yet</source>
-      <translation>aún no se ha hecho ninguna prueba</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>CONTROL CHARTS</source>
+      <translation>GRÁFICAS DE CONTROL</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>{axis} FROM {position} TO {present} AND BACK IN {seconds} S</source>
-      <translation>{axis} DE {position} A {present} Y VUELTA EN {seconds} S</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>CONTROL CHARTS  ·  {program}</source>
+      <translation>GRÁFICAS DE CONTROL  ·  {program}</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>{axis} NOT HOMED, SO TRAVEL CANNOT BE CHECKED. HOME IT FIRST</source>
-      <translation>{axis} SIN REFERENCIA: NO SE COMPRUEBA EL RECORRIDO. REFERÉNCIELO ANTES</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>DRIFT</source>
+      <translation>DERIVA</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>{item} Hz</source>
-      <translation>{item} Hz</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>FEATURE NOT MEASURED YET</source>
+      <translation>CARACTERÍSTICA AÚN SIN MEDIR</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_model.py" />
-      <source>{travel}: HOLD {key} TO RUN THE TEST, RELEASE TO STOP</source>
-      <translation>{travel}: MANTENGA {key} PARA HACER LA PRUEBA, SUELTE PARA PARAR</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>INDIVIDUALS</source>
+      <translation>VALORES INDIVIDUALES</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_view.py" />
-      <source>ANALYZE</source>
-      <translation>ANALIZAR</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>MEAN {mode}</source>
+      <translation>MEDIA {mode}</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_view.py" />
-      <source>DRIVE TEST  ·  PRESS ARROW, THEN HOLD IT</source>
-      <translation>PRUEBA  ·  PULSAR FLECHA, LUEGO MANTENERLA</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>MOVING RANGE</source>
+      <translation>RANGO MÓVIL</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_view.py" />
-      <source>HOLD {direction}</source>
-      <translation>MANTENGA {direction}</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>RANGE</source>
+      <translation>RANGO</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_view.py" />
-      <source>JOG</source>
-      <translation>MANUAL</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>READINGS</source>
+      <translation>LECTURAS</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/drive_test_view.py" />
-      <source>VALUES</source>
-      <translation>VALORES</translation>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>limits, Cpk, drift</source>
+      <translation>límites, Cpk, deriva</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/charts_section.py" />
+      <source>no drift; Cpk is at least {minimum} (95 % confidence)</source>
+      <translation>sin deriva; Cpk es al menos {minimum} (confianza del 95 %)</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/correction_effect.py" />
+      <source>PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}</source>
+      <translation>NO SE PUEDEN COMPARAR LAS PIEZAS CON CORRECTORES VIEJOS Y NUEVOS: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/correction_effect.py" />
+      <source>{name}: {change} FROM NEXT PART</source>
+      <translation>{name}: {change} DESDE LA PRÓXIMA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/extra.py" />
+      <source>MEASURED</source>
+      <translation>MEDIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/extra.py" />
+      <source>TOOL LIFE</source>
+      <translation>VIDA ÚTIL DE HERRAMIENTAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/extra.py" />
+      <source>features, readings, charts, trends</source>
+      <translation>características, lecturas, gráficas, tendencias</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>CHANGE</source>
+      <translation>CAMBIAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>CORRECTED BY</source>
+      <translation>SE CORRIGE CON</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>EFFECT OF LARGER OFFSET ON SIZE</source>
+      <translation>EFECTO DE MÁS CORRECTOR EN LA MEDIDA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>ENTER: CHANGE FEATURE   F2: NEW FEATURE   ESC: BACK TO LIST</source>
+      <translation>ENTER: CAMBIAR CARACTERÍSTICA   F2: NUEVA   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>Enter accepts the entry and goes to the next field. F6 saves the feature, Esc discards the changes.</source>
+      <translation>Enter acepta lo escrito y pasa al campo siguiente. F6 guarda la característica, Esc descarta los cambios.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>F2 adds a feature, Enter changes the selected feature, F5 sets whether the next part waits until the required parts are measured.</source>
+      <translation>F2 añade una característica, Enter cambia la seleccionada, F5 define si la próxima pieza espera hasta que se midan las piezas requeridas.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>FEATURES</source>
+      <translation>CARACTERÍSTICAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>FEATURES  ·  {program}</source>
+      <translation>CARACTERÍSTICAS  ·  {program}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>FILL IN THE FIELDS. F6: SAVE   ESC: CANCEL</source>
+      <translation>RELLENE LOS CAMPOS. F6: GUARDAR   ESC: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>LARGER</source>
+      <translation>MAYOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>LOWER DEVIATION</source>
+      <translation>DESVIACIÓN INFERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>MEASURE EVERY N PARTS (0: NEVER)</source>
+      <translation>MEDIR CADA N PIEZAS (0: NUNCA)</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NEW</source>
+      <translation>NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NEXT PART DOES NOT WAIT FOR REQUIRED MEASUREMENTS</source>
+      <translation>LA PIEZA SIGUIENTE NO ESPERA LAS MEDICIONES REQUERIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NEXT PART WAITS FOR REQUIRED MEASUREMENTS</source>
+      <translation>LA PIEZA SIGUIENTE ESPERA LAS MEDICIONES REQUERIDAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NO WAIT</source>
+      <translation>NO ESPERAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NOMINAL</source>
+      <translation>NOMINAL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>NOMINAL {mode}</source>
+      <translation>NOMINAL {mode}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>OFFSET</source>
+      <translation>CORRECTOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>PARTS PER SAMPLE</source>
+      <translation>PIEZAS POR MUESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>PRESS ENTER TO SWITCH TO THE OTHER VALUE</source>
+      <translation>PULSE ENTER PARA PASAR AL OTRO VALOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>SECONDARY OFFSET</source>
+      <translation>CORRECTOR SECUNDARIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>SMALLER</source>
+      <translation>MENOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>STOP MEASURING {name}? READINGS STAY STORED. Y: STOP   N: CONTINUE</source>
+      <translation>¿DEJAR DE MEDIR {name}? LAS LECTURAS QUEDAN GUARDADAS. Y: DEJAR   N: SEGUIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>TOLERANCE</source>
+      <translation>TOLERANCIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>TOOL OR OFFSET NUMBER</source>
+      <translation>NÚMERO DE HERRAMIENTA O CORRECTOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>TOOL WEAR</source>
+      <translation>DESGASTE DE HERRAMIENTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>UPPER DEVIATION</source>
+      <translation>DESVIACIÓN SUPERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>WAIT</source>
+      <translation>ESPERAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>every {count} parts</source>
+      <translation>cada {count} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>feature {row} saved</source>
+      <translation>característica {row} guardada</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>measured features of {program}: {change}</source>
+      <translation>características medidas de {program}: {change}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>nominal dimension, tolerance, sampling plan</source>
+      <translation>medida nominal, tolerancia, plan de muestreo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>{name} SAVED</source>
+      <translation>{name} GUARDADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/features_section.py" />
+      <source>{value} is not a whole number</source>
+      <translation>{value} no es un número entero</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_line.py" />
+      <source>NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …</source>
+      <translation>NO HAY CALIBRADOR EN EL ARCHIVO DE MÁQUINA. AÑADA [gauge] port = …</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_line.py" />
+      <source>No gauge is configured: enter its serial port under [gauge] in the machine file.</source>
+      <translation>Ningún calibrador configurado: indique su puerto serie en [gauge] del archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_line.py" />
+      <source>the gauge is not connected or is switched off</source>
+      <translation>el calibrador no está conectado o está apagado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_line.py" />
+      <source>the gauge sent unreadable data</source>
+      <translation>el calibrador envió datos ilegibles</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>GAUGE: {why}. F5: LISTEN AGAIN</source>
+      <translation>CALIBRADOR: {why}. F5: ESCUCHAR OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>GAUGE: {why}. MEASURE AGAIN</source>
+      <translation>CALIBRADOR: {why}. MIDA DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>Listening to the gauge: {count} readings.</source>
+      <translation>Calibrador a la escucha: {count} lecturas.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>No reading from the gauge for {minutes} min. Check its switch and cable.</source>
+      <translation>Sin lecturas del calibrador desde hace {minutes} min. Revise su interruptor y su cable.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/gauge_wire.py" />
+      <source>Not listening to the gauge. Press F5 to start.</source>
+      <translation>Calibrador sin escuchar. Pulse F5 para empezar.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/parts_function.py" />
+      <source>ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST</source>
+      <translation>ENTER: ABRIR PIEZAS MEDIDAS   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/parts_function.py" />
+      <source>MEASUREMENT DUE</source>
+      <translation>MEDICIÓN PENDIENTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/parts_function.py" />
+      <source>Press Enter to open the page, or press W in the main menu.</source>
+      <translation>Pulse Enter para abrir la página, o W en el menú principal.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/plots_view.py" />
+      <source>NOTHING TO DRAW YET</source>
+      <translation>AÚN NO HAY NADA QUE DIBUJAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MAIN MENU, F8/F9</source>
+      <translation>NO SE PUEDE DESHACER: HAY UN CAMBIO POSTERIOR. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>CORRECT</source>
+      <translation>CORREGIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>CORRECTION UNDONE</source>
+      <translation>CORRECCIÓN DESHECHA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>DEVIATION</source>
+      <translation>DESVIACIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>Enter the deviation in DL and DR of the tool table (F8 of the main menu).</source>
+      <translation>Introduzca la desviación en DL y DR de la tabla de herramientas (F8 del menú principal).</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>F8 proposes a correction, F4 undoes the last correction.</source>
+      <translation>F8 propone una corrección, F4 deshace la última corrección.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>GAUGE OFF</source>
+      <translation>CALIBR. NO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>GAUGE ON</source>
+      <translation>CALIBR. SÍ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>GAUGE READING IGNORED. OPEN READINGS, THEN MEASURE AGAIN</source>
+      <translation>LECTURA IGNORADA. ABRA LECTURAS Y MIDA DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>GOOD</source>
+      <translation>BUENA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>MEASURED {name} OF PART {part}?</source>
+      <translation>¿{name} MEDIDO EN LA PIEZA {part}?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MAIN MENU, F8/F9</source>
+      <translation>SIN CORRECCIONES EN ESTA PÁGINA. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>NOT MEASURED YET</source>
+      <translation>AÚN SIN MEDIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>PART +</source>
+      <translation>PIEZA +</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>PART −</source>
+      <translation>PIEZA −</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>PRESS Y TO REMOVE READING {size} FROM PART {part}, N TO KEEP IT</source>
+      <translation>PULSE Y PARA QUITAR LA LECTURA {size} DE LA PIEZA {part}, N PARA CONSERVARLA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>READING REMOVED</source>
+      <translation>LECTURA QUITADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>READINGS  ·  {program}</source>
+      <translation>LECTURAS  ·  {program}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>STILL READING STORED DATA. PRESS F8 AGAIN</source>
+      <translation>AÚN SE LEEN LOS DATOS GUARDADOS. PULSE F8 OTRA VEZ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>TOO LARGE</source>
+      <translation>GRANDE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>TOO SMALL</source>
+      <translation>PEQUEÑA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST</source>
+      <translation>ESCRIBA LA MEDIDA Y PULSE ENTER. ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>measure a part and see the correction needed</source>
+      <translation>medir una pieza y ver la corrección necesaria</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>program {program}, part {part}: reading of {feature} ({last} mm) removed</source>
+      <translation>programa {program}, pieza {part}: lectura de {feature} ({last} mm) quitada</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>program {program}, part {part}: {feature} measured as {taken} mm</source>
+      <translation>programa {program}, pieza {part}: {feature} medido, {taken} mm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>{name} {size} FAR OUT OF TOLERANCE. Y: SAVE   N: MEASURE AGAIN</source>
+      <translation>{name} {size} MUY FUERA DE TOLERANCIA. Y: GUARDAR   N: MEDIR DE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>{name}, PART {part}: {size} SAVED</source>
+      <translation>{name}, PIEZA {part}: {size} GUARDADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>{row} must be more than 0; type the measured size, not the deviation</source>
+      <translation>{row} debe ser mayor que 0; escriba la medida, no la desviación</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>{words}. Y: APPLY   N: DO NOT APPLY</source>
+      <translation>{words}. Y: APLICAR   N: NO APLICAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/readings_section.py" />
+      <source>{words}; APPLIES FROM NEXT PART</source>
+      <translation>{words}; VALE DESDE LA PRÓXIMA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/sample_plan.py" />
+      <source>MEASURE PART {part}: {names}</source>
+      <translation>MIDA LA PIEZA {part}: {names}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/sample_plan.py" />
+      <source>part {part} must be measured before the next part starts: {names}</source>
+      <translation>hay que medir la pieza {part} antes de que empiece la siguiente: {names}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/sample_plan.py" />
+      <source>program {program}: the next part can start before the required parts are measured</source>
+      <translation>programa {program}: la pieza siguiente puede empezar antes de medir las piezas requeridas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/sample_plan.py" />
+      <source>program {program}: the next part cannot start before the required parts are measured</source>
+      <translation>programa {program}: la pieza siguiente no puede empezar antes de medir las piezas requeridas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/section.py" />
+      <source>NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2</source>
+      <translation>AÚN NO HAY CARACTERÍSTICAS. AÑADA UNA CARACTERÍSTICA EN LA SECCIÓN 1 CON F2</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/section.py" />
+      <source>SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES</source>
+      <translation>SELECCIONE ANTES UN PROGRAMA. CADA PROGRAMA TIENE SUS PROPIAS CARACTERÍSTICAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>No part was started in this period.</source>
+      <translation>En este período no se empezó ninguna pieza.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>The clock was set back after {time}, so times of day overlap at that point, but durations are correct.</source>
+      <translation>El reloj se atrasó después de {time}, por lo que en ese punto las horas se solapan, pero las duraciones son correctas.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>The clock was set back by {time} during the shift, so the shift was longer by the same amount.</source>
+      <translation>El reloj se atrasó {time} durante el turno, que por ello fue ese tiempo más largo.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>The clock was set forward by {time} during the shift, so the shift was shorter by the same amount.</source>
+      <translation>El reloj se adelantó {time} durante el turno, que por ello fue ese tiempo más corto.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>The shift has not started.</source>
+      <translation>El turno no ha empezado.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_figures.py" />
+      <source>The shift is still running; this report covers it up to {time}.</source>
+      <translation>El turno sigue en curso; este informe lo cubre hasta las {time}.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>Creating the report …</source>
+      <translation>Creando el informe …</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>EARLIER</source>
+      <translation>ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>ENTER: SAVE REPORT HERE   F4: RESCAN FOR USB STICKS</source>
+      <translation>ENTER: GUARDAR INFORME AQUÍ   F4: BUSCAR OTRA VEZ MEMORIAS USB</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>Enter saves the report as HTML in the selected location.</source>
+      <translation>Enter guarda el informe como HTML en la ubicación elegida.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK</source>
+      <translation>F2, F3: OTRO TURNO   F6: GUARDAR INFORME COMO HTML   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>LATER</source>
+      <translation>DESPUÉS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>NO EARLIER SHIFT IS AVAILABLE</source>
+      <translation>NO HAY TURNOS ANTERIORES DISPONIBLES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>PLACE</source>
+      <translation>LUGAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>REPORT IS NOT READY YET. WAIT A MOMENT</source>
+      <translation>EL INFORME AÚN NO ESTÁ LISTO. ESPERE UN MOMENTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>SHIFT REPORT</source>
+      <translation>INFORME DE TURNO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>SHIFT REPORT  ·  SAVE TO:</source>
+      <translation>INFORME DE TURNO  ·  GUARDAR EN:</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>THIS IS THE LATEST SHIFT</source>
+      <translation>ESTE ES EL ÚLTIMO TURNO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>parts, times, stops and alarms, for printing</source>
+      <translation>piezas, tiempos, paros y alarmas, para imprimir</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_function.py" />
+      <source>{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW</source>
+      <translation>{name} GUARDADO. SI USÓ UNA MEMORIA USB, YA PUEDE RETIRARLA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Alarms and E-stops</source>
+      <translation>Alarmas y paros de emergencia</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>All stops</source>
+      <translation>Todos los paros</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Availability</source>
+      <translation>Disponibilidad</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>CYCLES WITHOUT A PART</source>
+      <translation>CICLOS SIN PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Inserts changed in this shift</source>
+      <translation>Plaquitas cambiadas en este turno</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>LIFE USED</source>
+      <translation>VIDA USADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>LIMITS</source>
+      <translation>LÍMITES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>LONGEST</source>
+      <translation>MÁS LARGO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>MEAN</source>
+      <translation>MEDIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Not recorded</source>
+      <translation>Sin registrar</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>OCCURRENCES</source>
+      <translation>VECES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Offsets changed</source>
+      <translation>Correctores cambiados</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Out of tolerance</source>
+      <translation>Fuera de tolerancia</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Parts by program</source>
+      <translation>Piezas por programa</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>REASON</source>
+      <translation>MOTIVO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>SHARE</source>
+      <translation>PARTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>SHORTEST</source>
+      <translation>MÁS CORTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>START TIME</source>
+      <translation>HORA DE INICIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Stops</source>
+      <translation>Paros</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Stops by reason</source>
+      <translation>Paros por motivo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>Tool life used so far</source>
+      <translation>Vida de herramienta usada hasta ahora</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>USAGE</source>
+      <translation>USO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>USED</source>
+      <translation>USADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>WHO</source>
+      <translation>QUIÉN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>and {count} more</source>
+      <translation>y {count} más</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>green: cycles; amber: stops; red: alarms</source>
+      <translation>verde: ciclos; ámbar: paros; rojo: alarmas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>shift from {first} to {last}</source>
+      <translation>turno de {first} a {last}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>wear</source>
+      <translation>desgaste</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>{bad} of {count} readings</source>
+      <translation>{bad} de {count} lecturas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>{parts} parts, {time}</source>
+      <translation>{parts} piezas, {time}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>{share} %: in cycle for {run} of {planned}</source>
+      <translation>{share} %: en ciclo {run} de {planned}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/shift_page.py" />
+      <source>{unit} mm</source>
+      <translation>{unit} mm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>ARROWS: SELECT TREND   ESC: BACK TO LIST</source>
+      <translation>FLECHAS: ELEGIR TENDENCIA   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>AVAILABILITY</source>
+      <translation>DISPONIBILIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>CYCLE TIME</source>
+      <translation>TIEMPO DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>CYCLE TIME, s</source>
+      <translation>TIEMPO DE CICLO, s</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>IN CYCLE</source>
+      <translation>EN CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>MINUTES BY REASON, WITH CUMULATIVE PERCENTAGE</source>
+      <translation>MINUTOS POR MOTIVO, CON PORCENTAJE ACUMULADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>MINUTES OF THE SHIFT</source>
+      <translation>MINUTOS DEL TURNO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>NOT IN CYCLE</source>
+      <translation>FUERA DE CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>SHIFT HOURS, FOR EXAMPLE 6-14?</source>
+      <translation>¿HORAS DEL TURNO, POR EJEMPLO 6-14?</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>SPINDLE LOAD</source>
+      <translation>CARGA DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>SPINDLE LOAD, %</source>
+      <translation>CARGA DEL HUSILLO, %</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>STOPS</source>
+      <translation>PAROS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>TRENDS</source>
+      <translation>TENDENCIAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>TRENDS  ·  {program}</source>
+      <translation>TENDENCIAS  ·  {program}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>cycle times, stops, availability</source>
+      <translation>tiempos de ciclo, paros, disponibilidad</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>enter the start and end hour of the shift, such as 6-14</source>
+      <translation>escriba la hora de inicio y la de fin del turno, como 6-14</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>last cycle {last}, shortest {best}, mean {mean} of {count} parts</source>
+      <translation>último ciclo {last}, menor {best}, media {mean} de {count} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>last load {last} %, highest load {maximum} %</source>
+      <translation>última carga {last} %, carga mayor {maximum} %</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>no drive on this machine reports its load</source>
+      <translation>ningún accionamiento de esta máquina informa su carga</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>no part made yet</source>
+      <translation>aún no se ha hecho ninguna pieza</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>no stops yet</source>
+      <translation>aún sin paros</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>no wear correction yet</source>
+      <translation>aún sin correcciones de desgaste</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>parts</source>
+      <translation>piezas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>shift hours: {first} to {last}</source>
+      <translation>horas del turno: {first} a {last}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>{count} corrections; last correction: {offset} by X {x} Z {z} after part {part}</source>
+      <translation>{count} correcciones; última corrección: {offset} en X {x} Z {z} tras la pieza {part}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>{count} stops, on average {mean} apart; longest total: {reason}, {time}</source>
+      <translation>{count} paros, {mean} entre ellos de media; mayor total: {reason}, {time}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>{first}–{last}: the shift has not started</source>
+      <translation>{first}–{last}: el turno no ha empezado</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/trends_section.py" />
+      <source>{first}–{last}: {share} %, in cycle for {run} of {planned}</source>
+      <translation>{first}–{last}: {share} %, en ciclo {run} de {planned}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/wear_correction.py" />
+      <source>NO OFFSETS SET FOR T{number}</source>
+      <translation>T{number} NO TIENE CORRECTORES DEFINIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/wear_correction.py" />
+      <source>{name} measured: the mean of {count} readings is {mean}, offset change {change}</source>
+      <translation>{name} medido: la media de {count} lecturas es {mean}, cambio del corrector {change}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/quality/wear_correction.py" />
+      <source>{row}: none of the parts started since the last change of {name} has been measured yet</source>
+      <translation>{row}: aún no se ha medido ninguna de las piezas empezadas desde el último cambio de {name}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shape_form.py" />
+      <source>CLASS</source>
+      <translation>CLASE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shape_form.py" />
+      <source>These values do not make a valid shape: check the last value that you entered.</source>
+      <translation>Estos valores no dan una forma válida: revise el último valor que introdujo.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shape_words.py" />
+      <source>SERIES</source>
+      <translation>SERIE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>1 SHAPE EDITED BY HAND WAS NOT CHANGED</source>
+      <translation>1 FORMA EDITADA A MANO NO SE CAMBIÓ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>F6: DELETE THE {count} LINES OF THIS SHAPE   ESC: KEEP THEM</source>
+      <translation>F6: BORRAR LAS {count} LÍNEAS DE ESTA FORMA   ESC: CONSERVARLAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>F6: REPLACE {count} EDITED LINES STARTING AT LINE {line}   ESC: KEEP</source>
+      <translation>F6: SUSTITUIR {count} LÍNEAS EDITADAS A PARTIR DE LA LÍNEA {line}   ESC: CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>FIRST PRESS N AND FILL IN THE PROGRAM HEADER (HEAD)</source>
+      <translation>PRIMERO PULSE N Y RELLENE LA CABECERA DEL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>KEYPAD</source>
+      <translation>TECLAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>LETTER: OPEN CALCULATOR OR TEMPLATE   F10: GO TO TEXT</source>
+      <translation>LETRA: ABRIR CALCULADORA O PLANTILLA   F10: IR AL TEXTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>LETTER: OPEN SHAPE   RIGHT: SHAPES IN PROGRAM   F10: TEXT</source>
+      <translation>LETRA: ABRIR FORMA   DERECHA: FORMAS DEL PROGRAMA   F10: TEXTO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>LINE {line} EDITED BY HAND. FORM SHOWS VALUES STORED IN COMMENT</source>
+      <translation>LÍNEA {line} EDITADA A MANO. EL FORMULARIO MUESTRA LOS VALORES DEL COMENTARIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>LINE {line}: EDITED {shape} COMMENT CANNOT BE READ. UNDO THE EDIT</source>
+      <translation>LÍNEA {line}: COMENTARIO DE {shape} EDITADO, ILEGIBLE. DESHAGA EL CAMBIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS</source>
+      <translation>LAS FORMAS SOLO FUNCIONAN EN PROGRAMAS OMNITURN Y SINUMERIK</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>THE FORM USES THESE VALUES EDITED BY HAND IN THE TEXT: {fields}</source>
+      <translation>LA FICHA USA ESTOS VALORES EDITADOS A MANO EN EL TEXTO: {fields}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>TOOL DATA CANNOT BE READ: {why}</source>
+      <translation>NO SE PUEDEN LEER LOS DATOS DE HERRAMIENTA: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE</source>
+      <translation>ESCRIBA UN NÚMERO O EXPRESIÓN   ENTER: CAMPO SIGUIENTE   F2: ESCRIBIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE</source>
+      <translation>X Z C R A: IR A LA COLUMNA   ENTER: PUNTO SIGUIENTE   F2: ESCRIBIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_model.py" />
+      <source>{count} SHAPES EDITED BY HAND WERE NOT CHANGED</source>
+      <translation>{count} FORMAS EDITADAS A MANO NO SE CAMBIARON</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_view.py" />
+      <source>CALCULATOR ⇧F4</source>
+      <translation>CÁLCULO ⇧F4</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_view.py" />
+      <source>CALCULATORS AND TEMPLATES</source>
+      <translation>CALCULADORAS Y PLANTILLAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_view.py" />
+      <source>LINES</source>
+      <translation>LÍNEAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_view.py" />
+      <source>SHAPES</source>
+      <translation>FORMAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_view.py" />
+      <source>SHAPES  ·  IN THIS PROGRAM, BY LINE</source>
+      <translation>FORMAS  ·  EN ESTE PROGRAMA, POR LÍNEA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shapes_view.py" />
+      <source>SHAPES ⇧F3</source>
+      <translation>FORMAS ⇧F3</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>PROGRAM SHARING</source>
+      <translation>COMPARTICIÓN DE PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>SHARED</source>
+      <translation>COMPART.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/extra.py" />
+      <source>programs from other TurnDesk controls; newer versions are copied on request</source>
+      <translation>programas de otros controles TurnDesk; las versiones nuevas se copian si se pide</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/program_files.py" />
+      <source>the file is larger than {most_bytes} MB</source>
+      <translation>el archivo es mayor de {most_bytes} MB</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/program_files.py" />
+      <source>the name of another program on this control differs from the name of this program only in upper and lower case: rename one of the programs</source>
+      <translation>el nombre de otro programa de este control difiere del nombre de este programa solo en mayúsculas y minúsculas: cambie el nombre de uno de los programas</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>copied from {machine}</source>
+      <translation>copiado de {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>no decision is necessary, because no other control has changed this program</source>
+      <translation>no hace falta decidir, porque ningún otro control ha cambiado este programa</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>shared by {machine}</source>
+      <translation>compartido por {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>the text of {program} differs from the saved version; save the program again</source>
+      <translation>el texto de {program} difiere de la versión guardada; guarde el programa otra vez</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing.py" />
+      <source>{program} is already the selected version</source>
+      <translation>{program} ya es la versión elegida</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_desk.py" />
+      <source>PROGRAMS NOT SHARED: {why}</source>
+      <translation>PROGRAMAS SIN COMPARTIR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_desk.py" />
+      <source>{name} WAS CHANGED ON {machine}. F1, X: SHOW CHANGES</source>
+      <translation>{name} SE CAMBIÓ EN {machine}. F1, X: MOSTRAR LOS CAMBIOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_desk.py" />
+      <source>{path} cannot be used: {error}</source>
+      <translation>{path} no se puede usar: {error}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>AVAILABLE ON</source>
+      <translation>DISPONIBLE EN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>AVAILABLE ON {desks}</source>
+      <translation>DISPONIBLE EN {desks}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>CHANGED HERE AND ON ANOTHER CONTROL</source>
+      <translation>CAMBIADO AQUÍ Y EN OTRO CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>CHANGES IF YOU USE THE SELECTED VERSION</source>
+      <translation>CAMBIOS SI USA LA VERSIÓN ELEGIDA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>CHECKING …</source>
+      <translation>COMPROBANDO …</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>F2: USE SELECTED VERSION   F3: KEEP LOCAL VERSION   ESC: BACK</source>
+      <translation>F2: USAR LA VERSIÓN ELEGIDA   F3: CONSERVAR LA LOCAL   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>F2: USE SELECTED VERSION (ASKS FIRST)   ESC: AUTOMATIC</source>
+      <translation>F2: USAR LA VERSIÓN ELEGIDA (PREGUNTA ANTES)   ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>KEEP</source>
+      <translation>CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NEWER VERSION ON ANOTHER CONTROL</source>
+      <translation>VERSIÓN MÁS NUEVA EN OTRO CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM</source>
+      <translation>NO HACE FALTA DECIDIR: NINGÚN OTRO CONTROL HA CAMBIADO ESTE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER OR A DATABASE UNDER [sharing] IN THE MACHINE FILE</source>
+      <translation>NO HAY UBICACIÓN PARA PROGRAMAS COMPARTIDOS. INDIQUE UNA CARPETA O UNA BASE DE DATOS EN [sharing] DEL ARCHIVO DE MÁQUINA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NO OTHER CONTROL HAS A NEWER VERSION</source>
+      <translation>NINGÚN OTRO CONTROL TIENE UNA VERSIÓN MÁS NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NOT ON THIS CONTROL</source>
+      <translation>NO ESTÁ EN ESTE CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER</source>
+      <translation>AÚN NO SE COMPARTE NADA. LA PRÓXIMA ACTUALIZACIÓN COMPARTE LA CARPETA DE PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>SAME TEXT AS ON THIS CONTROL</source>
+      <translation>EL MISMO TEXTO QUE EN ESTE CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>UP TO DATE</source>
+      <translation>AL DÍA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC</source>
+      <translation>ARRIBA/ABAJO: SELECCIONAR PROGRAMA   F5: ACTUALIZAR   ESC: AUTOMÁTICO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>VERSION</source>
+      <translation>VERSIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>Y: KEEP LOCAL {name}, STORE OTHER VERSIONS   N: CANCEL</source>
+      <translation>Y: CONSERVAR {name} LOCAL, GUARDAR LAS OTRAS VERSIONES   N: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>Y: USE {name} FROM {desk} (LOCAL VERSION STAYS STORED)   N: CANCEL</source>
+      <translation>Y: USAR {name} DE {desk} (LA VERSIÓN LOCAL QUEDA GUARDADA)   N: CANCELAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>program {name}: local version retained</source>
+      <translation>programa {name}: versión local conservada</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>program {program}: version from {machine} now in use</source>
+      <translation>programa {program}: se usa ahora la versión de {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{count} WAITING TO BE SHARED</source>
+      <translation>{count} POR COMPARTIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{name} IS NOW THE VERSION FROM {machine}</source>
+      <translation>{name} ES AHORA LA VERSIÓN DE {machine}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{name}: LOCAL VERSION RETAINED</source>
+      <translation>{name}: VERSIÓN LOCAL CONSERVADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_model.py" />
+      <source>{name}: NO RESPONSE FOR {seconds} S. PROGRAMS STAY LOCAL FOR NOW</source>
+      <translation>{name} NO RESPONDE HACE {seconds} S. POR AHORA LOS PROGRAMAS QUEDAN AQUÍ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/sharing_view.py" />
+      <source>VERSIONS ON OTHER CONTROLS</source>
+      <translation>VERSIONES EN OTROS CONTROLES</translation>
     </message>
     <message>
       <location filename="app/jog/hand_functions.py" />
@@ -8527,6 +10547,11 @@
       <location filename="app/jog/jog_pad_view.py" />
       <source>SETTER (P)</source>
       <translation>PALPADOR (P)</translation>
+    </message>
+    <message>
+      <location filename="app/jog/jog_pad_view.py" />
+      <source>STEP</source>
+      <translation>PASO</translation>
     </message>
     <message>
       <location filename="app/jog/jog_pad_view.py" />
@@ -9895,6 +11920,16 @@
     </message>
     <message>
       <location filename="app/offsets/tool_offsets_view.py" />
+      <source>ADD</source>
+      <translation>SUMAR</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
+      <source>SHAPE</source>
+      <translation>FORMA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/tool_offsets_view.py" />
       <source>TOOL OFFSETS</source>
       <translation>CORRECTORES DE HERRAMIENTA</translation>
     </message>
@@ -10050,6 +12085,11 @@
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
+      <source>NOT SAVED: {why}</source>
+      <translation>SIN GUARDAR: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
       <source>ON A MILL, TURNDESK DOES NOT CHECK THE FINISHED PART</source>
       <translation>EN UNA FRESADORA, TURNDESK NO COMPRUEBA LA PIEZA TERMINADA</translation>
     </message>
@@ -10067,6 +12107,11 @@
       <location filename="app/part/part_sheet.py" />
       <source>SELECT THE FINDING WHOSE CHECK YOU WANT TO TURN OFF</source>
       <translation>SELECCIONE EL HALLAZGO CUYA COMPROBACIÓN QUIERE DESACTIVAR</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_sheet.py" />
+      <source>STOCK</source>
+      <translation>MATERIAL EN BRUTO</translation>
     </message>
     <message>
       <location filename="app/part/part_sheet.py" />
@@ -10210,6 +12255,11 @@
     </message>
     <message>
       <location filename="app/part/part_tables.py" />
+      <source>NOT PROVED YET</source>
+      <translation>AÚN NO COMPROBADO</translation>
+    </message>
+    <message>
+      <location filename="app/part/part_tables.py" />
       <source>REASON FOR TURNING OFF THE {check} CHECK?</source>
       <translation>¿MOTIVO PARA DESACTIVAR LA COMPROBACIÓN {check}?</translation>
     </message>
@@ -10302,6 +12352,11 @@
       <location filename="app/path/measuring.py" />
       <source>TO Z</source>
       <translation>A LA Z</translation>
+    </message>
+    <message>
+      <location filename="app/path/part_bar_view.py" />
+      <source>LINE {line}</source>
+      <translation>LÍNEA {line}</translation>
     </message>
     <message>
       <location filename="app/path/path_aspects.py" />
@@ -10417,6 +12472,71 @@
       <location filename="app/path/path_view.py" />
       <source>Step forward</source>
       <translation>Paso adelante</translation>
+    </message>
+    <message>
+      <location filename="app/production/cycle_recorder.py" />
+      <source>BETWEEN CYCLES</source>
+      <translation>ENTRE CICLOS</translation>
+    </message>
+    <message>
+      <location filename="app/production/cycle_recorder.py" />
+      <source>RESTARTED</source>
+      <translation>REANUDADO</translation>
+    </message>
+    <message>
+      <location filename="app/production/parts_book.py" />
+      <source>MEASURED PARTS CANNOT BE SAVED: NO DATA STORE</source>
+      <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: NO HAY ALMACÉN DE DATOS</translation>
+    </message>
+    <message>
+      <location filename="app/production/parts_book.py" />
+      <source>MEASURED PARTS CANNOT BE SAVED: {away}</source>
+      <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: {away}</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>TOOL {number} LIFE USED UP: {words}</source>
+      <translation>VIDA DE HERRAMIENTA {number} AGOTADA: {words}</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>TOOL {number} LIFE: {words} USED</source>
+      <translation>VIDA DE HERRAMIENTA {number}: {words} USADOS</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>T{number} SAVED</source>
+      <translation>T{number} GUARDADA</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>T{number} tool life is used up ({life}): change the insert and confirm the change in TOOL LIFE</source>
+      <translation>la vida de T{number} se ha agotado ({life}): cambie la plaquita y confirme el cambio en VIDA ÚTIL</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>T{number} tool life is used up ({life}): {method}</source>
+      <translation>la vida de T{number} se ha agotado ({life}): {method}</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>T{number}: NEW INSERT, TOOL LIFE STARTS AT ZERO</source>
+      <translation>T{number}: PLAQUITA NUEVA, LA VIDA EMPIEZA EN CERO</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>T{number}: NEW TOOL, TOOL LIFE STARTS AT ZERO</source>
+      <translation>T{number}: HERRAMIENTA NUEVA, LA VIDA EMPIEZA EN CERO</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>cutting time of T{number} set to {seconds} min</source>
+      <translation>tiempo de corte de T{number} fijado en {seconds} min</translation>
+    </message>
+    <message>
+      <location filename="app/production/tool_life_watch.py" />
+      <source>fit a new tool and set its CUR.TIME to 0 in the tool table (F8)</source>
+      <translation>ponga una herramienta nueva y su CUR.TIME a 0 en la tabla de herramientas (F8)</translation>
     </message>
     <message>
       <location filename="app/programs/copy_rename_delete.py" />
@@ -10557,6 +12677,11 @@
       <location filename="app/programs/folder_chooser.py" />
       <source>READ-ONLY</source>
       <translation>SOLO LECTURA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/folder_chooser.py" />
+      <source>SIZE</source>
+      <translation>TAMAÑO</translation>
     </message>
     <message>
       <location filename="app/programs/folder_chooser.py" />
@@ -10904,1501 +13029,6 @@
       <translation>NO SE PUEDE ESCRIBIR {target}: {cause}</translation>
     </message>
     <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS</source>
-      <translation>FLECHAS: ELEGIR CARACTERÍSTICA. A TRAZOS: LÍMITES DE CONTROL, PUNTOS: TOLERANCIA, CÍRCULOS: REGLAS INCUMPLIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>AVERAGE</source>
-      <translation>PROMEDIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>CONTROL CHARTS</source>
-      <translation>GRÁFICAS DE CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>CONTROL CHARTS  ·  {program}</source>
-      <translation>GRÁFICAS DE CONTROL  ·  {program}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>DRIFT</source>
-      <translation>DERIVA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>FEATURE NOT MEASURED YET</source>
-      <translation>CARACTERÍSTICA AÚN SIN MEDIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>INDIVIDUALS</source>
-      <translation>VALORES INDIVIDUALES</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>MEAN {mode}</source>
-      <translation>MEDIA {mode}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>MOVING RANGE</source>
-      <translation>RANGO MÓVIL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>RANGE</source>
-      <translation>RANGO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>READINGS</source>
-      <translation>LECTURAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>limits, Cpk, drift</source>
-      <translation>límites, Cpk, deriva</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/charts_section.py" />
-      <source>no drift; Cpk is at least {minimum} (95 % confidence)</source>
-      <translation>sin deriva; Cpk es al menos {minimum} (confianza del 95 %)</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/correction_effect.py" />
-      <source>NOW</source>
-      <translation>AHORA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/correction_effect.py" />
-      <source>PARTS WITH OLD AND NEW OFFSETS CANNOT BE COMPARED: {why}</source>
-      <translation>NO SE PUEDEN COMPARAR LAS PIEZAS CON CORRECTORES VIEJOS Y NUEVOS: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/correction_effect.py" />
-      <source>{name}: {change} FROM NEXT PART</source>
-      <translation>{name}: {change} DESDE LA PRÓXIMA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/production/cycle_recorder.py" />
-      <source>BETWEEN CYCLES</source>
-      <translation>ENTRE CICLOS</translation>
-    </message>
-    <message>
-      <location filename="app/production/cycle_recorder.py" />
-      <source>RESTARTED</source>
-      <translation>REANUDADO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>CHANGE</source>
-      <translation>CAMBIAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>CORRECTED BY</source>
-      <translation>SE CORRIGE CON</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>EFFECT OF LARGER OFFSET ON SIZE</source>
-      <translation>EFECTO DE MÁS CORRECTOR EN LA MEDIDA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>ENTER: CHANGE FEATURE   F2: NEW FEATURE   ESC: BACK TO LIST</source>
-      <translation>ENTER: CAMBIAR CARACTERÍSTICA   F2: NUEVA   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>Enter accepts the entry and goes to the next field. F6 saves the feature, Esc discards the changes.</source>
-      <translation>Enter acepta lo escrito y pasa al campo siguiente. F6 guarda la característica, Esc descarta los cambios.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>F2 adds a feature, Enter changes the selected feature, F5 sets whether the next part waits until the required parts are measured.</source>
-      <translation>F2 añade una característica, Enter cambia la seleccionada, F5 define si la próxima pieza espera hasta que se midan las piezas requeridas.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>FEATURES</source>
-      <translation>CARACTERÍSTICAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>FEATURES  ·  {program}</source>
-      <translation>CARACTERÍSTICAS  ·  {program}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>FILL IN THE FIELDS. F6: SAVE   ESC: CANCEL</source>
-      <translation>RELLENE LOS CAMPOS. F6: GUARDAR   ESC: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>LARGER</source>
-      <translation>MAYOR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>LOWER DEVIATION</source>
-      <translation>DESVIACIÓN INFERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>MEASURE EVERY N PARTS (0: NEVER)</source>
-      <translation>MEDIR CADA N PIEZAS (0: NUNCA)</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>MEASURED</source>
-      <translation>MEDIDO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>NEW</source>
-      <translation>NUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>NEXT PART DOES NOT WAIT FOR REQUIRED MEASUREMENTS</source>
-      <translation>LA PIEZA SIGUIENTE NO ESPERA LAS MEDICIONES REQUERIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>NEXT PART WAITS FOR REQUIRED MEASUREMENTS</source>
-      <translation>LA PIEZA SIGUIENTE ESPERA LAS MEDICIONES REQUERIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>NO WAIT</source>
-      <translation>NO ESPERAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>NOMINAL</source>
-      <translation>NOMINAL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>NOMINAL {mode}</source>
-      <translation>NOMINAL {mode}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>OFFSET</source>
-      <translation>CORRECTOR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>PARTS PER SAMPLE</source>
-      <translation>PIEZAS POR MUESTRA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>PRESS ENTER TO SWITCH TO THE OTHER VALUE</source>
-      <translation>PULSE ENTER PARA PASAR AL OTRO VALOR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>SECONDARY OFFSET</source>
-      <translation>CORRECTOR SECUNDARIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>SMALLER</source>
-      <translation>MENOR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>STOP MEASURING {name}? READINGS STAY STORED. Y: STOP   N: CONTINUE</source>
-      <translation>¿DEJAR DE MEDIR {name}? LAS LECTURAS QUEDAN GUARDADAS. Y: DEJAR   N: SEGUIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>TOLERANCE</source>
-      <translation>TOLERANCIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>TOOL OR OFFSET NUMBER</source>
-      <translation>NÚMERO DE HERRAMIENTA O CORRECTOR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>TOOL WEAR</source>
-      <translation>DESGASTE DE HERRAMIENTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>UPPER DEVIATION</source>
-      <translation>DESVIACIÓN SUPERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>WAIT</source>
-      <translation>ESPERAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>every {count} parts</source>
-      <translation>cada {count} piezas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>feature {row} saved</source>
-      <translation>característica {row} guardada</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>measured features of {program}: {change}</source>
-      <translation>características medidas de {program}: {change}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>nominal dimension, tolerance, sampling plan</source>
-      <translation>medida nominal, tolerancia, plan de muestreo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>{name} REMOVED</source>
-      <translation>{name} ELIMINADO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>{name} SAVED</source>
-      <translation>{name} GUARDADA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>{row} removed</source>
-      <translation>{row} eliminado</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
-      <source>{value} is not a whole number</source>
-      <translation>{value} no es un número entero</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_line.py" />
-      <source>NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …</source>
-      <translation>NO HAY CALIBRADOR EN EL ARCHIVO DE MÁQUINA. AÑADA [gauge] port = …</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_line.py" />
-      <source>No gauge is configured: enter its serial port under [gauge] in the machine file.</source>
-      <translation>Ningún calibrador configurado: indique su puerto serie en [gauge] del archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_line.py" />
-      <source>the gauge is not connected or is switched off</source>
-      <translation>el calibrador no está conectado o está apagado</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/gauge_line.py" />
-      <source>the gauge sent unreadable data</source>
-      <translation>el calibrador envió datos ilegibles</translation>
-    </message>
-    <message>
-      <location filename="app/production/parts_book.py" />
-      <source>MEASURED PARTS CANNOT BE SAVED: NO DATA STORE</source>
-      <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: NO HAY ALMACÉN DE DATOS</translation>
-    </message>
-    <message>
-      <location filename="app/production/parts_book.py" />
-      <source>MEASURED PARTS CANNOT BE SAVED: {away}</source>
-      <translation>LAS PIEZAS MEDIDAS NO SE PUEDEN GUARDAR: {away}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/parts_function.py" />
-      <source>ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST</source>
-      <translation>ENTER: ABRIR PIEZAS MEDIDAS   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/parts_function.py" />
-      <source>MEASURED PARTS</source>
-      <translation>PIEZAS MEDIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/parts_function.py" />
-      <source>MEASUREMENT DUE</source>
-      <translation>MEDICIÓN PENDIENTE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/parts_function.py" />
-      <source>Press Enter to open the page, or press W in the main menu.</source>
-      <translation>Pulse Enter para abrir la página, o W en el menú principal.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/parts_function.py" />
-      <source>STORED</source>
-      <translation>GUARDADO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/parts_function.py" />
-      <source>features, readings, charts, trends</source>
-      <translation>características, lecturas, gráficas, tendencias</translation>
-    </message>
-    <message>
-      <location filename="app/production/parts_watch.py" />
-      <source>program {program}: the next part can start before the required parts are measured</source>
-      <translation>programa {program}: la pieza siguiente puede empezar antes de medir las piezas requeridas</translation>
-    </message>
-    <message>
-      <location filename="app/production/parts_watch.py" />
-      <source>program {program}: the next part cannot start before the required parts are measured</source>
-      <translation>programa {program}: la pieza siguiente no puede empezar antes de medir las piezas requeridas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/plots_view.py" />
-      <source>CHART</source>
-      <translation>GRÁFICO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/plots_view.py" />
-      <source>NOTHING TO DRAW YET</source>
-      <translation>AÚN NO HAY NADA QUE DIBUJAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>CANNOT UNDO: A LATER CHANGE EXISTS. HISTORY: MAIN MENU, F8/F9</source>
-      <translation>NO SE PUEDE DESHACER: HAY UN CAMBIO POSTERIOR. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>CORRECT</source>
-      <translation>CORREGIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>CORRECTION UNDONE</source>
-      <translation>CORRECCIÓN DESHECHA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>DEVIATION</source>
-      <translation>DESVIACIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>Enter the deviation in DL and DR of the tool table (F8 of the main menu).</source>
-      <translation>Introduzca la desviación en DL y DR de la tabla de herramientas (F8 del menú principal).</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>F8 proposes a correction, F4 undoes the last correction.</source>
-      <translation>F8 propone una corrección, F4 deshace la última corrección.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>GAUGE OFF</source>
-      <translation>CALIBR. NO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>GAUGE ON</source>
-      <translation>CALIBR. SÍ</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>GAUGE READING IGNORED. OPEN READINGS, THEN MEASURE AGAIN</source>
-      <translation>LECTURA IGNORADA. ABRA LECTURAS Y MIDA DE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>GOOD</source>
-      <translation>BUENA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>MEASURED {name} OF PART {part}?</source>
-      <translation>¿{name} MEDIDO EN LA PIEZA {part}?</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MAIN MENU, F8/F9</source>
-      <translation>SIN CORRECCIONES EN ESTA PÁGINA. HISTORIAL: MENÚ PRINCIPAL, F8/F9</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>NOT MEASURED YET</source>
-      <translation>AÚN SIN MEDIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>PART +</source>
-      <translation>PIEZA +</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>PART −</source>
-      <translation>PIEZA −</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>PRESS Y TO REMOVE READING {size} FROM PART {part}, N TO KEEP IT</source>
-      <translation>PULSE Y PARA QUITAR LA LECTURA {size} DE LA PIEZA {part}, N PARA CONSERVARLA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>READING REMOVED</source>
-      <translation>LECTURA QUITADA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>READINGS  ·  {program}</source>
-      <translation>LECTURAS  ·  {program}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>STILL READING STORED DATA. PRESS F8 AGAIN</source>
-      <translation>AÚN SE LEEN LOS DATOS GUARDADOS. PULSE F8 OTRA VEZ</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>TOO LARGE</source>
-      <translation>GRANDE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>TOO SMALL</source>
-      <translation>PEQUEÑA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST</source>
-      <translation>ESCRIBA LA MEDIDA Y PULSE ENTER. ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>measure a part and see the correction needed</source>
-      <translation>medir una pieza y ver la corrección necesaria</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>program {program}, part {part}: reading of {feature} ({last} mm) removed</source>
-      <translation>programa {program}, pieza {part}: lectura de {feature} ({last} mm) quitada</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>program {program}, part {part}: {feature} measured as {taken} mm</source>
-      <translation>programa {program}, pieza {part}: {feature} medido, {taken} mm</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>{name} {size} FAR OUT OF TOLERANCE. Y: SAVE   N: MEASURE AGAIN</source>
-      <translation>{name} {size} MUY FUERA DE TOLERANCIA. Y: GUARDAR   N: MEDIR DE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>{name}, PART {part}: {size} SAVED</source>
-      <translation>{name}, PIEZA {part}: {size} GUARDADA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>{row} must be more than 0; type the measured size, not the deviation</source>
-      <translation>{row} debe ser mayor que 0; escriba la medida, no la desviación</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>{words}. Y: APPLY   N: DO NOT APPLY</source>
-      <translation>{words}. Y: APLICAR   N: NO APLICAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/readings_section.py" />
-      <source>{words}; APPLIES FROM NEXT PART</source>
-      <translation>{words}; VALE DESDE LA PRÓXIMA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/sample_plan.py" />
-      <source>MEASURE PART {part}: {names}</source>
-      <translation>MIDA LA PIEZA {part}: {names}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/sample_plan.py" />
-      <source>part {part} must be measured before the next part starts: {names}</source>
-      <translation>hay que medir la pieza {part} antes de que empiece la siguiente: {names}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/section.py" />
-      <source>NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2</source>
-      <translation>AÚN NO HAY CARACTERÍSTICAS. AÑADA UNA CARACTERÍSTICA EN LA SECCIÓN 1 CON F2</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/section.py" />
-      <source>SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES</source>
-      <translation>SELECCIONE ANTES UN PROGRAMA. CADA PROGRAMA TIENE SUS PROPIAS CARACTERÍSTICAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>No part was started in this period.</source>
-      <translation>En este período no se empezó ninguna pieza.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>The clock was set back after {time}, so times of day overlap at that point, but durations are correct.</source>
-      <translation>El reloj se atrasó después de {time}, por lo que en ese punto las horas se solapan, pero las duraciones son correctas.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>The clock was set back by {time} during the shift, so the shift was longer by the same amount.</source>
-      <translation>El reloj se atrasó {time} durante el turno, que por ello fue ese tiempo más largo.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>The clock was set forward by {time} during the shift, so the shift was shorter by the same amount.</source>
-      <translation>El reloj se adelantó {time} durante el turno, que por ello fue ese tiempo más corto.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>The shift has not started.</source>
-      <translation>El turno no ha empezado.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_figures.py" />
-      <source>The shift is still running; this report covers it up to {time}.</source>
-      <translation>El turno sigue en curso; este informe lo cubre hasta las {time}.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>Creating the report …</source>
-      <translation>Creando el informe …</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>EARLIER</source>
-      <translation>ANTES</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>ENTER: SAVE REPORT HERE   F4: RESCAN FOR USB STICKS</source>
-      <translation>ENTER: GUARDAR INFORME AQUÍ   F4: BUSCAR OTRA VEZ MEMORIAS USB</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>Enter saves the report as HTML in the selected location.</source>
-      <translation>Enter guarda el informe como HTML en la ubicación elegida.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK</source>
-      <translation>F2, F3: OTRO TURNO   F6: GUARDAR INFORME COMO HTML   ESC: VOLVER</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>LATER</source>
-      <translation>DESPUÉS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>NO EARLIER SHIFT IS AVAILABLE</source>
-      <translation>NO HAY TURNOS ANTERIORES DISPONIBLES</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>PLACE</source>
-      <translation>LUGAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>REPORT IS NOT READY YET. WAIT A MOMENT</source>
-      <translation>EL INFORME AÚN NO ESTÁ LISTO. ESPERE UN MOMENTO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>SHIFT REPORT</source>
-      <translation>INFORME DE TURNO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>SHIFT REPORT  ·  SAVE TO:</source>
-      <translation>INFORME DE TURNO  ·  GUARDAR EN:</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>THIS IS THE LATEST SHIFT</source>
-      <translation>ESTE ES EL ÚLTIMO TURNO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>parts, times, stops and alarms, for printing</source>
-      <translation>piezas, tiempos, paros y alarmas, para imprimir</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_function.py" />
-      <source>{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW</source>
-      <translation>{name} GUARDADO. SI USÓ UNA MEMORIA USB, YA PUEDE RETIRARLA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>Alarms and E-stops</source>
-      <translation>Alarmas y paros de emergencia</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>All stops</source>
-      <translation>Todos los paros</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>Availability</source>
-      <translation>Disponibilidad</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>CYCLES WITHOUT A PART</source>
-      <translation>CICLOS SIN PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>Inserts changed in this shift</source>
-      <translation>Plaquitas cambiadas en este turno</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>LIFE USED</source>
-      <translation>VIDA USADA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>LIMITS</source>
-      <translation>LÍMITES</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>LONGEST</source>
-      <translation>MÁS LARGO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>MEAN</source>
-      <translation>MEDIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>Not recorded</source>
-      <translation>Sin registrar</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>OCCURRENCES</source>
-      <translation>VECES</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>Offsets changed</source>
-      <translation>Correctores cambiados</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>Out of tolerance</source>
-      <translation>Fuera de tolerancia</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>Parts</source>
-      <translation>Piezas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>Parts by program</source>
-      <translation>Piezas por programa</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>REASON</source>
-      <translation>MOTIVO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>SHARE</source>
-      <translation>PARTE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>SHORTEST</source>
-      <translation>MÁS CORTO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>START TIME</source>
-      <translation>HORA DE INICIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>Stops</source>
-      <translation>Paros</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>Stops by reason</source>
-      <translation>Paros por motivo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>Tool life used so far</source>
-      <translation>Vida de herramienta usada hasta ahora</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>USAGE</source>
-      <translation>USO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>USED</source>
-      <translation>USADO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>WHO</source>
-      <translation>QUIÉN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>and {count} more</source>
-      <translation>y {count} más</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>green: cycles; amber: stops; red: alarms</source>
-      <translation>verde: ciclos; ámbar: paros; rojo: alarmas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>shift from {first} to {last}</source>
-      <translation>turno de {first} a {last}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>wear</source>
-      <translation>desgaste</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>{bad} of {count} readings</source>
-      <translation>{bad} de {count} lecturas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>{parts} parts, {time}</source>
-      <translation>{parts} piezas, {time}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>{share} %: in cycle for {run} of {planned}</source>
-      <translation>{share} %: en ciclo {run} de {planned}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/shift_page.py" />
-      <source>{unit} mm</source>
-      <translation>{unit} mm</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>MINUTES</source>
-      <translation>MINUTOS</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO</source>
-      <translation>¿PLAQUITA NUEVA EN T{number}? USO DE LA VIEJA: {words}. Y: SÍ   N: NO</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>NO TOOL HAS OFFSETS YET</source>
-      <translation>AÚN NO HAY HERRAMIENTAS CON CORRECTOR</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: no new part starts once the tool life is used up.</source>
-      <translation>Solo el tiempo en avance cuenta para los minutos de vida. Escriba 0 para no tener límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>REMAINING</source>
-      <translation>RESTANTE</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>STOP</source>
-      <translation>PARO</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>STOPS</source>
-      <translation>PAROS</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>TOOL LIFE</source>
-      <translation>VIDA ÚTIL DE HERRAMIENTAS</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT</source>
-      <translation>ESCRIBA EL LÍMITE DE VIDA. F2: OTRO LÍMITE   F4: PLAQUITA NUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>T{number} SAVED</source>
-      <translation>T{number} GUARDADA</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>T{number} tool life: {limit_parts} parts, {minutes}, warn at {warn}</source>
-      <translation>vida de T{number}: {limit_parts} piezas, {minutes}, aviso al {warn}</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>WARN</source>
-      <translation>AVISO</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>WARN AT %</source>
-      <translation>AVISAR AL %</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>insert life in parts and minutes</source>
-      <translation>vida de plaquita en piezas y minutos</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>no stop at end of tool life</source>
-      <translation>sin paro al agotarse la vida de la herramienta</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>{count} parts</source>
-      <translation>{count} piezas</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>{limit_seconds} min</source>
-      <translation>{limit_seconds} min</translation>
-    </message>
-    <message>
-      <location filename="app/special/tool_life_function.py" />
-      <source>{value} is not a valid number of parts; type a whole number</source>
-      <translation>{value} no es un número de piezas válido; escriba un entero</translation>
-    </message>
-    <message>
-      <location filename="app/production/tool_life_watch.py" />
-      <source>TOOL {number} LIFE USED UP: {words}</source>
-      <translation>VIDA DE HERRAMIENTA {number} AGOTADA: {words}</translation>
-    </message>
-    <message>
-      <location filename="app/production/tool_life_watch.py" />
-      <source>TOOL {number} LIFE: {words} USED</source>
-      <translation>VIDA DE HERRAMIENTA {number}: {words} USADOS</translation>
-    </message>
-    <message>
-      <location filename="app/production/tool_life_watch.py" />
-      <source>T{number} tool life is used up ({life}): change the insert and confirm the change in TOOL LIFE</source>
-      <translation>la vida de T{number} se ha agotado ({life}): cambie la plaquita y confirme el cambio en VIDA ÚTIL</translation>
-    </message>
-    <message>
-      <location filename="app/production/tool_life_watch.py" />
-      <source>T{number} tool life is used up ({life}): {method}</source>
-      <translation>la vida de T{number} se ha agotado ({life}): {method}</translation>
-    </message>
-    <message>
-      <location filename="app/production/tool_life_watch.py" />
-      <source>T{number}: NEW INSERT, TOOL LIFE STARTS AT ZERO</source>
-      <translation>T{number}: PLAQUITA NUEVA, LA VIDA EMPIEZA EN CERO</translation>
-    </message>
-    <message>
-      <location filename="app/production/tool_life_watch.py" />
-      <source>T{number}: NEW TOOL, TOOL LIFE STARTS AT ZERO</source>
-      <translation>T{number}: HERRAMIENTA NUEVA, LA VIDA EMPIEZA EN CERO</translation>
-    </message>
-    <message>
-      <location filename="app/production/tool_life_watch.py" />
-      <source>cutting time of T{number} set to {seconds} min</source>
-      <translation>tiempo de corte de T{number} fijado en {seconds} min</translation>
-    </message>
-    <message>
-      <location filename="app/production/tool_life_watch.py" />
-      <source>fit a new tool and set its CUR.TIME to 0 in the tool table (F8)</source>
-      <translation>ponga una herramienta nueva y su CUR.TIME a 0 en la tabla de herramientas (F8)</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>ARROWS: SELECT TREND   ESC: BACK TO LIST</source>
-      <translation>FLECHAS: ELEGIR TENDENCIA   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>AVAILABILITY</source>
-      <translation>DISPONIBILIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>CYCLE TIME</source>
-      <translation>TIEMPO DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>CYCLE TIME, s</source>
-      <translation>TIEMPO DE CICLO, s</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>IN CYCLE</source>
-      <translation>EN CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>MINUTES BY REASON, WITH CUMULATIVE PERCENTAGE</source>
-      <translation>MINUTOS POR MOTIVO, CON PORCENTAJE ACUMULADO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>MINUTES OF THE SHIFT</source>
-      <translation>MINUTOS DEL TURNO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>NOT IN CYCLE</source>
-      <translation>FUERA DE CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>SHIFT HOURS, FOR EXAMPLE 6-14?</source>
-      <translation>¿HORAS DEL TURNO, POR EJEMPLO 6-14?</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>SPINDLE LOAD</source>
-      <translation>CARGA DEL HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>SPINDLE LOAD, %</source>
-      <translation>CARGA DEL HUSILLO, %</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>TRENDS</source>
-      <translation>TENDENCIAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>TRENDS  ·  {program}</source>
-      <translation>TENDENCIAS  ·  {program}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>cycle times, stops, availability</source>
-      <translation>tiempos de ciclo, paros, disponibilidad</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>enter the start and end hour of the shift, such as 6-14</source>
-      <translation>escriba la hora de inicio y la de fin del turno, como 6-14</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>last cycle {last}, shortest {best}, mean {mean} of {count} parts</source>
-      <translation>último ciclo {last}, menor {best}, media {mean} de {count} piezas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>last load {last} %, highest load {maximum} %</source>
-      <translation>última carga {last} %, carga mayor {maximum} %</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>no drive on this machine reports its load</source>
-      <translation>ningún accionamiento de esta máquina informa su carga</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>no part made yet</source>
-      <translation>aún no se ha hecho ninguna pieza</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>no stops yet</source>
-      <translation>aún sin paros</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>no wear correction yet</source>
-      <translation>aún sin correcciones de desgaste</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>parts</source>
-      <translation>piezas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>shift hours: {first} to {last}</source>
-      <translation>horas del turno: {first} a {last}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>{count} corrections; last correction: {offset} by X {x} Z {z} after part {part}</source>
-      <translation>{count} correcciones; última corrección: {offset} en X {x} Z {z} tras la pieza {part}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>{count} stops, on average {mean} apart; longest total: {reason}, {time}</source>
-      <translation>{count} paros, {mean} entre ellos de media; mayor total: {reason}, {time}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>{first}–{last}: the shift has not started</source>
-      <translation>{first}–{last}: el turno no ha empezado</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/trends_section.py" />
-      <source>{first}–{last}: {share} %, in cycle for {run} of {planned}</source>
-      <translation>{first}–{last}: {share} %, en ciclo {run} de {planned}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/wear_correction.py" />
-      <source>NO OFFSETS SET FOR T{number}</source>
-      <translation>T{number} NO TIENE CORRECTORES DEFINIDOS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/wear_correction.py" />
-      <source>{name} measured: the mean of {count} readings is {mean}, offset change {change}</source>
-      <translation>{name} medido: la media de {count} lecturas es {mean}, cambio del corrector {change}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/wear_correction.py" />
-      <source>{row}: none of the parts started since the last change of {name} has been measured yet</source>
-      <translation>{row}: aún no se ha medido ninguna de las piezas empezadas desde el último cambio de {name}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>A dash means that the arc is too short to calculate the value.</source>
-      <translation>Una raya indica que el arco es demasiado corto para calcular el valor.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>ADDED DEPTH</source>
-      <translation>PROF. AÑADIDA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Axis positions are measured from home, X as a radius.</source>
-      <translation>Las posiciones de los ejes se miden desde la referencia, X como radio.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Axis positions are measured from home.</source>
-      <translation>Las posiciones de los ejes se miden desde la referencia.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>BACKLASH {axis}</source>
-      <translation>JUEGO {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>BALL BAR</source>
-      <translation>BALL BAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>CALCULATING …</source>
-      <translation>CALCULANDO …</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>ENTRY ANGLE</source>
-      <translation>ÁNG. DE ENTRADA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Flank infeed shifts the entry angle with the depth.</source>
-      <translation>La penetración por un flanco desplaza el ángulo de entrada según la profundidad.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>LEAD ERROR</source>
-      <translation>ERROR DE PASO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Largest error: {distance}</source>
-      <translation>Error mayor: {distance}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Lead: {lead} per revolution</source>
-      <translation>Paso: {lead} por vuelta</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Line {line}, arc {number} of {count}: radius {radius}, {angle}°</source>
-      <translation>Línea {line}, arco {number} de {count}: radio {radius}, {angle}°</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD</source>
-      <translation>SIN DATOS DEL OSCILOSCOPIO EN ESTA MÁQUINA. F9: ABRIR UN REGISTRO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>PASS</source>
-      <translation>Nº</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>PATH DEVIATION</source>
-      <translation>DESVIACIÓN DE TRAYECTORIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>PATH ERROR</source>
-      <translation>ERROR DE TRAYECTORIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Positive values are to the left of the direction of travel.</source>
-      <translation>Los valores positivos quedan a la izquierda del sentido de avance.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>RADIUS ERROR</source>
-      <translation>ERROR DE RADIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>RESPONSE</source>
-      <translation>RESPUESTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>REVERSAL SPIKE {axis}</source>
-      <translation>PICO DE INVERSIÓN {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>ROUNDNESS</source>
-      <translation>REDONDEZ</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>RPM DROP</source>
-      <translation>CAÍDA RPM</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>SCALE OF {value} RELATIVE TO {v}</source>
-      <translation>ESCALA DE {value} RESPECTO A {v}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>SQUARENESS ERROR</source>
-      <translation>ERROR DE PERPENDICULARIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>THREAD</source>
-      <translation>ROSCA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>THREAD DEVIATION</source>
-      <translation>DESVIACIÓN DE LA ROSCA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The axis is fast enough to cut this lead at up to {rpm} rpm</source>
-      <translation>El eje es bastante rápido para tallar este paso hasta {rpm} rpm</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The encoder cannot measure backlash between the encoder and the tool.</source>
-      <translation>El encoder no puede medir el juego entre el encoder y la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The table shows the worst point of each line.</source>
-      <translation>La tabla muestra el peor punto de cada línea.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The thread entry angles agree within {angle}°</source>
-      <translation>Los ángulos de entrada de la rosca coinciden en {angle}°</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>a path needs two linear axes, but the record contains fewer than two</source>
-      <translation>una trayectoria necesita dos ejes lineales, pero el registro contiene menos de dos</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>error magnified {times}x; press Z to change the scale</source>
-      <translation>error ampliado {times}x; pulse Z para cambiar la escala</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>last move: commanded position, actual position and following error over time in seconds</source>
-      <translation>último movimiento: posición de consigna, posición real y error de seguimiento en segundos</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>last spindle speed change: commanded and actual speed over time in seconds</source>
-      <translation>último cambio de velocidad del husillo: velocidad de consigna y real en segundos</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>line {line}</source>
-      <translation>línea {line}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>spindle command</source>
-      <translation>consigna del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>spindle speed</source>
-      <translation>velocidad del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>spindle turns</source>
-      <translation>vueltas del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>this time range does not contain an arc of 60 degrees or more; cut an arc of this size while recording</source>
-      <translation>este intervalo no contiene ningún arco de 60 grados o más; corte un arco de ese tamaño mientras graba</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>thread passes overlaid by spindle angle: deviation from the thread, and spindle speed</source>
-      <translation>pasadas de rosca superpuestas por ángulo del husillo: desviación de la rosca, y velocidad del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>turns</source>
-      <translation>vueltas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>{fixed} mm/m</source>
-      <translation>{fixed} mm/m</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>{item} actual</source>
-      <translation>{item} real</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>{item} demand</source>
-      <translation>{item} consigna</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>{title}  rpm</source>
-      <translation>{title}  rpm</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses_view.py" />
-      <source>ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE</source>
-      <translation>FLECHAS: ELEGIR FILA   Z: AMPLIAR   MISMA TECLA F: ACTUALIZAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses_view.py" />
-      <source>NEXT ARC</source>
-      <translation>OTRO ARC</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses_view.py" />
-      <source>TEST</source>
-      <translation>PRUEBA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>AT {share} SPEED</source>
-      <translation>A {share} DE VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>ERROR LIMIT AT THIS SPEED</source>
-      <translation>LÍMITE A ESTA VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>FOLLOWING ERROR</source>
-      <translation>ERROR DE SEGUIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>FOLLOWING LAG</source>
-      <translation>RETRASO DE SEGUIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>For a good result, jog a single step on the Jog page, or press F9 on this page to open the drive tests.</source>
-      <translation>Para un buen resultado, mueva un solo paso en la página Manual, o pulse F9 en esta página para abrir las pruebas de accionamiento.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>LARGEST ERROR</source>
-      <translation>ERROR MAYOR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>LIMIT REDUCED TO {share}</source>
-      <translation>LÍMITE REDUCIDO A {share}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>Last move of {axis}. These values are for information only; no setting was changed.</source>
-      <translation>Último movimiento de {axis}. Estos valores son solo informativos; no se cambió ningún ajuste.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>MAXIMUM SPEED</source>
-      <translation>VELOCIDAD MÁXIMA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>OVERSHOOT</source>
-      <translation>SOBREPASO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>RISE, 10 TO 90 %</source>
-      <translation>SUBIDA, 10 A 90 %</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>SMALLEST LIMIT WITHOUT A TRIP</source>
-      <translation>LÍMITE MÍNIMO SIN DISPARO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>SPEED AT WHICH LAG EQUALS LIMIT</source>
-      <translation>VELOCIDAD CON RETRASO = LÍMITE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>TIME UNTIL IN POSITION</source>
-      <translation>TIEMPO HASTA EN POSICIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>TRAVEL</source>
-      <translation>RECORRIDO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>no trip</source>
-      <translation>sin disparo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>the limit is not reached in the axis speed range</source>
-      <translation>el límite no se alcanza en el rango de velocidad del eje</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>this time range contains no complete move of an axis from rest to rest; jog one step on the Jog page</source>
-      <translation>en este intervalo no hay ningún movimiento completo de un eje de reposo a reposo; mueva un paso en la página Manual</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>trips at {position}</source>
-      <translation>dispara a los {position}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/axis_response.py" />
-      <source>{seconds} ms</source>
-      <translation>{seconds} ms</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>90° PHASE LAG</source>
-      <translation>DESFASE DE 90°</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>BANDWIDTH, −3 dB</source>
-      <translation>ANCHO DE BANDA, −3 dB</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>DELAY</source>
-      <translation>RETARDO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>GAIN</source>
-      <translation>GANANCIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>LAG AT CONSTANT SPEED</source>
-      <translation>RETRASO A VELOCIDAD CONSTANTE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>Nothing was written to the drive.</source>
-      <translation>No se escribió nada en el accionamiento.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>OUTBOUND</source>
-      <translation>IDA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>PHASE LAG</source>
-      <translation>DESFASE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>RETURN</source>
-      <translation>VUELTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>SPEED / LAG (GAIN)</source>
-      <translation>VELOCIDAD / RETRASO (GANANCIA)</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>drive test</source>
-      <translation>prueba de accionamiento</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>the key was released before the test ended; hold the key until the axis has returned</source>
-      <translation>la tecla se soltó antes de terminar la prueba; mantenga la tecla hasta que el eje haya vuelto</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>this machine has no {axis} axis</source>
-      <translation>esta máquina no tiene eje {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>{words}, {item} Hz</source>
-      <translation>{words}, {item} Hz</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/drive_test_figures.py" />
-      <source>−3 dB is not reached at frequencies up to {maximum} Hz</source>
-      <translation>no se alcanzan −3 dB en frecuencias hasta {maximum} Hz</translation>
-    </message>
-    <message>
       <location filename="app/scope/record_shelf.py" />
       <source>alarm time</source>
       <translation>hora de la alarma</translation>
@@ -12435,6 +13065,11 @@
     </message>
     <message>
       <location filename="app/scope/scope_function.py" />
+      <source>STORED</source>
+      <translation>GUARDADO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_function.py" />
       <source>THE LAST {minutes} MINUTES</source>
       <translation>LOS ÚLTIMOS {minutes} MINUTOS</translation>
     </message>
@@ -12460,8 +13095,18 @@
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
+      <source>NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD</source>
+      <translation>SIN DATOS DEL OSCILOSCOPIO EN ESTA MÁQUINA. F9: ABRIR UN REGISTRO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
       <source>PRESS Y TO DELETE {path}, N TO KEEP IT</source>
       <translation>PULSE Y PARA BORRAR {path}, N PARA CONSERVARLO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_model.py" />
+      <source>SAVED: {path}</source>
+      <translation>GUARDADO: {path}</translation>
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
@@ -12497,6 +13142,16 @@
       <location filename="app/scope/scope_readings_view.py" />
       <source>Press F4 to select curves.</source>
       <translation>Pulse F4 para elegir curvas.</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_readings_view.py" />
+      <source>VALUES</source>
+      <translation>VALORES</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_readings_view.py" />
+      <source>{item} Hz</source>
+      <translation>{item} Hz</translation>
     </message>
     <message>
       <location filename="app/scope/scope_sheets.py" />
@@ -12630,6 +13285,16 @@
     </message>
     <message>
       <location filename="app/scope/scope_view.py" />
+      <source>ANALYZE</source>
+      <translation>ANALIZAR</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>CHART</source>
+      <translation>GRÁFICO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_view.py" />
       <source>CURSORS</source>
       <translation>CURSORES</translation>
     </message>
@@ -12674,6 +13339,11 @@
       <translation>{rate} muestras por segundo</translation>
     </message>
     <message>
+      <location filename="app/scope/scope_view.py" />
+      <source>{seconds} ms</source>
+      <translation>{seconds} ms</translation>
+    </message>
+    <message>
       <location filename="app/scope/signals.py" />
       <source>ACCELERATION</source>
       <translation>ACELERACIÓN</translation>
@@ -12707,6 +13377,11 @@
       <location filename="app/scope/signals.py" />
       <source>Control cycle delay</source>
       <translation>Retraso del control</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>FOLLOWING ERROR</source>
+      <translation>ERROR DE SEGUIMIENTO</translation>
     </message>
     <message>
       <location filename="app/scope/signals.py" />
@@ -12825,6 +13500,11 @@
     </message>
     <message>
       <location filename="app/scope/signals.py" />
+      <source>spindle command</source>
+      <translation>consigna del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
       <source>spindle load</source>
       <translation>carga del husillo</translation>
     </message>
@@ -12840,8 +13520,33 @@
     </message>
     <message>
       <location filename="app/scope/signals.py" />
+      <source>spindle speed</source>
+      <translation>velocidad del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>spindle turns</source>
+      <translation>vueltas del husillo</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>turns</source>
+      <translation>vueltas</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
       <source>velocity</source>
       <translation>velocidad</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>{item} actual</source>
+      <translation>{item} real</translation>
+    </message>
+    <message>
+      <location filename="app/scope/signals.py" />
+      <source>{item} demand</source>
+      <translation>{item} consigna</translation>
     </message>
     <message>
       <location filename="app/scope/signals.py" />
@@ -12874,71 +13579,6 @@
       <translation>ventana de {ms} ms</translation>
     </message>
     <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>Last change of spindle speed. These values are for information only; no setting was changed.</source>
-      <translation>Último cambio de velocidad del husillo. Estos valores son solo informativos; no se cambió ningún ajuste.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>MEAN SPEED ERROR</source>
-      <translation>DESVÍO MEDIO DE VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>Mean error and variation are calculated from the last second. A dash means that the speed did not stay within the tolerance band.</source>
-      <translation>El desvío medio y la variación se calculan del último segundo. Una raya indica que la velocidad no se mantuvo en la banda de tolerancia.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>SPEED VARIATION</source>
-      <translation>VARIACIÓN DE VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>TIME TO SETTLE WITHIN {share}</source>
-      <translation>TIEMPO HASTA ESTABLE DENTRO DE {share}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>The acceleration in the machine file is {accel} rpm/s; a speed within {share} of the target counts as reached.</source>
-      <translation>La aceleración en el archivo de máquina es {accel} rpm/s; una velocidad dentro de {share} del valor cuenta como alcanzada.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>no device on this machine reports the measured spindle speed</source>
-      <translation>ningún dispositivo de esta máquina informa la velocidad medida del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>spindle {name}</source>
-      <translation>husillo {name}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>the spindle speed did not change in this time range; start the spindle from a program or in MDI</source>
-      <translation>la velocidad del husillo no cambió en este intervalo; arranque el husillo con un programa o en MDI</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>this machine has no spindle</source>
-      <translation>esta máquina no tiene husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>{acceleration} rpm/s</source>
-      <translation>{acceleration} rpm/s</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>{speed} rpm</source>
-      <translation>{speed} rpm</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/spindle_response.py" />
-      <source>{target} → {target2} rpm</source>
-      <translation>{target} → {target2} rpm</translation>
-    </message>
-    <message>
       <location filename="app/screen/alarm_panels.py" />
       <source>ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD</source>
       <translation>ALARMAS Y PAROS  ·  ESC: CERRAR  ·  CTRL+FLECHAS: SELECCIONAR  ·  MAYÚS+F10: REGISTRO DEL OSCILOSCOPIO</translation>
@@ -12962,6 +13602,11 @@
       <location filename="app/screen/alarm_panels.py" />
       <source>WHAT TO DO</source>
       <translation>QUÉ HACER</translation>
+    </message>
+    <message>
+      <location filename="app/screen/alarm_panels.py" />
+      <source>line {line}</source>
+      <translation>línea {line}</translation>
     </message>
     <message>
       <location filename="app/screen/entry_panel.py" />
@@ -13050,6 +13695,11 @@
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
+      <source>JOG</source>
+      <translation>MANUAL</translation>
+    </message>
+    <message>
+      <location filename="app/screen/page_table.py" />
       <source>L, R, R2, oversizes, teeth, tool life; touch off the tool length</source>
       <translation>L, R, R2, sobremedidas, dientes, vida; palpar la longitud de la herramienta</translation>
     </message>
@@ -13077,16 +13727,6 @@
       <location filename="app/screen/page_table.py" />
       <source>SECONDARY OFFSETS</source>
       <translation>CORRECTORES SECUNDARIOS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>SHARED</source>
-      <translation>COMPART.</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>SHARED PROGRAMS</source>
-      <translation>PROGRAMAS COMPARTIDOS</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -13137,11 +13777,6 @@
       <location filename="app/screen/page_table.py" />
       <source>program findings, stock, checks turned off</source>
       <translation>hallazgos del programa, material en bruto, comprobaciones desactivadas</translation>
-    </message>
-    <message>
-      <location filename="app/screen/page_table.py" />
-      <source>programs from other TurnDesk controls; newer versions are copied on request</source>
-      <translation>programas de otros controles TurnDesk; las versiones nuevas se copian si se pide</translation>
     </message>
     <message>
       <location filename="app/screen/page_table.py" />
@@ -13297,6 +13932,11 @@
       <location filename="app/screen/station_dock.py" />
       <source>SPINDLE SWITCH</source>
       <translation>INTERRUPTOR HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/station_dock.py" />
+      <source>STOP</source>
+      <translation>PARO</translation>
     </message>
     <message>
       <location filename="app/screen/station_dock.py" />
@@ -13590,6 +14230,11 @@
     </message>
     <message>
       <location filename="app/searchto/searchto_state_view.py" />
+      <source>NOW</source>
+      <translation>AHORA</translation>
+    </message>
+    <message>
+      <location filename="app/searchto/searchto_state_view.py" />
       <source>Next pass</source>
       <translation>Pasada sig.</translation>
     </message>
@@ -13712,711 +14357,6 @@
       <location filename="app/searchto/searchto_view.py" />
       <source>{which}: NONE</source>
       <translation>{which}: NINGUNA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>AXIS</source>
-      <translation>EJE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>BLADE</source>
-      <translation>BLADE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>COMP</source>
-      <translation>COMP</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>CONTOUR</source>
-      <translation>CONTORNO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>DRAWING UNIT</source>
-      <translation>UNIDAD DEL DIBUJO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>DUNIT</source>
-      <translation>DUNIT</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>FACE SIDE IN DRAWING</source>
-      <translation>LADO DE LA CARA EN EL DIBUJO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>FROM</source>
-      <translation>FROM</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>FRONT</source>
-      <translation>FRENTE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>GROOVING TOOL</source>
-      <translation>ÚTIL DE RANURAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>HOLE</source>
-      <translation>HOLE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>HOLE DIAMETER</source>
-      <translation>DIÁMETRO DEL AGUJERO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>LAYER</source>
-      <translation>CAPA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>MATERIAL</source>
-      <translation>MATERIAL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>NOSE COMPENSATION: D NUMBER</source>
-      <translation>COMPENSACIÓN DE PUNTA: NÚMERO D</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8.</source>
-      <translation>No hay dibujos en la carpeta de programas: copie en ella un archivo DXF o SVG con F6 y luego F8.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>ROUGH</source>
-      <translation>ROUGH</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>ROUGHING DEPTH OF CUT</source>
-      <translation>PROFUNDIDAD DE DESBASTE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>Reading was canceled. Press F6 to read the drawing again.</source>
-      <translation>Lectura cancelada. Pulse F6 para leer el dibujo de nuevo.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>SHIFT</source>
-      <translation>SHIFT</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>STEEL</source>
-      <translation>ACERO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>STOCK DIAMETER</source>
-      <translation>DIÁMETRO DEL MATERIAL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>STOCK ON THE FACE</source>
-      <translation>MATERIAL EN LA CARA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>Z OF REFERENCE POINT</source>
-      <translation>Z DEL PUNTO DE REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>Z REFERENCE POINT</source>
-      <translation>PUNTO DE REFERENCIA Z</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_form.py" />
-      <source>facing, roughing, finishing and grooving of a profile from a DXF or SVG drawing</source>
-      <translation>refrentado, desbastado, acabado y ranurado de un perfil de un dibujo DXF o SVG</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_plan.py" />
-      <source>AS DRAWN</source>
-      <translation>COMO EN EL DIBUJO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_plan.py" />
-      <source>Boring needs a predrilled hole: enter its diameter.</source>
-      <translation>El mandrinado necesita un agujero previo: introduzca su diámetro.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_plan.py" />
-      <source>CONTOUR {item}</source>
-      <translation>CONTORNO {item}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_plan.py" />
-      <source>{drawing} does not specify its unit: choose MM or INCH.</source>
-      <translation>{drawing} no indica su unidad: elija MM o PULGADAS.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_plan.py" />
-      <source>{drawing} has no contour for the selected axis: choose another layer or axis.</source>
-      <translation>{drawing} no tiene ningún contorno para el eje elegido: elija otra capa u otro eje.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_plan.py" />
-      <source>{drawing} has no contour on layer {layer}: choose another layer or axis.</source>
-      <translation>{drawing} no tiene ningún contorno en la capa {layer}: elija otra capa u otro eje.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_plan.py" />
-      <source>{drawing} has no layer {layer}: choose another layer.</source>
-      <translation>{drawing} no tiene la capa {layer}: elija otra capa.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_plan.py" />
-      <source>{drawing} has {nets_count} contours: choose 1 to {nets_count2}.</source>
-      <translation>{drawing} tiene {nets_count} contornos: elija de 1 a {nets_count2}.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_plan.py" />
-      <source>{drawing} is {wrong}, which is too large for this machine. The drawing fits if its unit is {wrong2}: choose {wrong3}.</source>
-      <translation>{drawing} mide {wrong}, demasiado para esta máquina. El dibujo cabe si su unidad es {wrong2}: elija {wrong3}.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/drawings/drawing_plan.py" />
-      <source>{path} cannot be read: {cause}.</source>
-      <translation>no se puede leer {path}: {cause}.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shape_form.py" />
-      <source>CLASS</source>
-      <translation>CLASE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shape_form.py" />
-      <source>These values do not make a valid shape: check the last value that you entered.</source>
-      <translation>Estos valores no dan una forma válida: revise el último valor que introdujo.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>1 SHAPE EDITED BY HAND WAS NOT CHANGED</source>
-      <translation>1 FORMA EDITADA A MANO NO SE CAMBIÓ</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>CALCULATING THE CONTOUR. PRESS F6 TO CANCEL</source>
-      <translation>CALCULANDO EL CONTORNO. PULSE F6 PARA CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>F6: DELETE THE {count} LINES OF THIS SHAPE   ESC: KEEP THEM</source>
-      <translation>F6: BORRAR LAS {count} LÍNEAS DE ESTA FORMA   ESC: CONSERVARLAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>F6: REPLACE {count} EDITED LINES STARTING AT LINE {line}   ESC: KEEP</source>
-      <translation>F6: SUSTITUIR {count} LÍNEAS EDITADAS A PARTIR DE LA LÍNEA {line}   ESC: CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>FIRST PRESS N AND FILL IN THE PROGRAM HEADER (HEAD)</source>
-      <translation>PRIMERO PULSE N Y RELLENE LA CABECERA DEL PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>KEYPAD</source>
-      <translation>TECLAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS</source>
-      <translation>IZQUIERDA/DERECHA: CAMBIAR   TOCAR DIBUJO: CONTORNO O EJE</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>LETTER: OPEN CALCULATOR OR TEMPLATE   F10: GO TO TEXT</source>
-      <translation>LETRA: ABRIR CALCULADORA O PLANTILLA   F10: IR AL TEXTO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>LETTER: OPEN SHAPE   RIGHT: SHAPES IN PROGRAM   F10: TEXT</source>
-      <translation>LETRA: ABRIR FORMA   DERECHA: FORMAS DEL PROGRAMA   F10: TEXTO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>LINE {line} EDITED BY HAND. FORM SHOWS VALUES STORED IN COMMENT</source>
-      <translation>LÍNEA {line} EDITADA A MANO. EL FORMULARIO MUESTRA LOS VALORES DEL COMENTARIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>LINE {line}: EDITED {shape} COMMENT CANNOT BE READ. UNDO THE EDIT</source>
-      <translation>LÍNEA {line}: COMENTARIO DE {shape} EDITADO, ILEGIBLE. DESHAGA EL CAMBIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>READ</source>
-      <translation>LEÍDAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>READING THE DRAWING: {seconds} s. PRESS F6 TO CANCEL</source>
-      <translation>LEYENDO EL DIBUJO: {seconds} s. PULSE F6 PARA CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS</source>
-      <translation>LAS FORMAS SOLO FUNCIONAN EN PROGRAMAS OMNITURN Y SINUMERIK</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>THE DRAWING CANNOT BE PROCESSED: {why}</source>
-      <translation>NO SE PUEDE PROCESAR EL DIBUJO: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>THE FORM USES THESE VALUES EDITED BY HAND IN THE TEXT: {fields}</source>
-      <translation>LA FICHA USA ESTOS VALORES EDITADOS A MANO EN EL TEXTO: {fields}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>TOOL DATA CANNOT BE READ: {why}</source>
-      <translation>NO SE PUEDEN LEER LOS DATOS DE HERRAMIENTA: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE</source>
-      <translation>ESCRIBA UN NÚMERO O EXPRESIÓN   ENTER: CAMPO SIGUIENTE   F2: ESCRIBIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE</source>
-      <translation>X Z C R A: IR A LA COLUMNA   ENTER: PUNTO SIGUIENTE   F2: ESCRIBIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>{count} SHAPES EDITED BY HAND WERE NOT CHANGED</source>
-      <translation>{count} FORMAS EDITADAS A MANO NO SE CAMBIARON</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_view.py" />
-      <source>CALCULATORS AND TEMPLATES</source>
-      <translation>CALCULADORAS Y PLANTILLAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_view.py" />
-      <source>LINES</source>
-      <translation>LÍNEAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_view.py" />
-      <source>SHAPES</source>
-      <translation>FORMAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_view.py" />
-      <source>SHAPES  ·  IN THIS PROGRAM, BY LINE</source>
-      <translation>FORMAS  ·  EN ESTE PROGRAMA, POR LÍNEA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/program_files.py" />
-      <source>the file is larger than {most_bytes} MB</source>
-      <translation>el archivo es mayor de {most_bytes} MB</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/program_files.py" />
-      <source>the name of another program on this control differs from the name of this program only in upper and lower case: rename one of the programs</source>
-      <translation>el nombre de otro programa de este control difiere del nombre de este programa solo en mayúsculas y minúsculas: cambie el nombre de uno de los programas</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>copied from {machine}</source>
-      <translation>copiado de {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>no decision is necessary, because no other control has changed this program</source>
-      <translation>no hace falta decidir, porque ningún otro control ha cambiado este programa</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>shared by {machine}</source>
-      <translation>compartido por {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>the text of {program} differs from the saved version; save the program again</source>
-      <translation>el texto de {program} difiere de la versión guardada; guarde el programa otra vez</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>{program} is already the selected version</source>
-      <translation>{program} ya es la versión elegida</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>AVAILABLE ON</source>
-      <translation>DISPONIBLE EN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>AVAILABLE ON {desks}</source>
-      <translation>DISPONIBLE EN {desks}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>CHANGED HERE AND ON ANOTHER CONTROL</source>
-      <translation>CAMBIADO AQUÍ Y EN OTRO CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>CHANGES IF YOU USE THE SELECTED VERSION</source>
-      <translation>CAMBIOS SI USA LA VERSIÓN ELEGIDA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>CHECKING …</source>
-      <translation>COMPROBANDO …</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>F2: USE SELECTED VERSION   F3: KEEP LOCAL VERSION   ESC: BACK</source>
-      <translation>F2: USAR LA VERSIÓN ELEGIDA   F3: CONSERVAR LA LOCAL   ESC: VOLVER</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>F2: USE SELECTED VERSION (ASKS FIRST)   ESC: AUTOMATIC</source>
-      <translation>F2: USAR LA VERSIÓN ELEGIDA (PREGUNTA ANTES)   ESC: AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>KEEP</source>
-      <translation>CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NEWER VERSION ON ANOTHER CONTROL</source>
-      <translation>VERSIÓN MÁS NUEVA EN OTRO CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM</source>
-      <translation>NO HACE FALTA DECIDIR: NINGÚN OTRO CONTROL HA CAMBIADO ESTE PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER OR A DATABASE UNDER [sharing] IN THE MACHINE FILE</source>
-      <translation>NO HAY UBICACIÓN PARA PROGRAMAS COMPARTIDOS. INDIQUE UNA CARPETA O UNA BASE DE DATOS EN [sharing] DEL ARCHIVO DE MÁQUINA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NO OTHER CONTROL HAS A NEWER VERSION</source>
-      <translation>NINGÚN OTRO CONTROL TIENE UNA VERSIÓN MÁS NUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NOT ON THIS CONTROL</source>
-      <translation>NO ESTÁ EN ESTE CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FOLDER</source>
-      <translation>AÚN NO SE COMPARTE NADA. LA PRÓXIMA ACTUALIZACIÓN COMPARTE LA CARPETA DE PROGRAMAS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>SAME TEXT AS ON THIS CONTROL</source>
-      <translation>EL MISMO TEXTO QUE EN ESTE CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>UP TO DATE</source>
-      <translation>AL DÍA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC</source>
-      <translation>ARRIBA/ABAJO: SELECCIONAR PROGRAMA   F5: ACTUALIZAR   ESC: AUTOMÁTICO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>VERSION</source>
-      <translation>VERSIÓN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>Y: KEEP LOCAL {name}, STORE OTHER VERSIONS   N: CANCEL</source>
-      <translation>Y: CONSERVAR {name} LOCAL, GUARDAR LAS OTRAS VERSIONES   N: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>Y: USE {name} FROM {desk} (LOCAL VERSION STAYS STORED)   N: CANCEL</source>
-      <translation>Y: USAR {name} DE {desk} (LA VERSIÓN LOCAL QUEDA GUARDADA)   N: CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>program {name}: local version retained</source>
-      <translation>programa {name}: versión local conservada</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>program {program}: version from {machine} now in use</source>
-      <translation>programa {program}: se usa ahora la versión de {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{count} WAITING TO BE SHARED</source>
-      <translation>{count} POR COMPARTIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{name} IS NOW THE VERSION FROM {machine}</source>
-      <translation>{name} ES AHORA LA VERSIÓN DE {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{name}: LOCAL VERSION RETAINED</source>
-      <translation>{name}: VERSIÓN LOCAL CONSERVADA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_model.py" />
-      <source>{name}: NO RESPONSE FOR {seconds} S. PROGRAMS STAY LOCAL FOR NOW</source>
-      <translation>{name} NO RESPONDE HACE {seconds} S. POR AHORA LOS PROGRAMAS QUEDAN AQUÍ</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing_view.py" />
-      <source>VERSIONS ON OTHER CONTROLS</source>
-      <translation>VERSIONES EN OTROS CONTROLES</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/agent_desk.py" />
-      <source>the MTConnect agent reports that the machine is unavailable</source>
-      <translation>el agente MTConnect indica que la máquina no está disponible</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/announcements.py" />
-      <source>part {number} of {program} is finished</source>
-      <translation>pieza {number} de {program} terminada</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/mqtt_broker.py" />
-      <source>the MQTT broker {host}:{port}</source>
-      <translation>el broker MQTT {host}:{port}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/network_causes.py" />
-      <source>the server certificate cannot be verified: {verify_message}</source>
-      <translation>el certificado del servidor no se puede verificar: {verify_message}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/other_desks.py" />
-      <source>access token rejected</source>
-      <translation>token de acceso rechazado</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/other_desks.py" />
-      <source>no response for {age} s</source>
-      <translation>sin respuesta desde hace {age} s</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/other_desks.py" />
-      <source>the server at this address is not a TurnDesk server</source>
-      <translation>el servidor de esta dirección no es un servidor TurnDesk</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/other_desks.py" />
-      <source>the server returns HTTP status {answer}</source>
-      <translation>el servidor devuelve el estado HTTP {answer}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/status_page.py" />
-      <source>Following errors recorded before the last alarm</source>
-      <translation>Errores de seguimiento registrados antes de la última alarma</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/status_page.py" />
-      <source>Last cycle</source>
-      <translation>Último ciclo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/status_page.py" />
-      <source>Last stops</source>
-      <translation>Últimos paros</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/status_page.py" />
-      <source>NO RESPONSE: the values below are out of date</source>
-      <translation>SIN RESPUESTA: los valores de abajo no están actualizados</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/status_page.py" />
-      <source>Program</source>
-      <translation>Programa</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/status_page.py" />
-      <source>The part made by the loaded program</source>
-      <translation>La pieza del programa cargado</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/status_page.py" />
-      <source>Time remaining</source>
-      <translation>Tiempo restante</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/web_hook.py" />
-      <source>, redirected to {to}; set [announce] hook to that address</source>
-      <translation>, redirigido a {to}; ponga esa dirección en [announce] hook</translation>
-    </message>
-    <message>
-      <location filename="app/extras/office/web_hook.py" />
-      <source>HTTP response {code} {reason}{place}</source>
-      <translation>respuesta HTTP {code} {reason}{place}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>ACCESS LEVELS</source>
-      <translation>NIVELES DE ACCESO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED</source>
-      <translation>TODOS LOS PIN QUITADOS. NIVELES DE ACCESO DESACTIVADOS: TODO PERMITIDO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>Access levels are off: anyone can change anything, and no PIN is required.</source>
-      <translation>Niveles de acceso desactivados: cualquiera puede cambiarlo todo y no se pide PIN.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>After {minutes} minutes without input, the level returns to OPERATOR.</source>
-      <translation>Tras {minutes} minutos sin actividad, el nivel vuelve a OPERADOR.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>CONFIRM PIN:</source>
-      <translation>CONFIRME EL PIN:</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>E-stop, feed hold, Reset and Drives Off work at every level.</source>
-      <translation>Paro de emergencia, retención de avance, Reset y servos apagados funcionan en todos los niveles.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>F3 adds the first user, with SERVICE level, and turns access levels on.</source>
-      <translation>F3 añade el primer usuario, de nivel SERVICIO, y activa los niveles de acceso.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>F3: ADD USER, TURN ACCESS LEVELS ON   ESC: BACK TO THE LIST</source>
-      <translation>F3: AÑADIR UN USUARIO, ACTIVAR LOS NIVELES DE ACCESO   ESC: VOLVER A LA LISTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>LEVEL? 1 OPERATOR, 2 SETUP, 3 SERVICE</source>
-      <translation>¿NIVEL? 1 OPERADOR, 2 PREPARADOR, 3 SERVICIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>LEVELS</source>
-      <translation>NIVELES</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>NAME?</source>
-      <translation>¿NOMBRE?</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>NEW PIN FOR {name}?</source>
-      <translation>¿PIN NUEVO DE {name}?</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>PIN FOR {name}?</source>
-      <translation>¿PIN DE {name}?</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL</source>
-      <translation>SE BORRARÁN LOS PIN. SUELTE EL PARO DE EMERGENCIA O ENTRE PARA CANCELAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN</source>
-      <translation>PULSE Y PARA ELIMINAR A {name}, N PARA CONSERVAR EL USUARIO Y EL PIN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK</source>
-      <translation>ELIJA SU NOMBRE   ENTER: ENTRAR   F2: SALIR   ESC: VOLVER</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>SIGN OUT</source>
-      <translation>SALIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>SIGNED OUT: OPERATOR LEVEL IS ACTIVE</source>
-      <translation>SESIÓN CERRADA: NIVEL OPERADOR ACTIVO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>TYPE OF CHANGE</source>
-      <translation>TIPO DE CAMBIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>USERS</source>
-      <translation>USUARIOS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>Y: REMOVE ALL PINS IN 10 MINUTES (LOGGED)   N: KEEP THEM</source>
-      <translation>Y: BORRAR TODOS LOS PIN EN 10 MINUTOS (SE REGISTRA)   N: CONSERVARLOS</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>sign in</source>
-      <translation>sign in</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>sign in, users, PINs</source>
-      <translation>entrar, usuarios, PIN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>the level must be 1, 2 or 3</source>
-      <translation>el nivel debe ser 1, 2 o 3</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>the two PINs do not match; nothing was saved. Enter the PIN again</source>
-      <translation>los dos PIN no coinciden; no se guardó nada. Introduzca el PIN de nuevo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>user {draft} saved with level {level} and a new PIN</source>
-      <translation>usuario {draft} guardado con nivel {level} y PIN nuevo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>{draft} already exists; press F4 to change the PIN</source>
-      <translation>{draft} ya existe; pulse F4 para cambiar el PIN</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
-      <source>{name}: {level}, PIN SAVED</source>
-      <translation>{name}: {level}, PIN GUARDADO</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
@@ -14747,11 +14687,6 @@
       <location filename="app/special/lamps_and_sound.py" />
       <source>LAMP TEST</source>
       <translation>PRUEBA</translation>
-    </message>
-    <message>
-      <location filename="app/special/lamps_and_sound.py" />
-      <source>LAMPS AND SOUND</source>
-      <translation>LÁMPARAS Y SONIDO</translation>
     </message>
     <message>
       <location filename="app/special/lamps_and_sound.py" />
@@ -15574,6 +15509,76 @@
       <translation>{rpm} rpm está fuera del margen de este husillo, de {low} a {high} rpm</translation>
     </message>
     <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>MINUTES</source>
+      <translation>MINUTOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO</source>
+      <translation>¿PLAQUITA NUEVA EN T{number}? USO DE LA VIEJA: {words}. Y: SÍ   N: NO</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>NO TOOL HAS OFFSETS YET</source>
+      <translation>AÚN NO HAY HERRAMIENTAS CON CORRECTOR</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>Only time at feed counts toward the tool-life minutes. Enter 0 for no limit. STOP: no new part starts once the tool life is used up.</source>
+      <translation>Solo el tiempo en avance cuenta para los minutos de vida. Escriba 0 para no tener límite. PARO: no empieza otra pieza al agotarse la vida de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>REMAINING</source>
+      <translation>RESTANTE</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT</source>
+      <translation>ESCRIBA EL LÍMITE DE VIDA. F2: OTRO LÍMITE   F4: PLAQUITA NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>T{number} tool life: {limit_parts} parts, {minutes}, warn at {warn}</source>
+      <translation>vida de T{number}: {limit_parts} piezas, {minutes}, aviso al {warn}</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>WARN</source>
+      <translation>AVISO</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>WARN AT %</source>
+      <translation>AVISAR AL %</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>insert life in parts and minutes</source>
+      <translation>vida de plaquita en piezas y minutos</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>no stop at end of tool life</source>
+      <translation>sin paro al agotarse la vida de la herramienta</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>{count} parts</source>
+      <translation>{count} piezas</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>{limit_seconds} min</source>
+      <translation>{limit_seconds} min</translation>
+    </message>
+    <message>
+      <location filename="app/special/tool_life_function.py" />
+      <source>{value} is not a valid number of parts; type a whole number</source>
+      <translation>{value} no es un número de piezas válido; escriba un entero</translation>
+    </message>
+    <message>
       <location filename="app/transfer/serial_settings.py" />
       <source>BITS, PARITY, STOP BITS</source>
       <translation>BITS, PARIDAD, BITS DE PARADA</translation>
@@ -15857,16 +15862,6 @@
       <location filename="app/working_plane/plane_instant.py" />
       <source>TABLE AND PLANE</source>
       <translation>MESA Y PLANO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/access/pins.py" />
-      <source>a PIN must have {shortest} to {longest} digits</source>
-      <translation>un PIN debe tener de {shortest} a {longest} cifras</translation>
-    </message>
-    <message>
-      <location filename="core/extras/access/pins.py" />
-      <source>a PIN of one repeated digit is too easy to guess; choose another</source>
-      <translation>un PIN de una sola cifra repetida es demasiado fácil de adivinar; elija otro</translation>
     </message>
     <message>
       <location filename="core/alarms/__init__.py" />
@@ -17514,281 +17509,6 @@
       <translation>cuentas de encoder por vuelta equivocadas en el archivo de máquina</translation>
     </message>
     <message>
-      <location filename="core/drawings/contour_walk.py" />
-      <source>the contour crosses itself {distance} mm from the face at a diameter of {diameter} mm. Correct the contour at this point.</source>
-      <translation>el contorno se cruza a sí mismo a {distance} mm de la cara, en un diámetro de {diameter} mm. Corrija el contorno en ese punto.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/contour_walk.py" />
-      <source>the contour crosses the axis {distance} mm from the face. Choose another axis.</source>
-      <translation>el contorno cruza el eje a {distance} mm de la cara. Elija otro eje.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/contour_walk.py" />
-      <source>the contour has no bore at its face. Choose the outside, or another contour.</source>
-      <translation>el contorno no tiene agujero en su cara. Elija el exterior u otro contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/contour_walk.py" />
-      <source>the foremost point of the contour is in the middle of an arc. End the arc at this point.</source>
-      <translation>el punto más adelantado del contorno está en medio de un arco. Termine el arco en ese punto.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/contour_walk.py" />
-      <source>this side has no contour. Choose another contour.</source>
-      <translation>este lado no tiene contorno. Elija otro contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing.py" />
-      <source>{name} has a point too far from the drawing origin: move the contour to the origin.</source>
-      <translation>{name} tiene un punto demasiado lejos del origen del dibujo: lleve el contorno al origen.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing.py" />
-      <source>{name} has a point whose coordinate is not a number: save the drawing again.</source>
-      <translation>{name} tiene un punto cuya coordenada no es un número: guarde el dibujo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing.py" />
-      <source>{name} has more than {most_elements} lines: save only the layer with the contour.</source>
-      <translation>{name} tiene más de {most_elements} líneas: guarde solo la capa del contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_file.py" />
-      <source>{path} is damaged or is not a {kind} file: save the drawing again.</source>
-      <translation>{path} está dañado o no es un archivo {kind}: guarde el dibujo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_file.py" />
-      <source>{path} is empty: save the drawing again.</source>
-      <translation>{path} está vacío: guarde el dibujo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_file.py" />
-      <source>{path} is larger than {most_bytes} MB. Save only the contour of the part.</source>
-      <translation>{path} tiene más de {most_bytes} MB. Guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_file.py" />
-      <source>{path} is not a supported drawing: use a DXF or SVG file.</source>
-      <translation>{path} no es un dibujo admitido: use un archivo DXF o SVG.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_file.py" />
-      <source>{path} needs more memory than is allowed for a drawing. Save only the contour of the part.</source>
-      <translation>{path} necesita más memoria de la permitida para un dibujo. Guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_process.py" />
-      <source>{path} cannot be read because the process that reads drawings cannot be started.</source>
-      <translation>{path} no se puede leer porque no se puede iniciar el proceso que lee los dibujos.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_process.py" />
-      <source>{path} cannot be read with {maximum} MB of memory. Save only the contour of the part.</source>
-      <translation>{path} no se puede leer con {maximum} MB de memoria. Guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_process.py" />
-      <source>{path} takes more than {seconds} s to read. Save only the contour of the part.</source>
-      <translation>{path} tarda más de {seconds} s en leerse. Guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_view.py" />
-      <source>CENTRE LINE {found_count}</source>
-      <translation>LÍNEA DE EJE {found_count}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_view.py" />
-      <source>LOWEST LINE</source>
-      <translation>LÍNEA MÁS BAJA</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_view.py" />
-      <source>{drawing} has no axis {name}: choose {present}, or LINE and a line number.</source>
-      <translation>{drawing} no tiene el eje {name}: elija {present}, o LINE y un número de línea.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_view.py" />
-      <source>{drawing} has {drawn_count} lines, but line {number} does not exist: choose an existing line.</source>
-      <translation>{drawing} tiene {drawn_count} líneas, pero la línea {number} no existe: elija una línea existente.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/drawing_view.py" />
-      <source>{drawing}: line {number} is an arc. Choose a straight line as the axis.</source>
-      <translation>{drawing}: la línea {number} es un arco. Elija una recta como eje.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>the {kind} on layer {layer} of {name} is damaged: draw it again.</source>
-      <translation>el elemento {kind} de la capa {layer} de {name} está dañado: dibújelo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>{name} does not contain any lines or arcs in model space, only {what}: draw the contour with lines.</source>
-      <translation>{name} no contiene líneas ni arcos en el espacio modelo, solo {what}: dibuje el contorno con líneas.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>{name} has blocks nested more than {deepest} levels deep: explode the blocks.</source>
-      <translation>{name} tiene bloques anidados a más de {deepest} niveles: descomponga los bloques.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>{name} is three-dimensional: save a section or a view of the part in one plane.</source>
-      <translation>{name} es tridimensional: guarde una sección o una vista de la pieza en un plano.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/dxf_reader.py" />
-      <source>{path} is a DWG drawing: save it as DXF.</source>
-      <translation>{path} es un dibujo DWG: guárdelo como DXF.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/expansion.py" />
-      <source>A repeated group in {name} contains itself: save only the contour of the part.</source>
-      <translation>Un grupo repetido de {name} se contiene a sí mismo: guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/expansion.py" />
-      <source>The repeated groups in {name} add up to more than {most_elements} entities: save only the contour of the part.</source>
-      <translation>Los grupos repetidos de {name} suman más de {most_elements} entidades: guarde solo el contorno de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_program.py" />
-      <source>T{number} has a nose radius of {nose}, but its tool data has no tip quadrant: enter the tip quadrant on the SHAPE page of the tool (F8, F8).</source>
-      <translation>T{number} tiene un radio de punta de {nose}, pero sus datos de herramienta no tienen cuadrante de punta: introduzca el cuadrante de punta en la página FORMA de la herramienta (F8, F8).</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_program.py" />
-      <source>the groove cannot be cut because no grooving tool is specified</source>
-      <translation>la ranura no se puede cortar porque no se indica útil de ranurar</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_program.py" />
-      <source>the groove cannot be cut because the width of T{number} is not defined</source>
-      <translation>la ranura no se puede cortar porque la anchura de T{number} no está definida</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_program.py" />
-      <source>the groove is narrower than the {wide} mm blade</source>
-      <translation>la ranura es más estrecha que la cuchilla de {wide} mm</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>Z {front} to {back} is not cut: {why}</source>
-      <translation>Z {front} a {back} no se corta: {why}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>except at the listed deviations, the simulated part matches the drawing to within {within} {unit}</source>
-      <translation>salvo en las desviaciones indicadas, la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>gaps up to {closed} {unit} were closed</source>
-      <translation>se cerraron huecos de hasta {closed} {unit}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>proving did not produce a simulated part, so a comparison with the drawing was not possible</source>
-      <translation>la comprobación no produjo una pieza simulada, así que no se pudo comparar con el dibujo</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>secondary offset {number} must have X {x} (diameter), Z {z}, R {radius} {unit}</source>
-      <translation>el corrector secundario {number} debe tener X {x} (diámetro), Z {z}, R {radius} {unit}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>the simulated part matches the drawing to within {within} {unit}</source>
-      <translation>la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>the tool data of T{tool} has no nose radius, so the contour is not compensated</source>
-      <translation>los datos de herramienta de T{tool} no tienen radio de punta, así que el contorno no se compensa</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{depth} {unit} of stock remains (measured on the radius) from Z {front} to Z {back}</source>
-      <translation>quedan {depth} {unit} de material (medidos en el radio) de Z {front} a Z {back}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{depth} {unit} of stock remains in the corner at Z {position} because of the tool nose radius</source>
-      <translation>{depth} {unit} de material quedan en el rincón en Z {position} por el radio de punta del útil</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{depth} {unit} too much is cut (measured on the radius) from Z {front} to Z {back}</source>
-      <translation>se cortan {depth} {unit} de más (medidos en el radio) de Z {front} a Z {back}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/profile_words.py" />
-      <source>{edge} must have nose radius {radius} {unit} and tip quadrant {quadrant}</source>
-      <translation>{edge} debe tener radio de punta {radius} {unit} y cuadrante de punta {quadrant}</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/svg_reader.py" />
-      <source>{name} defines XML entities, which are not supported: save it as plain SVG.</source>
-      <translation>{name} define entidades XML, que no se admiten: guárdelo como SVG simple.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/svg_reader.py" />
-      <source>{name} does not contain any paths or lines, only {what}: draw the contour as a path.</source>
-      <translation>{name} no contiene trazados ni líneas, solo {what}: dibuje el contorno como trazado.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/svg_reader.py" />
-      <source>{name} has a path that does not begin with M: save the drawing again.</source>
-      <translation>{name} tiene un trazado que no empieza con M: guarde el dibujo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/svg_reader.py" />
-      <source>{name} is not an SVG file, because its first element is in another namespace: save the drawing again.</source>
-      <translation>{name} no es un archivo SVG, porque su primer elemento es de otro espacio de nombres: guarde el dibujo otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/svg_reader.py" />
-      <source>{name}: {dimension} of &lt;{kind}&gt; is not a number. Draw that element again.</source>
-      <translation>{name}: {dimension} de &lt;{kind}&gt; no es un número. Dibuje ese elemento otra vez.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/turning_contour.py" />
-      <source>The tool edge is at {rise} degrees, but the contour at Z {start} mm is at {item} degrees: use a tool that can turn shoulders.</source>
-      <translation>El filo del útil está a {rise} grados, pero el contorno en Z {start} mm está a {item} grados: use un útil que pueda tornear escalones.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/turning_contour.py" />
-      <source>This contour consists only of a face, so there is nothing to turn. Choose another contour.</source>
-      <translation>Este contorno consta solo de una cara, así que no hay nada que tornear. Elija otro contorno.</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/turning_contour.py" />
-      <source>the contour is undercut</source>
-      <translation>el contorno tiene un rebaje</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/turning_contour.py" />
-      <source>the contour slopes too steeply for the tool</source>
-      <translation>el contorno tiene una pendiente demasiado fuerte para el útil</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/unit_check.py" />
-      <source>{size} {unit} across</source>
-      <translation>{size} {unit} de diámetro</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/unit_check.py" />
-      <source>{size} {unit} long</source>
-      <translation>{size} {unit} de largo</translation>
-    </message>
-    <message>
-      <location filename="core/drawings/work_limit.py" />
-      <source>the drawing has too many parallel lines. Save only the contour of the part.</source>
-      <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
-    </message>
-    <message>
       <location filename="core/executor/command_handler.py" />
       <source>a program is running; press feed hold, then Reset to stop the spindle</source>
       <translation>hay un programa en marcha; pulse retención de avance y luego Reset para parar el husillo</translation>
@@ -18994,6 +18714,1716 @@
       <translation>{old}, pero el programa no especifica este ajuste; cargue el programa otra vez</translation>
     </message>
     <message>
+      <location filename="core/extras/access/pins.py" />
+      <source>a PIN must have {shortest} to {longest} digits</source>
+      <translation>un PIN debe tener de {shortest} a {longest} cifras</translation>
+    </message>
+    <message>
+      <location filename="core/extras/access/pins.py" />
+      <source>a PIN of one repeated digit is too easy to guess; choose another</source>
+      <translation>un PIN de una sola cifra repetida es demasiado fácil de adivinar; elija otro</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/ball_bar.py" />
+      <source>a ball-bar plot needs {minimum} samples of an arc; use a lower feed or a larger arc</source>
+      <translation>un diagrama ball-bar necesita {minimum} muestras de un arco; use un avance menor o un arco mayor</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/ball_bar.py" />
+      <source>the arc is shorter than {least_angle} degrees, too short for a ball-bar plot</source>
+      <translation>el arco es más corto que {least_angle} grados, demasiado corto para un diagrama ball-bar</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/ball_bar.py" />
+      <source>the driver does not report the axis positions, so no arc can be shown</source>
+      <translation>el driver no informa de las posiciones de los ejes, así que no se puede mostrar ningún arco</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/ball_bar.py" />
+      <source>this time range does not contain an arc; choose a line that programs an arc</source>
+      <translation>este intervalo no contiene ningún arco; elija una línea que programe un arco</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>a path error plot needs at least {minimum} samples of a path; record while a program runs</source>
+      <translation>un diagrama de error de trayectoria necesita al menos {minimum} muestras; registre mientras corre un programa</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>no axis moved in this time range; record while a program runs</source>
+      <translation>ningún eje se movió en este intervalo; registre mientras corre un programa</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>the driver does not report the axis positions, so no path can be compared</source>
+      <translation>el driver no informa de las posiciones de los ejes, así que no se puede comparar ninguna trayectoria</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/path_error.py" />
+      <source>the number of path points and the number of line numbers differ</source>
+      <translation>el número de puntos de la trayectoria y el de números de línea difieren</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>a response measurement needs at least {minimum} samples, but this driver supplies fewer</source>
+      <translation>una medición de respuesta necesita al menos {minimum} muestras, pero este driver da menos</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>a step of {step} is too small for the in-position window of {band}; use a larger step</source>
+      <translation>un escalón de {step} es demasiado pequeño para la ventana de posición de {band}; use un escalón mayor</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>the commanded motion contains no sine wave of {frequency} Hz</source>
+      <translation>el movimiento ordenado no contiene un seno de {frequency} Hz</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>the commanded motion never reaches a constant speed; use a longer move</source>
+      <translation>el movimiento ordenado no llega a una velocidad constante; use un recorrido más largo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>the driver does not report the axis position, so no response can be shown</source>
+      <translation>el driver no informa de la posición del eje, así que no se puede mostrar ninguna respuesta</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/step_response.py" />
+      <source>the record is shorter than one sine period; record for longer</source>
+      <translation>el registro es más corto que un período del seno; registre más tiempo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/thread_passes.py" />
+      <source>an analysis of thread passes needs at least 100 samples; record while a thread is cut</source>
+      <translation>el análisis de pasadas de rosca necesita al menos 100 muestras; registre mientras se corta una rosca</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/thread_passes.py" />
+      <source>no spindle encoder count is available, so the spindle angle is not in the record</source>
+      <translation>no hay cuenta de encoder del husillo, así que el ángulo del husillo no está en el registro</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/thread_passes.py" />
+      <source>the spindle does not turn in this time range; record while a thread is cut</source>
+      <translation>el husillo no gira en este intervalo; registre mientras se corta una rosca</translation>
+    </message>
+    <message>
+      <location filename="core/extras/analyses/thread_passes.py" />
+      <source>this time range does not contain a thread pass, because no axis moves at a steady speed for two spindle revolutions</source>
+      <translation>este intervalo no contiene ninguna pasada de rosca, porque ningún eje avanza a velocidad uniforme durante dos vueltas del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>the contour crosses itself {distance} mm from the face at a diameter of {diameter} mm. Correct the contour at this point.</source>
+      <translation>el contorno se cruza a sí mismo a {distance} mm de la cara, en un diámetro de {diameter} mm. Corrija el contorno en ese punto.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>the contour crosses the axis {distance} mm from the face. Choose another axis.</source>
+      <translation>el contorno cruza el eje a {distance} mm de la cara. Elija otro eje.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>the contour has no bore at its face. Choose the outside, or another contour.</source>
+      <translation>el contorno no tiene agujero en su cara. Elija el exterior u otro contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>the foremost point of the contour is in the middle of an arc. End the arc at this point.</source>
+      <translation>el punto más adelantado del contorno está en medio de un arco. Termine el arco en ese punto.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/contour_walk.py" />
+      <source>this side has no contour. Choose another contour.</source>
+      <translation>este lado no tiene contorno. Elija otro contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing.py" />
+      <source>{name} has a point too far from the drawing origin: move the contour to the origin.</source>
+      <translation>{name} tiene un punto demasiado lejos del origen del dibujo: lleve el contorno al origen.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing.py" />
+      <source>{name} has a point whose coordinate is not a number: save the drawing again.</source>
+      <translation>{name} tiene un punto cuya coordenada no es un número: guarde el dibujo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing.py" />
+      <source>{name} has more than {most_elements} lines: save only the layer with the contour.</source>
+      <translation>{name} tiene más de {most_elements} líneas: guarde solo la capa del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} is damaged or is not a {kind} file: save the drawing again.</source>
+      <translation>{path} está dañado o no es un archivo {kind}: guarde el dibujo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} is empty: save the drawing again.</source>
+      <translation>{path} está vacío: guarde el dibujo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} is larger than {most_bytes} MB. Save only the contour of the part.</source>
+      <translation>{path} tiene más de {most_bytes} MB. Guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} is not a supported drawing: use a DXF or SVG file.</source>
+      <translation>{path} no es un dibujo admitido: use un archivo DXF o SVG.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} needs more memory than is allowed for a drawing. Save only the contour of the part.</source>
+      <translation>{path} necesita más memoria de la permitida para un dibujo. Guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_process.py" />
+      <source>{path} cannot be read because the process that reads drawings cannot be started.</source>
+      <translation>{path} no se puede leer porque no se puede iniciar el proceso que lee los dibujos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_process.py" />
+      <source>{path} cannot be read with {maximum} MB of memory. Save only the contour of the part.</source>
+      <translation>{path} no se puede leer con {maximum} MB de memoria. Guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_process.py" />
+      <source>{path} takes more than {seconds} s to read. Save only the contour of the part.</source>
+      <translation>{path} tarda más de {seconds} s en leerse. Guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>CENTRE LINE {found_count}</source>
+      <translation>LÍNEA DE EJE {found_count}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>LOWEST LINE</source>
+      <translation>LÍNEA MÁS BAJA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>{drawing} has no axis {name}: choose {present}, or LINE and a line number.</source>
+      <translation>{drawing} no tiene el eje {name}: elija {present}, o LINE y un número de línea.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>{drawing} has {drawn_count} lines, but line {number} does not exist: choose an existing line.</source>
+      <translation>{drawing} tiene {drawn_count} líneas, pero la línea {number} no existe: elija una línea existente.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_view.py" />
+      <source>{drawing}: line {number} is an arc. Choose a straight line as the axis.</source>
+      <translation>{drawing}: la línea {number} es un arco. Elija una recta como eje.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/dxf_reader.py" />
+      <source>the {kind} on layer {layer} of {name} is damaged: draw it again.</source>
+      <translation>el elemento {kind} de la capa {layer} de {name} está dañado: dibújelo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/dxf_reader.py" />
+      <source>{name} does not contain any lines or arcs in model space, only {what}: draw the contour with lines.</source>
+      <translation>{name} no contiene líneas ni arcos en el espacio modelo, solo {what}: dibuje el contorno con líneas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/dxf_reader.py" />
+      <source>{name} has blocks nested more than {deepest} levels deep: explode the blocks.</source>
+      <translation>{name} tiene bloques anidados a más de {deepest} niveles: descomponga los bloques.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/dxf_reader.py" />
+      <source>{name} is three-dimensional: save a section or a view of the part in one plane.</source>
+      <translation>{name} es tridimensional: guarde una sección o una vista de la pieza en un plano.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/dxf_reader.py" />
+      <source>{path} is a DWG drawing: save it as DXF.</source>
+      <translation>{path} es un dibujo DWG: guárdelo como DXF.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/expansion.py" />
+      <source>A repeated group in {name} contains itself: save only the contour of the part.</source>
+      <translation>Un grupo repetido de {name} se contiene a sí mismo: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/expansion.py" />
+      <source>The repeated groups in {name} add up to more than {most_elements} entities: save only the contour of the part.</source>
+      <translation>Los grupos repetidos de {name} suman más de {most_elements} entidades: guarde solo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_program.py" />
+      <source>T{number} has a nose radius of {nose}, but its tool data has no tip quadrant: enter the tip quadrant on the SHAPE page of the tool (F8, F8).</source>
+      <translation>T{number} tiene un radio de punta de {nose}, pero sus datos de herramienta no tienen cuadrante de punta: introduzca el cuadrante de punta en la página FORMA de la herramienta (F8, F8).</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_program.py" />
+      <source>the groove cannot be cut because no grooving tool is specified</source>
+      <translation>la ranura no se puede cortar porque no se indica útil de ranurar</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_program.py" />
+      <source>the groove cannot be cut because the width of T{number} is not defined</source>
+      <translation>la ranura no se puede cortar porque la anchura de T{number} no está definida</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_program.py" />
+      <source>the groove is narrower than the {wide} mm blade</source>
+      <translation>la ranura es más estrecha que la cuchilla de {wide} mm</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>Z {front} to {back} is not cut: {why}</source>
+      <translation>Z {front} a {back} no se corta: {why}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>except at the listed deviations, the simulated part matches the drawing to within {within} {unit}</source>
+      <translation>salvo en las desviaciones indicadas, la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>gaps up to {closed} {unit} were closed</source>
+      <translation>se cerraron huecos de hasta {closed} {unit}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>proving did not produce a simulated part, so a comparison with the drawing was not possible</source>
+      <translation>la comprobación no produjo una pieza simulada, así que no se pudo comparar con el dibujo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>secondary offset {number} must have X {x} (diameter), Z {z}, R {radius} {unit}</source>
+      <translation>el corrector secundario {number} debe tener X {x} (diámetro), Z {z}, R {radius} {unit}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>the simulated part matches the drawing to within {within} {unit}</source>
+      <translation>la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>the tool data of T{tool} has no nose radius, so the contour is not compensated</source>
+      <translation>los datos de herramienta de T{tool} no tienen radio de punta, así que el contorno no se compensa</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>{depth} {unit} of stock remains (measured on the radius) from Z {front} to Z {back}</source>
+      <translation>quedan {depth} {unit} de material (medidos en el radio) de Z {front} a Z {back}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>{depth} {unit} of stock remains in the corner at Z {position} because of the tool nose radius</source>
+      <translation>{depth} {unit} de material quedan en el rincón en Z {position} por el radio de punta del útil</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>{depth} {unit} too much is cut (measured on the radius) from Z {front} to Z {back}</source>
+      <translation>se cortan {depth} {unit} de más (medidos en el radio) de Z {front} a Z {back}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/profile_words.py" />
+      <source>{edge} must have nose radius {radius} {unit} and tip quadrant {quadrant}</source>
+      <translation>{edge} debe tener radio de punta {radius} {unit} y cuadrante de punta {quadrant}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/svg_reader.py" />
+      <source>{name} defines XML entities, which are not supported: save it as plain SVG.</source>
+      <translation>{name} define entidades XML, que no se admiten: guárdelo como SVG simple.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/svg_reader.py" />
+      <source>{name} does not contain any paths or lines, only {what}: draw the contour as a path.</source>
+      <translation>{name} no contiene trazados ni líneas, solo {what}: dibuje el contorno como trazado.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/svg_reader.py" />
+      <source>{name} has a path that does not begin with M: save the drawing again.</source>
+      <translation>{name} tiene un trazado que no empieza con M: guarde el dibujo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/svg_reader.py" />
+      <source>{name} is not an SVG file, because its first element is in another namespace: save the drawing again.</source>
+      <translation>{name} no es un archivo SVG, porque su primer elemento es de otro espacio de nombres: guarde el dibujo otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/svg_reader.py" />
+      <source>{name}: {dimension} of &lt;{kind}&gt; is not a number. Draw that element again.</source>
+      <translation>{name}: {dimension} de &lt;{kind}&gt; no es un número. Dibuje ese elemento otra vez.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/turning_contour.py" />
+      <source>The tool edge is at {rise} degrees, but the contour at Z {start} mm is at {item} degrees: use a tool that can turn shoulders.</source>
+      <translation>El filo del útil está a {rise} grados, pero el contorno en Z {start} mm está a {item} grados: use un útil que pueda tornear escalones.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/turning_contour.py" />
+      <source>This contour consists only of a face, so there is nothing to turn. Choose another contour.</source>
+      <translation>Este contorno consta solo de una cara, así que no hay nada que tornear. Elija otro contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/turning_contour.py" />
+      <source>the contour is undercut</source>
+      <translation>el contorno tiene un rebaje</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/turning_contour.py" />
+      <source>the contour slopes too steeply for the tool</source>
+      <translation>el contorno tiene una pendiente demasiado fuerte para el útil</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/unit_check.py" />
+      <source>{size} {unit} across</source>
+      <translation>{size} {unit} de diámetro</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/unit_check.py" />
+      <source>{size} {unit} long</source>
+      <translation>{size} {unit} de largo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/work_limit.py" />
+      <source>the drawing has too many parallel lines. Save only the contour of the part.</source>
+      <translation>el dibujo tiene demasiadas líneas paralelas. Guarde sólo el contorno de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/capability.py" />
+      <source>process capability needs a tolerance; enter a tolerance for this feature</source>
+      <translation>la capacidad del proceso necesita una tolerancia; introduzca una tolerancia para esta característica</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/capability.py" />
+      <source>the lower limit must be below the upper limit; correct the tolerance</source>
+      <translation>el límite inferior debe ser menor que el superior; corrija la tolerancia</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/capability.py" />
+      <source>{values_count} readings are not enough; a Cpk needs at least {minimum} readings</source>
+      <translation>{values_count} lecturas no bastan; un Cpk necesita al menos {minimum} lecturas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>a control chart is not possible for samples of {size}; use samples of 1 to {sample_sizes} parts</source>
+      <translation>no es posible una gráfica de control para muestras de {size}; use muestras de 1 a {sample_sizes} piezas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>a value is not a number; delete that reading</source>
+      <translation>un valor no es un número; borre esa lectura</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>an X-bar chart needs at least 2 complete samples of {shape} parts; measure more parts</source>
+      <translation>la gráfica X-barra necesita al menos 2 muestras completas de {shape} piezas; mida más piezas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>an individuals chart needs at least 2 values; measure more parts</source>
+      <translation>la gráfica de individuales necesita al menos 2 valores; mida más piezas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>eight points in a row beyond one sigma</source>
+      <translation>ocho puntos seguidos más allá de un sigma</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>fifteen points in a row within one sigma</source>
+      <translation>quince puntos seguidos dentro de un sigma</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>four of five points beyond one sigma on one side</source>
+      <translation>cuatro de cinco puntos más allá de un sigma a un lado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>fourteen points in a row alternating up and down</source>
+      <translation>catorce puntos seguidos subiendo y bajando alternadamente</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>nine points in a row on one side of the center line</source>
+      <translation>nueve puntos seguidos a un lado de la línea central</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>one point beyond a control limit</source>
+      <translation>un punto fuera de un límite de control</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>six points in a row rising or falling</source>
+      <translation>seis puntos seguidos subiendo o bajando</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>the samples of an X-bar chart must all have the same size, 2 to 10 values</source>
+      <translation>las muestras de la gráfica X-barra deben tener todas el mismo tamaño, de 2 a 10 valores</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/control_charts.py" />
+      <source>two of three points beyond two sigma on one side</source>
+      <translation>dos de tres puntos más allá de dos sigmas a un lado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>a feature name must have 1 to {name_longest} characters</source>
+      <translation>el nombre de una característica debe tener de 1 a {name_longest} caracteres</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: a sample must have 1 to {sample_sizes} parts</source>
+      <translation>{feature}: una muestra debe tener de 1 a {sample_sizes} piezas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the direction must be +1 (a positive correction makes the dimension larger) or -1 (a positive correction makes the dimension smaller)</source>
+      <translation>{feature}: la dirección debe ser +1 (una corrección positiva aumenta la cota) o -1 (una corrección positiva disminuye la cota)</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the lower deviation must be below the upper deviation; correct one of them</source>
+      <translation>{feature}: la desviación inferior debe ser menor que la superior; corrija una</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the lower limit is 0 or less; correct the deviation</source>
+      <translation>{feature}: el límite inferior es 0 o menos; corrija la desviación</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for no sampling plan</source>
+      <translation>{feature}: el intervalo de medición debe ser de 1 a {every_most} piezas, o 0 sin plan de muestreo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the nominal dimension and the limits must be numbers</source>
+      <translation>{feature}: la medida nominal y los límites deben ser números</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the nominal dimension must be more than 0 and at most {size_most} mm</source>
+      <translation>{feature}: la medida nominal debe ser mayor que 0 y como máximo {size_most} mm</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/measured_feature.py" />
+      <source>{feature}: the offset number must be 1 to {numbers}, not {number}</source>
+      <translation>{feature}: el número de corrector debe ser de 1 a {numbers}, no {number}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/stops.py" />
+      <source>the end of a cycle is earlier than its start because the clock was set back</source>
+      <translation>el final de un ciclo es anterior a su comienzo porque el reloj se atrasó</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/stops.py" />
+      <source>the end of a shift must be later than its start; correct the shift times</source>
+      <translation>el final de un turno debe ser posterior a su comienzo; corrija las horas del turno</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/stops.py" />
+      <source>{reason}: the end of a stop is earlier than its start because the clock was set back</source>
+      <translation>{reason}: el final de un paro es anterior a su comienzo porque el reloj se atrasó</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>the correction would be less than the smallest offset step, so no correction is needed</source>
+      <translation>la corrección sería menor que el paso mínimo del corrector, así que no hace falta corregir</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>the deviation is within the dead band, so no correction is needed</source>
+      <translation>la desviación está dentro de la banda muerta, así que no hace falta corregir</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>{feature}: a correction of {change} mm is too large to be tool wear; touch the tool off</source>
+      <translation>{feature}: una corrección de {change} mm es demasiado grande para ser desgaste; tome referencia de la herramienta</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>{feature}: a reading is not a number; delete that reading</source>
+      <translation>{feature}: una lectura no es un número; borre esa lectura</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>{feature}: a reading is off by more than {distance} times the tolerance, which is too large for tool wear; measure again</source>
+      <translation>{feature}: una lectura se desvía más de {distance} veces la tolerancia, demasiado para ser desgaste; mida de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/quality/wear_proposal.py" />
+      <source>{feature}: no part has been measured since the last correction</source>
+      <translation>{feature}: no se ha medido ninguna pieza desde la última corrección</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/blade.py" />
+      <source>BLADE WIDTH</source>
+      <translation>ANCHO DE LA CUCHILLA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/blade.py" />
+      <source>CORNER USED FOR TOUCH-OFF</source>
+      <translation>ESQUINA DE REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/blade.py" />
+      <source>Depth {depth} is more than the reach of {name}, which is {length}. Use a longer blade.</source>
+      <translation>La profundidad {depth} es más que el alcance de {name}, que es {length}. Use una cuchilla más larga.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/blade.py" />
+      <source>The blade width in the tool data of {name} is {width}: enter that width.</source>
+      <translation>El ancho de cuchilla en los datos de herramienta de {name} es {width}: introduzca ese ancho.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>ANGLE TO THE AXIS</source>
+      <translation>ÁNGULO AL EJE</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>DEPTH OF FIRST PASS</source>
+      <translation>PROFUNDIDAD DE LA PRIMERA PASADA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>DIAMETER AT THE CHUCK</source>
+      <translation>DIÁMETRO JUNTO AL PLATO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>DIAMETER AT THE FACE</source>
+      <translation>DIÁMETRO JUNTO A LA CARA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>FEED AND SPEED</source>
+      <translation>AVANCE Y VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>FEED PER MINUTE</source>
+      <translation>AVANCE POR MINUTO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>FEED PER REVOLUTION</source>
+      <translation>AVANCE POR VUELTA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>SPINDLE SPEED, RPM</source>
+      <translation>VELOCIDAD DEL HUSILLO, RPM</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>SURFACE SPEED</source>
+      <translation>VELOCIDAD DE CORTE</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>S{number} gives a surface speed of {real} {unit} at this diameter</source>
+      <translation>S{number} da una velocidad de corte de {real} {unit} en este diámetro</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>THREAD PASSES</source>
+      <translation>PASADAS DE ROSCA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>The taper crosses the spindle centerline: check the angle and the length.</source>
+      <translation>El cono cruza el centro del husillo: revise el ángulo y la longitud.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>These four values do not define a taper: the angle would be {angle}. Clear one of the values.</source>
+      <translation>Estos cuatro valores no definen un cono: el ángulo sería {angle}. Borre uno de los valores.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>X position of each pass: {value}</source>
+      <translation>posición X de cada pasada: {value}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>calculates a taper from any three of four values: the two diameters, the length and the angle</source>
+      <translation>calcula un cono con tres de cuatro valores: los dos diámetros, la longitud y el ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>diameters, depth and passes of a standard thread</source>
+      <translation>diámetros, profundidad y pasadas de una rosca normalizada</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>equivalent feed per minute: G94F{number}</source>
+      <translation>avance por minuto equivalente: G94F{number}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>included angle {number}°</source>
+      <translation>ángulo total {number}°</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>roughing passes {depth} deep per side</source>
+      <translation>pasadas de desbaste de {depth} por lado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>rpm, surface speed, feed per revolution and feed per minute: TurnDesk calculates the values that you leave empty</source>
+      <translation>rpm, velocidad de corte, avance por vuelta y avance por minuto: TurnDesk calcula los valores que deje vacíos</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>slant length {rise}</source>
+      <translation>generatriz {rise}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>taper ratio on the diameter: {ratio}</source>
+      <translation>conicidad en el diámetro: {ratio}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>the tool starts at X {value}</source>
+      <translation>el útil empieza en X {value}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>thread depth {depth} per side, depth of the first pass {first}</source>
+      <translation>profundidad de rosca {depth} por lado, profundidad de la primera pasada {first}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>{number} passes require a first pass {depth} deep: clear one of the two values.</source>
+      <translation>{number} pasadas requieren una primera pasada de {depth} de profundidad: borre uno de los dos valores.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/calculators.py" />
+      <source>{number} rpm at {number2} per revolution is {rate} per minute: clear one of the values.</source>
+      <translation>{number} rpm a {number2} por vuelta son {rate} por minuto: borre uno de los valores.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/contour.py" />
+      <source>A contour needs at least two points: enter the next point.</source>
+      <translation>Un contorno necesita al menos dos puntos: introduzca el siguiente.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/contour.py" />
+      <source>Point {number} has a chamfer or radius next to an arc. The control can cut a chamfer or radius only between two straight lines.</source>
+      <translation>El punto {number} tiene un chaflán o radio junto a un arco. El control solo puede cortar un chaflán o radio entre dos rectas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/contour.py" />
+      <source>Point {number} is past the spindle centerline: X is a diameter and must be 0 or more.</source>
+      <translation>El punto {number} pasa de la línea de centro del husillo: X es un diámetro y debe ser 0 o más.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/contour.py" />
+      <source>Point {number} is the same as the previous point: enter another X or Z.</source>
+      <translation>El punto {number} es igual al anterior: introduzca otra X u otra Z.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/contour.py" />
+      <source>The arc to point {number} spans {chord}, but with radius {arc} it can span only {arc2}: enter a larger radius.</source>
+      <translation>El arco al punto {number} abarca {chord}, pero con radio {arc} solo puede abarcar {arc2}: introduzca un radio mayor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/contour.py" />
+      <source>The corner at point {number} has a size below 0: enter the correct size.</source>
+      <translation>La esquina del punto {number} tiene una medida menor que 0: introduzca la medida correcta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/contour.py" />
+      <source>The corner at point {number} needs a line after it: add a point.</source>
+      <translation>La esquina del punto {number} necesita una línea después: añada un punto.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/contour.py" />
+      <source>The corner at point {number} needs {back} of line length, but the line is only {room} long: make the corner smaller.</source>
+      <translation>La esquina del punto {number} necesita {back} de línea, pero la línea solo tiene {room} de largo: haga la esquina menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/contour.py" />
+      <source>The first point is the start of the contour: enter X and Z.</source>
+      <translation>El primer punto es el inicio del contorno: introduzca X y Z.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/cutting_data.py" />
+      <source>ALLOY STEEL</source>
+      <translation>ACERO ALEADO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/cutting_data.py" />
+      <source>CAST IRON</source>
+      <translation>FUNDICIÓN</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/cutting_data.py" />
+      <source>FREE STEEL</source>
+      <translation>ACERO DE FÁCIL MECANIZADO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/cutting_data.py" />
+      <source>TOOL STEEL</source>
+      <translation>ACERO PARA HERRAMIENTAS</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>A bar feed loop cannot be inside another bar feed loop: write this shape before or after the other loop.</source>
+      <translation>Un bucle de avance de barra no puede estar dentro de otro: escriba esta forma antes o después del otro bucle.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>BAR FEED PER MINUTE</source>
+      <translation>AVANCE DE BARRA POR MINUTO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>BAR LENGTH PER PART + CUT-OFF</source>
+      <translation>LARGO DE BARRA POR PIEZA + CORTE</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>BAR LOOP</source>
+      <translation>BUCLE DE BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>EACH PART</source>
+      <translation>CADA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>FACING ALLOWANCE</source>
+      <translation>SOBRANTE PARA CAREAR</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>FEED THE BAR</source>
+      <translation>SACAR LA BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>PART SUBROUTINE NUMBER</source>
+      <translation>NÚMERO DE SUBRUTINA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>TOOL USED AS STOP</source>
+      <translation>HERRAMIENTA DE TOPE</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>This machine has no M codes that open and close the chuck: assign two M codes to the output named collet under [m_codes] in the machine file.</source>
+      <translation>Esta máquina no tiene códigos M que abran y cierren el plato: asigne dos códigos M a la salida llamada collet bajo [m_codes] en el archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>feeds the bar to a stop and repeats the following lines for a number of parts; these lines make the part</source>
+      <translation>saca la barra hasta un tope y repite las líneas siguientes para varias piezas; esas líneas hacen la pieza</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/drilling.py" />
+      <source>A peck of {peck} is deeper than the hole: enter 0 for no pecking.</source>
+      <translation>Un picoteo de {peck} es más hondo que el agujero: introduzca 0 para no picotear.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/drilling.py" />
+      <source>DEPTH AT DRILL POINT</source>
+      <translation>PROFUNDIDAD DE LA PUNTA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/drilling.py" />
+      <source>DRILL DIAMETER</source>
+      <translation>DIÁMETRO DE LA BROCA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/drilling.py" />
+      <source>Drilling {depth} diameters deep without pecking clogs the drill: enter a peck depth.</source>
+      <translation>Taladrar {depth} diámetros de profundidad sin picoteo atasca la broca: introduzca una profundidad de picoteo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/drilling.py" />
+      <source>PREDRILLED DEPTH</source>
+      <translation>PROFUNDIDAD YA TALADRADA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/drilling.py" />
+      <source>The drill diameter in the tool data of {name} is {diameter}: enter that diameter.</source>
+      <translation>El diámetro de broca en los datos de herramienta de {name} es {diameter}: introduzca ese diámetro.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/drilling.py" />
+      <source>The hole starts at a depth of {start} and ends at {depth}, so nothing is drilled.</source>
+      <translation>El agujero empieza a {start} de profundidad y acaba en {depth}, así que no se taladra nada.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/drilling.py" />
+      <source>a hole on the spindle centerline, drilled in one pass or with pecking</source>
+      <translation>un agujero en el centro del husillo, de una vez o con picoteo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>A blade cannot reach under a wall that overhangs the groove: enter 0 or more.</source>
+      <translation>Una cuchilla no llega debajo de una pared que cubre la ranura: introduzca 0 o más.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>A groove in a bore of {top} is cut outward, so bottom diameter {bottom} is too small.</source>
+      <translation>Una ranura en un taladro de {top} se corta hacia fuera, así que el diámetro del fondo {bottom} es demasiado pequeño.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>BOTTOM DIAMETER</source>
+      <translation>DIÁMETRO DEL FONDO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>CHAMFER AT BOTH EDGES</source>
+      <translation>CHAFLÁN EN AMBOS CANTOS</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>CYCLE93 can cut only square walls in this shape: enter 0 for the slope or, to use G1 instead, enter 0 as the D number of the other blade corner.</source>
+      <translation>En esta forma, CYCLE93 solo puede cortar paredes rectas: introduzca 0 para la inclinación o, para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>CYCLE93 cannot chamfer these edges: enter 0 for the chamfer or, to use G1 instead, enter 0 as the D number of the other blade corner.</source>
+      <translation>CYCLE93 no puede achaflanar estos cantos: introduzca 0 para el chaflán o, para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>CYCLE93 does not support a tool at negative X: to use G1 instead, enter 0 as the D number of the other blade corner.</source>
+      <translation>CYCLE93 no admite herramientas en X negativa: para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>CYCLE93: D OF OTHER CORNER</source>
+      <translation>CYCLE93: D DE LA OTRA ESQUINA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>D1 is the cutting corner of the blade: enter the D number of the other corner, or 0 to use G1 instead of CYCLE93.</source>
+      <translation>D1 es la esquina de corte de la cuchilla: introduzca el número D de la otra esquina, o 0 para usar G1 en lugar de CYCLE93.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>DIAMETER TO CLEAR</source>
+      <translation>DIÁMETRO QUE HAY QUE LIBRAR</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>DISTANCE FROM Z0 TO START</source>
+      <translation>DISTANCIA DE Z0 AL INICIO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>DWELL AT BOTTOM</source>
+      <translation>PAUSA EN EL FONDO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>Diameter {excess} is less than diameter {top}, so the tool has nothing to clear: enter 0.</source>
+      <translation>El diámetro {excess} es menor que el diámetro {top}, así que nada estorba el paso de la herramienta: introduzca 0.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>Diameter {excess} is more than the bore diameter of {top}, so the tool has nothing to clear: enter 0.</source>
+      <translation>El diámetro {excess} es mayor que el diámetro interior de {top}, así que nada estorba el paso de la herramienta: introduzca 0.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>Edges of sloped walls cannot be chamfered in this shape: enter 0.</source>
+      <translation>En esta forma no se pueden achaflanar los cantos de paredes inclinadas: introduzca 0.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>GROOVE WIDTH</source>
+      <translation>ANCHO DE LA RANURA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>Grooves of width {long} overlap at a pitch of {number}: enter a larger pitch.</source>
+      <translation>Ranuras de ancho {long} se juntan a un paso de {number}: introduzca un paso mayor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>NUMBER OF GROOVES</source>
+      <translation>NÚMERO DE RANURAS</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>SLOPE OF CHUCK-SIDE WALL</source>
+      <translation>INCLINACIÓN DE LA PARED DEL PLATO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>SLOPE OF FACE-SIDE WALL</source>
+      <translation>INCLINACIÓN DE LA PARED DE LA CARA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>The chamfer is at least as deep as the groove: enter a smaller chamfer.</source>
+      <translation>El chaflán es al menos tan hondo como la ranura: introduzca un chaflán menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>The groove bottom diameter {bottom} must be less than {top}, the diameter at which the groove starts.</source>
+      <translation>El diámetro del fondo de la ranura, {bottom}, debe ser menor que {top}, el diámetro donde empieza la ranura.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>The groove is {long} wide, but the blade is {wide} wide: use a narrower blade.</source>
+      <translation>La ranura tiene {long} de ancho, pero la cuchilla tiene {wide} de ancho: use una cuchilla más estrecha.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>With these walls, the groove bottom is {bottom} wide, but the blade is {wide} wide: use a narrower blade, or check the angles.</source>
+      <translation>Con estas paredes, el fondo de la ranura mide {bottom} de ancho, pero la cuchilla mide {wide}: use una cuchilla más estrecha, o revise los ángulos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/grooving.py" />
+      <source>one or more grooves on the outside, in a bore or with a rear tool, with chamfered edges and square or sloped walls</source>
+      <translation>una o varias ranuras por fuera, en un interior o con herramienta trasera, con chaflanes y paredes rectas o inclinadas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>ACROSS FLATS</source>
+      <translation>ENTRE CARAS</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>ANGLE AROUND THE PART</source>
+      <translation>ÁNGULO ALREDEDOR DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>ANGLE BETWEEN HOLES</source>
+      <translation>ÁNGULO ENTRE AGUJEROS</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>ANGLE BETWEEN SLOTS</source>
+      <translation>ÁNGULO ENTRE RANURAS</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>CROSS DRILL</source>
+      <translation>TALADRADO TRANSVERSAL</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>CUTTER DIAMETER</source>
+      <translation>DIÁMETRO DE LA FRESA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>DEPTH PER PASS</source>
+      <translation>PROFUNDIDAD DE PASADA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>DISTANCE FROM Z0 TO CENTER</source>
+      <translation>DISTANCIA DE Z0 AL CENTRO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>Depth {depth} is more than the diameter of {across}: the drill would come out on the far side.</source>
+      <translation>La profundidad {depth} es más que el diámetro de {across}: la broca saldría por el otro lado.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>Depth {number} goes past the spindle centerline of a part {number2} in diameter: enter a smaller depth.</source>
+      <translation>La profundidad {number} pasa del centro del husillo en una pieza de diámetro {number2}: introduzca una profundidad menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>FIRST ANGLE</source>
+      <translation>PRIMER ÁNGULO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>LENGTH ALONG Z</source>
+      <translation>LONGITUD EN Z</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>LIVE TOOL SPEED</source>
+      <translation>VELOCIDAD DE LA MOTORIZADA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>MILL FLATS</source>
+      <translation>FRESADO DE CARAS</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>MILL SLOT</source>
+      <translation>FRESADO DE RANURA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>PART DIAMETER</source>
+      <translation>DIÁMETRO DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>The depth per pass is more than the length of the flats: enter a smaller depth.</source>
+      <translation>La profundidad de pasada es más que el largo de las caras: introduzca una profundidad menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>The depth per pass is more than the slot depth: enter a smaller depth per pass.</source>
+      <translation>La profundidad de pasada es más que la de la ranura: introduzca una profundidad de pasada menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>The slot has no length: enter its length along Z, or its angle around the part.</source>
+      <translation>La ranura no tiene longitud: introduzca su longitud en Z, o su ángulo alrededor de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>The third axis of this machine is named Y, but the plane of this shape needs a separate Y axis: mill this shape on another machine.</source>
+      <translation>El tercer eje de esta máquina se llama Y, pero el plano de esta forma necesita un eje Y separado: frese esta forma en otra máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>This machine has no output that drives a live tool: define an output named live under [io.out] in the machine file.</source>
+      <translation>Esta máquina no tiene una salida que mueva una herramienta motorizada: defina una salida llamada live bajo [io.out] en el archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>This machine has no third axis that holds and turns the part.</source>
+      <translation>Esta máquina no tiene un tercer eje que sujete y gire la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>a keyway along Z, around the part or on a helix, in the ZC plane</source>
+      <translation>un chavetero a lo largo de Z, alrededor de la pieza o en hélice, en el plano ZC</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>flats or a hexagon on the end of the part, in the XC plane</source>
+      <translation>caras o un hexágono en el extremo de la pieza, en el plano XC</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>radial holes around the part, drilled with the spindle stopped in position</source>
+      <translation>agujeros radiales alrededor de la pieza, taladrados con el husillo parado en posición</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>{across} across flats is not less than the part diameter of {stock}, so nothing is cut.</source>
+      <translation>{across} entre caras no es menos que el diámetro de la pieza de {stock}, así que no se corta nada.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>{many} flats at {across} across flats have corners at diameter {corner}, but the part diameter is {stock}: enter a smaller value, or set CORNERS to ROUND.</source>
+      <translation>{many} caras con {across} entre caras tienen esquinas en el diámetro {corner}, pero el diámetro de la pieza es {stock}: introduzca un valor menor, o ponga las esquinas en ROUND.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/live_tools.py" />
+      <source>{number} holes spaced {number2}° apart go around the part more than once: enter a smaller angle.</source>
+      <translation>{number} agujeros separados {number2}° dan más de una vuelta a la pieza: introduzca un ángulo menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/parting.py" />
+      <source>A chamfer of {word} removes the whole wall: enter a smaller chamfer.</source>
+      <translation>Un chaflán de {word} quita toda la pared: introduzca un chaflán menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/parting.py" />
+      <source>CHAMFER ON THE BAR</source>
+      <translation>CHAFLÁN DE LA BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/parting.py" />
+      <source>CHAMFER ON THE PART</source>
+      <translation>CHAFLÁN DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/parting.py" />
+      <source>END DIAMETER</source>
+      <translation>DIÁMETRO FINAL</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/parting.py" />
+      <source>PART LENGTH</source>
+      <translation>LONGITUD DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/parting.py" />
+      <source>PART OFF</source>
+      <translation>TRONZADO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/parting.py" />
+      <source>Parting off starts at diameter {top} and runs inward: end diameter {end} must be less.</source>
+      <translation>El tronzado empieza en el diámetro {top} y va hacia dentro: el diámetro final {end} debe ser menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/parting.py" />
+      <source>The chamfer is longer than the part: enter a smaller chamfer.</source>
+      <translation>El chaflán es más largo que la pieza: introduzca un chaflán menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/parting.py" />
+      <source>parts off to the center or to a bore, with chamfers on both sides of the cut</source>
+      <translation>tronza hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/program_head.py" />
+      <source>BAR DIAMETER</source>
+      <translation>DIÁMETRO DE LA BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/program_head.py" />
+      <source>TOOL CHANGE AT Z</source>
+      <translation>CAMBIO DE HERRAMIENTA EN Z</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/program_head.py" />
+      <source>the start of the program: units, diameter programming, rapid rates, material</source>
+      <translation>el inicio del programa: unidades, programación en diámetros, avances rápidos, material</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>An edge size of {edge} is more than half of diameter {across}: enter {across2} or less.</source>
+      <translation>Un canto de {edge} es más que la mitad del diámetro {across}: introduzca {across2} o menos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>CHAMFER AT BORE MOUTH</source>
+      <translation>CHAFLÁN EN LA BOCA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>DISTANCE FROM Z0 TO FACE</source>
+      <translation>DISTANCIA DE Z0 A LA CARA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>Diameter {number} is more than the stock diameter of {number2}.</source>
+      <translation>El diámetro {number} es más que el diámetro del material de {number2}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>EDGE TURN</source>
+      <translation>MATAR CANTOS</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>TAPER TURN</source>
+      <translation>CONO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>The boring bar of T{number} has a diameter of {diameter}, but the hole diameter is {hole}, so the bar does not fit; drill a larger hole, or use a smaller boring bar.</source>
+      <translation>La barra de mandrinar de T{number} tiene un diámetro de {diameter}, pero el diámetro del agujero es {hole}, así que la barra no entra; taladre un agujero mayor o use una barra de mandrinar menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>The chamfer is at least as long as the bore depth of {depth}: enter a smaller chamfer.</source>
+      <translation>El chaflán es al menos tan largo como la profundidad del taladro de {depth}: introduzca un chaflán menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>The hole diameter of {hole} is not less than the bore diameter of {across}, so nothing is cut.</source>
+      <translation>El diámetro del agujero, {hole}, no es menor que el diámetro del mandrinado, {across}, así que no se corta nada.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>The reach of T{number} is only {stick_out}, but the bore is {depth} deep: use a longer boring bar.</source>
+      <translation>El alcance de T{number} es de solo {stick_out}, pero el taladro tiene {depth} de hondo: use una barra de mandrinar más larga.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>The taper gets smaller toward the chuck, so a turning tool would run into the stock.</source>
+      <translation>El cono se estrecha hacia el plato, así que una herramienta de torneado chocaría con el material.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>a chamfer or a radius on an edge, on the outside or in a bore</source>
+      <translation>un chaflán o un radio en un canto, por fuera o en un taladro</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>a drilled hole bored to a diameter, with a chamfer at the mouth of the hole</source>
+      <translation>un agujero taladrado que se mandrina a un diámetro, con chaflán en la boca del agujero</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/tapers_and_bores.py" />
+      <source>a taper defined by two diameters, or by one diameter and an angle</source>
+      <translation>un cono definido por dos diámetros, o por un diámetro y un ángulo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>A finishing allowance of {leave} is more than a pass of {rough}: enter a smaller allowance.</source>
+      <translation>Un sobrante para acabado de {leave} es más que una pasada de {rough}: introduzca un sobrante menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>A pass would be {depth} deep, but the insert of T{number} allows a depth of only {maximum}: enter a smaller depth of cut.</source>
+      <translation>Una pasada tendría {depth} de profundidad, pero la plaquita de T{number} solo admite una profundidad de {maximum}: introduzca una profundidad de pasada menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>CONTOUR NUMBER</source>
+      <translation>NÚMERO DEL CONTORNO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>FACE AT Z</source>
+      <translation>CARA EN Z</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>FINISHING ALLOWANCE</source>
+      <translation>SOBRANTE PARA ACABAR</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>Facing starts at diameter {number} and runs inward: end diameter {number2} must be less.</source>
+      <translation>El refrentado empieza en el diámetro {number} y va hacia dentro: el diámetro final {number2} debe ser menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>G41 does not work in a subroutine, and a bar feed loop runs this shape in a subroutine: enter 0.</source>
+      <translation>G41 no funciona en una subrutina, y un bucle de avance de barra ejecuta esta forma en una subrutina: introduzca 0.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>Point {position} is outside the stock diameter of {number}: enter a smaller X.</source>
+      <translation>El punto {position} está fuera del diámetro del material de {number}: introduzca una X menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>Point {position} runs back toward the face, but roughing can move only toward the chuck along Z.</source>
+      <translation>El punto {position} vuelve hacia la cara, pero el desbaste solo puede ir por Z hacia el plato.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>ROUGHING FEED</source>
+      <translation>AVANCE DE DESBASTE</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>START DIAMETER</source>
+      <translation>DIÁMETRO INICIAL</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>The contour cuts deeper directly after its first point, and roughing cannot return past that point: add a point before the first point, at the same Z and at the lowest X.</source>
+      <translation>El contorno corta más hondo justo después de su primer punto, y el desbaste no puede volver más allá de ese punto: añada un punto antes del primer punto, en la misma Z y en la X más baja.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>a profile of points, corners and arcs, with or without roughing</source>
+      <translation>un perfil de puntos, esquinas y arcos, con o sin desbaste</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>the end of the part faced square, in one or more passes</source>
+      <translation>el extremo de la pieza refrentado a escuadra, en una o varias pasadas</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/shape.py" />
+      <source>The tool data of T{tool_word} specifies the type {kind}, but this shape needs {expected}</source>
+      <translation>Los datos de herramienta de T{tool_word} indican el tipo {kind}, pero esta forma necesita {expected}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/shape.py" />
+      <source>{what}: enter another tool.</source>
+      <translation>{what}: introduzca otra herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/shape_fields.py" />
+      <source>{label} is missing: enter a value, or choose one with the arrows.</source>
+      <translation>{label} falta: introduzca un valor, o elija uno con las flechas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/shape_fields.py" />
+      <source>{label} is missing: enter a value.</source>
+      <translation>{label} falta: introduzca un valor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/shape_fields.py" />
+      <source>{label} is {value}, but must be more than 0.</source>
+      <translation>{label} es {value}, pero debe ser más que 0.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/shape_fields.py" />
+      <source>{label} {value} is more than {maximum}: enter a smaller value.</source>
+      <translation>{label} {value} es más que {maximum}: introduzca un valor menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/shape_fields.py" />
+      <source>{label} {value} is not a whole number: enter a number such as 1, 2 or 3.</source>
+      <translation>{label} {value} no es un número entero: introduzca un número como 1, 2 o 3.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/shape_fields.py" />
+      <source>{label} {value} is not valid: choose one of {choices}.</source>
+      <translation>{label} {value} no es válido: elija uno de {choices}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/sinumerik_helpers.py" />
+      <source>CYCLE95 ROUGHING</source>
+      <translation>DESBASTE CYCLE95</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/sinumerik_helpers.py" />
+      <source>THREAD CYCLE97</source>
+      <translation>ROSCA CYCLE97</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/sinumerik_helpers.py" />
+      <source>calls the tool, leads in, and cuts passes with a constant chip cross-section</source>
+      <translation>llama al útil, entra y corta pasadas con sección de viruta constante</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/sinumerik_helpers.py" />
+      <source>equivalent feed per minute: G94 F{number}</source>
+      <translation>avance por minuto equivalente: G94 F{number}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>BAR FEED LOOP</source>
+      <translation>BUCLE DE BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>START OF PROGRAM</source>
+      <translation>INICIO DE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>TOOL CHANGE</source>
+      <translation>CAMBIO DE ÚTIL</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>calls the tool, leads in, cuts passes with a constant chip cross-section, and pulls out</source>
+      <translation>llama al útil, entra, corta pasadas con sección de viruta constante y sale</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>makes roughing passes down to a contour whose points you edit by hand</source>
+      <translation>hace pasadas de desbaste hasta un contorno cuyos puntos se editan a mano</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>positions a stop, opens the collet and feeds the bar, with the part program as a subroutine</source>
+      <translation>coloca un tope, abre la pinza y avanza la barra, con el programa de la pieza como subrutina</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>retracts, changes the tool, starts the spindle and moves to the part</source>
+      <translation>retira, cambia la herramienta, arranca el husillo y va a la pieza</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/templates.py" />
+      <source>units, diameter programming, rapid rates, coolant</source>
+      <translation>unidades, programación en diámetros, avances rápidos, refrigerante</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>A pitch of {pitch} is more than the largest feed, {maximum}: cut the thread with G33.</source>
+      <translation>Un paso de {pitch} es más que el avance máximo, {maximum}: corte la rosca con G33.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>A rigid tap turns with the C axis, which reaches {maximum} rpm: enter {maximum2} or less.</source>
+      <translation>Un macho rígido gira con el eje C, que alcanza {maximum} rpm: introduzca {maximum2} o menos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: enter a lower speed.</source>
+      <translation>Con S{number} el eje necesita {speed} in/min, pero el límite del eje es 300 in/min: introduzca una velocidad menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>DWELL DURING REVERSAL</source>
+      <translation>ESPERA DURANTE LA INVERSIÓN</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>STOP DISTANCE BEFORE DEPTH</source>
+      <translation>DISTANCIA DE PARO ANTES DEL FONDO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>The spindle of this machine cannot be positioned and turned in sync with Z: use a floating tap holder.</source>
+      <translation>El husillo de esta máquina no se puede posicionar y girar en sincronía con Z: use un portamachos con compensación.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>The tap would stop {number} short of depth {number2}, so nothing is cut.</source>
+      <translation>El macho pararía {number} antes de la profundidad {number2}, así que no se corta nada.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>The tool data of {name} specifies a pitch of {pitch}, but this thread has a pitch of {needed}: use another tap.</source>
+      <translation>Los datos de herramienta de {name} indican un paso de {pitch}, pero esta rosca tiene un paso de {needed}: use otro macho.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>hole diameter before tapping: {crest}; limits {minimum} to {maximum}</source>
+      <translation>diámetro del agujero antes de roscar: {crest}; límites {minimum} a {maximum}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>tap drill: {series}</source>
+      <translation>broca para el macho: {series}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>tapping on the spindle centerline: feed in, reverse the spindle, feed out at the pitch</source>
+      <translation>roscado con macho en el centro del husillo: entra, invierte el husillo, sale al paso</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/tapping.py" />
+      <source>{series} threads cannot be tapped with this shape: cut the thread with G33.</source>
+      <translation>Las roscas {series} no se pueden roscar con macho en esta forma: corte la rosca con G33.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>A lead of {lead} is more than the maximum that the control can cut, {coarse}.</source>
+      <translation>Un avance de rosca de {lead} es más que el máximo que puede cortar el control, {coarse}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>A relief width of {relief} is less than {lead}, which is 1.5 times the lead.</source>
+      <translation>Un ancho de salida de {relief} es menos que {lead}, que es 1.5 veces el avance de rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>An external thread is cut inward, so the diameter at the last pass, {root}, must be smaller than the diameter before threading, {crest}.</source>
+      <translation>Una rosca exterior se corta hacia dentro, así que el diámetro en la última pasada, {root}, debe ser menor que el diámetro antes de roscar, {crest}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>An infeed angle of {angle}° is more than the flank angle of {flank}°, so the first passes would cut into the flank. Enter {limit} or less.</source>
+      <translation>Un ángulo de penetración de {angle}° es más que el del flanco, {flank}°, así que las primeras pasadas cortarían el flanco. Introduzca {limit} o menos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>An internal thread is cut outward, so the diameter at the last pass, {root}, must be larger than the diameter before threading, {crest}.</source>
+      <translation>Una rosca interior se corta hacia fuera, así que el diámetro en la última pasada, {root}, debe ser mayor que el diámetro antes de roscar, {crest}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: enter S{slow} or less.</source>
+      <translation>Con S{number} el eje necesita {speed} in/min, pero el límite del eje es 300 in/min: introduzca S{slow} o menos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>CLASS {tolerance} is not valid: choose one of {allowed}.</source>
+      <translation>La CLASE {tolerance} no es válida: elija una de {allowed}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>The bar of {name} does not fit into a bore of {number}.</source>
+      <translation>La barra de {name} no cabe en un taladro de {number}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>The thread is {filled} deep, but at a pitch of {pitch} its flanks meet at a depth of {sharp}. Check both diameters.</source>
+      <translation>La rosca tiene {filled} de hondo, pero con un paso de {pitch} sus flancos se juntan a {sharp} de hondo. Revise los dos diámetros.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>Thread relief missing: the tool cuts a ring where it stops. Enter the relief width, or set pull-out to YES.</source>
+      <translation>Falta la salida de rosca: la herramienta corta un anillo donde para. Introduzca su ancho, o ponga SÍ en salir sin parar.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>Thread relief missing: the tool cuts a ring where it stops. Enter the relief width.</source>
+      <translation>Falta la salida de rosca: la herramienta corta un anillo donde para. Introduzca su ancho.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>{name} cuts a thread angle of {point}°, but this thread needs {angle}°: use another insert.</source>
+      <translation>{name} corta un ángulo de rosca de {point}°, pero esta rosca necesita {angle}°: use otra plaquita.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>{name} is made for a pitch of {pitch}, not {needed}: use another insert.</source>
+      <translation>{name} está hecha para un paso de {pitch}, no {needed}: use otra plaquita.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/thread_checks.py" />
+      <source>{series} does not include size {size}: choose a size with the arrows.</source>
+      <translation>{series} no incluye la medida {size}: elija una medida con las flechas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/threading.py" />
+      <source>DIAMETER AT LAST PASS</source>
+      <translation>DIÁMETRO DE LA ÚLTIMA PASADA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/threading.py" />
+      <source>DIAMETER BEFORE THREADING</source>
+      <translation>DIÁMETRO ANTES DE ROSCAR</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/threading.py" />
+      <source>INFEED ANGLE</source>
+      <translation>ÁNGULO DE PENETRACIÓN</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/threading.py" />
+      <source>PULL OUT WHILE FEEDING</source>
+      <translation>SALIR SIN PARAR</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/threading.py" />
+      <source>RELIEF WIDTH</source>
+      <translation>ANCHO DE LA SALIDA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/threading.py" />
+      <source>TAPER ON THE DIAMETER</source>
+      <translation>CONICIDAD EN DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/threading.py" />
+      <source>a thread defined by series, size and class (UNC, UNF, M, NPT, BSP, ACME) or by custom dimensions</source>
+      <translation>una rosca definida por serie, medida y clase (UNC, UNF, M, NPT, BSP, ACME) o por medidas propias</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/threading.py" />
+      <source>major diameter {minimum} to {maximum}, pitch diameter {low} to {high}</source>
+      <translation>diámetro exterior {minimum} a {maximum}, diámetro de flancos {low} a {high}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/threading.py" />
+      <source>minor diameter {minimum} to {maximum}, pitch diameter {low} to {high}</source>
+      <translation>diámetro interior {minimum} a {maximum}, diámetro de flancos {low} a {high}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/threading.py" />
+      <source>pitch diameter {low} at the start of the thread</source>
+      <translation>diámetro de flancos {low} al inicio de la rosca</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/threads/threading.py" />
+      <source>taper before threading: diameter {number} at the start, {distance} at the end</source>
+      <translation>cono previo al roscado: diámetro {number} al inicio, {distance} al final</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/usual_fields.py" />
+      <source>A feed of {word} per revolution is more than {maximum}: did you mean F.003?</source>
+      <translation>Un avance de {word} por vuelta es más que {maximum}: ¿quería decir F.003?</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/usual_fields.py" />
+      <source>Depth {depth} is more than the flute length of T{number}, which is {length}: use a longer tool.</source>
+      <translation>La profundidad {depth} es más que el largo de estrías de T{number}, que es {length}: use una herramienta más larga.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/usual_fields.py" />
+      <source>S{revolutions} is more than the {maximum} rpm limit of this spindle: enter {maximum2} or less.</source>
+      <translation>S{revolutions} es más que el límite de {maximum} rpm de este husillo: introduzca {maximum2} o menos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/connection_string.py" />
+      <source>{named} (TLS certificate not verified)</source>
+      <translation>{named} (certificado TLS sin verificar)</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_folder.py" />
+      <source>{mark} is damaged</source>
+      <translation>{mark} está dañado</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_place.py" />
+      <source>the database {address}</source>
+      <translation>la base de datos {address}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/shared_place.py" />
+      <source>the folder {folder}</source>
+      <translation>la carpeta {folder}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>[sharing] postgresql is not a valid connection string; put a value that contains spaces in quotation marks, and write / and @ in the password of an address as %2F and %40</source>
+      <translation>[sharing] postgresql no es una cadena de conexión válida; ponga entre comillas un valor que contenga espacios, y escriba / y @ en la contraseña de una dirección como %2F y %40</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]</source>
+      <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in [sharing] postgresql to the certificate of its issuer</source>
+      <translation>el certificado de {place} no se puede verificar ({why}); indique en [sharing] postgresql sslrootcert=FILE con el certificado de su emisor</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>the disk of {place} is full; free up space on that disk</source>
+      <translation>el disco de {place} está lleno; libere espacio en ese disco</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>this user does not have permission for this action in {place} ({why}); ask the administrator for permission</source>
+      <translation>este usuario no tiene permiso para esta acción en {place} ({why}); pida el permiso al administrador</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} accepts only TLS connections ({why}); remove sslmode from [sharing] postgresql</source>
+      <translation>{place} solo acepta conexiones TLS ({why}); quite sslmode de [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} contains no shared programs; check that it is mounted and that its name is right. To set up a new location, run: turndesk share begin</source>
+      <translation>{place} no contiene programas compartidos; revise que esté montado y que su nombre sea correcto. Para preparar una ubicación nueva, ejecute: turndesk share begin</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} does not respond ({why}); this control continues to work, and will share programs again when the connection is restored</source>
+      <translation>{place} no responde ({why}); este control sigue trabajando, y volverá a compartir programas cuando se restablezca la conexión</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} does not support TLS ({why}); turn on TLS at that server, or, on a network where you trust every user, write sslmode=disable in [sharing] postgresql</source>
+      <translation>{place} no ofrece TLS ({why}); active TLS en ese servidor o, en una red en la que confía en todos los usuarios, escriba sslmode=disable en [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} is not set up for shared programs ({why}); specify another location</source>
+      <translation>{place} no está preparado para programas compartidos ({why}); indique otra ubicación</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} rejects the user name or the password ({why}); correct the user name or the password in [sharing] postgresql</source>
+      <translation>{place} rechaza el nombre de usuario o la contraseña ({why}); corrija el nombre de usuario o la contraseña en [sharing] postgresql</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} was not found ({why}); check that it is mounted and that its name is right</source>
+      <translation>no se encontró {place} ({why}); revise que esté montado y que su nombre sea correcto</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place} was set up by a newer TurnDesk (format {why}); update TurnDesk on this control</source>
+      <translation>{place} fue preparado por un TurnDesk más nuevo (formato {why}); actualice TurnDesk en este control</translation>
+    </message>
+    <message>
+      <location filename="core/extras/sharing/sharing_errors.py" />
+      <source>{place}: another control is also named {why}; give this control a name that no other control uses (desk in [sharing]) or, if the other computer no longer exists, run: turndesk share publish --claim</source>
+      <translation>{place}: otro control también se llama {why}; dé a este control un nombre que no use ningún otro (desk en [sharing]) o, si la otra computadora ya no existe, ejecute: turndesk share publish --claim</translation>
+    </message>
+    <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />
       <source>no arc of this radius is tangent to both moves within their length</source>
       <translation>ningún arco de ese radio es tangente a los dos movimientos dentro de su longitud</translation>
@@ -19247,36 +20677,6 @@
       <location filename="core/interpreter/klartext/blocks_without_motion.py" />
       <source>This jump repeats forever because the loop does not change anything that affects a jump.</source>
       <translation>Este salto se repite sin fin porque el bucle no cambia nada que influya en un salto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible.</source>
-      <translation>Una ranura de {half} mm de ancho sobre {sweep} grados en un círculo de {radius} mm de diámetro no es posible.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>Correct Q219, Q248 and Q375.</source>
-      <translation>Corrija Q219, Q248 y Q375.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>Enter a valid number.</source>
-      <translation>Indique un número válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>Q367 must be 0, 1, 2 or 3.</source>
-      <translation>Q367 debe ser 0, 1, 2 o 3.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>Q377={count} is not a valid number of slots.</source>
-      <translation>Q377={count} no es un número de ranuras válido.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/circular_slot_cycle.py" />
-      <source>The ends of the slot overlap.</source>
-      <translation>Los extremos de la ranura se solapan.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/contour_cycles.py" />
@@ -19712,11 +21112,6 @@
       <location filename="core/interpreter/klartext/cycles.py" />
       <source>Preset {number} rotates the workpiece and cannot be activated while a tilted plane is active.</source>
       <translation>El preset {number} gira la pieza y no se puede activar con un plano inclinado activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/cycles.py" />
-      <source>Q{parameter}={count} is not a valid number of positions.</source>
-      <translation>Q{parameter}={count} no es un número de posiciones válido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/cycles.py" />
@@ -20620,8 +22015,18 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>A slot {half} mm wide over {sweep} degrees on a circle {radius} mm in diameter is not possible.</source>
+      <translation>Una ranura de {half} mm de ancho sobre {sweep} grados en un círculo de {radius} mm de diámetro no es posible.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
       <source>Correct Q218 and Q219.</source>
       <translation>Corrija Q218 y Q219.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Correct Q219, Q248 and Q375.</source>
+      <translation>Corrija Q219, Q248 y Q375.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
@@ -20630,8 +22035,23 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Enter a valid number.</source>
+      <translation>Indique un número válido.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Q367 must be 0, 1, 2 or 3.</source>
+      <translation>Q367 debe ser 0, 1, 2 o 3.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
       <source>Q367 must be 0, 1, 2, 3 or 4.</source>
       <translation>Q367 debe ser 0, 1, 2, 3 o 4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>Q377={count} is not a valid number of slots.</source>
+      <translation>Q377={count} no es un número de ranuras válido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
@@ -20647,6 +22067,11 @@
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
       <source>The blank is not larger than the stud.</source>
       <translation>El bruto no es mayor que la isla.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/pocket_cycles.py" />
+      <source>The ends of the slot overlap.</source>
+      <translation>Los extremos de la ranura se solapan.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/pocket_cycles.py" />
@@ -20667,6 +22092,11 @@
       <location filename="core/interpreter/klartext/point_patterns.py" />
       <source>Enter a whole number of 1 or more.</source>
       <translation>Indique un número entero de 1 o más.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/point_patterns.py" />
+      <source>Q{parameter}={count} is not a valid number of positions.</source>
+      <translation>Q{parameter}={count} no es un número de posiciones válido.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/point_patterns.py" />
@@ -22514,46 +23944,6 @@
       <translation>líneas {first} a {last}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>Correct the sign of RPAP.</source>
-      <translation>Corrija el signo de RPAP.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>Enter the spindle direction.</source>
-      <translation>Indique el sentido de giro del husillo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>Write G97 with S before this block.</source>
-      <translation>Escriba G97 con S antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>this lathe has no Y axis</source>
-      <translation>este torno no tiene eje Y</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>{call} needs S in rpm.</source>
-      <translation>{call} necesita S en rpm.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>{name} must be 3 or 4</source>
-      <translation>{name} debe ser 3 o 4</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>{name} must be an angle from 0 to less than 360 degrees</source>
-      <translation>{name} debe ser un ángulo de 0 a menos de 360 grados</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/boring_cycles.py" />
-      <source>{name} would move the tool deeper into the hole</source>
-      <translation>{name} llevaría la herramienta más adentro del agujero</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/sinumerik/chamfers_and_rounds.py" />
       <source>Program a different end point.</source>
       <translation>Programe un punto final distinto.</translation>
@@ -22735,6 +24125,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Program F before this block.</source>
+      <translation>Programe F antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>Remove the sign.</source>
       <translation>Quite el signo.</translation>
     </message>
@@ -22750,6 +24145,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>Write T and D before this block.</source>
+      <translation>Escriba T y D antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>Write TRAFOOF before this block.</source>
       <translation>Escriba TRAFOOF antes de este bloque.</translation>
     </message>
@@ -22757,6 +24157,11 @@
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>Write TRANS without axes before this block.</source>
       <translation>Escriba TRANS sin ejes antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>no feedrate is programmed.</source>
+      <translation>no hay avance programado.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
@@ -22772,6 +24177,11 @@
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
       <source>{call} moves along Z, but {plane} is active.</source>
       <translation>{call} se mueve a lo largo de Z, pero {plane} está activo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
+      <source>{call} needs an active tool with an offset.</source>
+      <translation>{call} necesita una herramienta activa con corrector.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycle_parameters.py" />
@@ -22830,6 +24240,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Correct the sign of RPAP.</source>
+      <translation>Corrija el signo de RPAP.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>DP and DPR differ, so DP is used.</source>
       <translation>DP y DPR difieren, así que se usa DP.</translation>
     </message>
@@ -22850,6 +24265,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>Enter the spindle direction.</source>
+      <translation>Indique el sentido de giro del husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>Omit DP or DPR.</source>
       <translation>Omita DP o DPR.</translation>
     </message>
@@ -22860,23 +24280,28 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
-      <source>Program F before this block.</source>
-      <translation>Programe F antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>Write G17 before this block and G18 after it.</source>
       <translation>Escriba G17 antes de este bloque y G18 después.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
-      <source>no feedrate is programmed.</source>
-      <translation>no hay avance programado.</translation>
+      <source>Write G97 with S before this block.</source>
+      <translation>Escriba G97 con S antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>this lathe has no Y axis</source>
+      <translation>este torno no tiene eje Y</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>{call} drills perpendicular to plane G{plane}; drilling along Z needs G17.</source>
       <translation>{call} taladra perpendicular al plano G{plane}; taladrar a lo largo de Z necesita G17.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>{call} needs S in rpm.</source>
+      <translation>{call} necesita S en rpm.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
@@ -22905,6 +24330,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>{name} must be 3 or 4</source>
+      <translation>{name} debe ser 3 o 4</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>{name} must be a factor from 0.001 to 1</source>
       <translation>{name} debe ser un factor de 0.001 a 1</translation>
     </message>
@@ -22915,8 +24345,18 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>{name} must be an angle from 0 to less than 360 degrees</source>
+      <translation>{name} debe ser un ángulo de 0 a menos de 360 grados</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
       <source>{name} selects an axis other than Z, which is not supported</source>
       <translation>{name} selecciona un eje distinto de Z, lo que no se admite</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/drilling_cycles.py" />
+      <source>{name} would move the tool deeper into the hole</source>
+      <translation>{name} llevaría la herramienta más adentro del agujero</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/fixed_points.py" />
@@ -23025,11 +24465,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
-      <source>Write T and D before this block.</source>
-      <translation>Escriba T y D antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>program a groove on a taper as a CYCLE95 contour</source>
       <translation>programe una ranura en un cono como contorno de CYCLE95</translation>
     </message>
@@ -23042,11 +24477,6 @@
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
       <source>{call} assumes a tool {width} mm wide because {key} is not set.</source>
       <translation>{call} supone una herramienta de {width} mm de ancho porque {key} no está puesto.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/groove_cycle.py" />
-      <source>{call} needs an active tool with an offset.</source>
-      <translation>{call} necesita una herramienta activa con corrector.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/groove_cycle.py" />
@@ -24340,11 +25770,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
-      <source>Enter PIT, or MPIT from 3 to 68 for M3 to M68.</source>
-      <translation>Indique PIT, o MPIT de 3 a 68 para M3 a M68.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/tapping_cycles.py" />
       <source>Enter Z of the end point.</source>
       <translation>Indique la Z del punto final.</translation>
     </message>
@@ -24454,11 +25879,6 @@
       <translation>{value} no es una posición válida de un eje módulo; las posiciones válidas van de 0 a menos de 360</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/thread_chain_cycle.py" />
-      <source>{name} does not continue the thread in the same Z direction</source>
-      <translation>{name} no continúa la rosca en la misma dirección Z</translation>
-    </message>
-    <message>
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
       <source>CYCLE99 supports only the functions of CYCLE97</source>
       <translation>CYCLE99 admite sólo las funciones de CYCLE97</translation>
@@ -24467,6 +25887,11 @@
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
       <source>Correct SPL or FPL.</source>
       <translation>Corrija SPL o FPL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>Enter PIT, or MPIT from 3 to 68 for M3 to M68.</source>
+      <translation>Indique PIT, o MPIT de 3 a 68 para M3 a M68.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
@@ -24492,6 +25917,11 @@
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
       <source>Reduce FAL.</source>
       <translation>Reduzca FAL.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/thread_cycle.py" />
+      <source>{name} does not continue the thread in the same Z direction</source>
+      <translation>{name} no continúa la rosca en la misma dirección Z</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/thread_cycle.py" />
@@ -28119,6 +29549,41 @@
       <translation>{whole}: {text} no es una longitud; escriba 1.25 (pulgadas) o 30mm</translation>
     </message>
     <message>
+      <location filename="core/production/tool_life.py" />
+      <source>T{number}: the tool-life warning must be set between 1 and 100 % of the tool life</source>
+      <translation>T{number}: el aviso de vida de la herramienta debe ponerse entre el 1 y el 100 % de la vida</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>T{number}: tool life must be 0 to {parts_most} parts; 0 means no limit</source>
+      <translation>T{number}: la vida debe ser de 0 a {parts_most} piezas; 0 significa sin límite</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>T{number}: tool life must be 0 to {seconds_most} cutting minutes; 0 means no limit</source>
+      <translation>T{number}: la vida debe ser de 0 a {seconds_most} minutos de corte; 0 significa sin límite</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>no limit</source>
+      <translation>sin límite</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>{parts} of {limit_parts} parts</source>
+      <translation>{parts} de {limit_parts} piezas</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>{parts} parts, {seconds} min</source>
+      <translation>{parts} piezas, {seconds} min</translation>
+    </message>
+    <message>
+      <location filename="core/production/tool_life.py" />
+      <source>{seconds} of {limit_seconds} min</source>
+      <translation>{seconds} de {limit_seconds} min</translation>
+    </message>
+    <message>
       <location filename="core/proving/assumed_tools.py" />
       <source>, {width} wide</source>
       <translation>, {width} de ancho</translation>
@@ -29619,251 +31084,6 @@
       <translation>Con salto de bloque {switch}: {item}</translation>
     </message>
     <message>
-      <location filename="core/extras/quality/stops.py" />
-      <source>the end of a cycle is earlier than its start because the clock was set back</source>
-      <translation>el final de un ciclo es anterior a su comienzo porque el reloj se atrasó</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/stops.py" />
-      <source>the end of a shift must be later than its start; correct the shift times</source>
-      <translation>el final de un turno debe ser posterior a su comienzo; corrija las horas del turno</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/capability.py" />
-      <source>process capability needs a tolerance; enter a tolerance for this feature</source>
-      <translation>la capacidad del proceso necesita una tolerancia; introduzca una tolerancia para esta característica</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/capability.py" />
-      <source>the lower limit must be below the upper limit; correct the tolerance</source>
-      <translation>el límite inferior debe ser menor que el superior; corrija la tolerancia</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/capability.py" />
-      <source>{values_count} readings are not enough; a Cpk needs at least {minimum} readings</source>
-      <translation>{values_count} lecturas no bastan; un Cpk necesita al menos {minimum} lecturas</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>a control chart is not possible for samples of {size}; use samples of 1 to {sample_sizes} parts</source>
-      <translation>no es posible una gráfica de control para muestras de {size}; use muestras de 1 a {sample_sizes} piezas</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>a value is not a number; delete that reading</source>
-      <translation>un valor no es un número; borre esa lectura</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>an X-bar chart needs at least 2 complete samples of {shape} parts; measure more parts</source>
-      <translation>la gráfica X-barra necesita al menos 2 muestras completas de {shape} piezas; mida más piezas</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>an individuals chart needs at least 2 values; measure more parts</source>
-      <translation>la gráfica de individuales necesita al menos 2 valores; mida más piezas</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>the samples of an X-bar chart must all have the same size, 2 to 10 values</source>
-      <translation>las muestras de la gráfica X-barra deben tener todas el mismo tamaño, de 2 a 10 valores</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>eight points in a row beyond one sigma</source>
-      <translation>ocho puntos seguidos más allá de un sigma</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>fifteen points in a row within one sigma</source>
-      <translation>quince puntos seguidos dentro de un sigma</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>four of five points beyond one sigma on one side</source>
-      <translation>cuatro de cinco puntos más allá de un sigma a un lado</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>fourteen points in a row alternating up and down</source>
-      <translation>catorce puntos seguidos subiendo y bajando alternadamente</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>nine points in a row on one side of the center line</source>
-      <translation>nueve puntos seguidos a un lado de la línea central</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>one point beyond a control limit</source>
-      <translation>un punto fuera de un límite de control</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>six points in a row rising or falling</source>
-      <translation>seis puntos seguidos subiendo o bajando</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/control_charts.py" />
-      <source>two of three points beyond two sigma on one side</source>
-      <translation>dos de tres puntos más allá de dos sigmas a un lado</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/measured_feature.py" />
-      <source>a feature name must have 1 to {name_longest} characters</source>
-      <translation>el nombre de una característica debe tener de 1 a {name_longest} caracteres</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/measured_feature.py" />
-      <source>{feature}: a sample must have 1 to {sample_sizes} parts</source>
-      <translation>{feature}: una muestra debe tener de 1 a {sample_sizes} piezas</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/measured_feature.py" />
-      <source>{feature}: the direction must be +1 (a positive correction makes the dimension larger) or -1 (a positive correction makes the dimension smaller)</source>
-      <translation>{feature}: la dirección debe ser +1 (una corrección positiva aumenta la cota) o -1 (una corrección positiva disminuye la cota)</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/measured_feature.py" />
-      <source>{feature}: the lower deviation must be below the upper deviation; correct one of them</source>
-      <translation>{feature}: la desviación inferior debe ser menor que la superior; corrija una</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/measured_feature.py" />
-      <source>{feature}: the lower limit is 0 or less; correct the deviation</source>
-      <translation>{feature}: el límite inferior es 0 o menos; corrija la desviación</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/measured_feature.py" />
-      <source>{feature}: the measuring interval must be 1 to {every_most} parts, or 0 for no sampling plan</source>
-      <translation>{feature}: el intervalo de medición debe ser de 1 a {every_most} piezas, o 0 sin plan de muestreo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/measured_feature.py" />
-      <source>{feature}: the nominal dimension and the limits must be numbers</source>
-      <translation>{feature}: la medida nominal y los límites deben ser números</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/measured_feature.py" />
-      <source>{feature}: the nominal dimension must be more than 0 and at most {size_most} mm</source>
-      <translation>{feature}: la medida nominal debe ser mayor que 0 y como máximo {size_most} mm</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/measured_feature.py" />
-      <source>{feature}: the offset number must be 1 to {numbers}, not {number}</source>
-      <translation>{feature}: el número de corrector debe ser de 1 a {numbers}, no {number}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/stops.py" />
-      <source>{reason}: the end of a stop is earlier than its start because the clock was set back</source>
-      <translation>{reason}: el final de un paro es anterior a su comienzo porque el reloj se atrasó</translation>
-    </message>
-    <message>
-      <location filename="core/production/tool_life.py" />
-      <source>T{number}: the tool-life warning must be set between 1 and 100 % of the tool life</source>
-      <translation>T{number}: el aviso de vida de la herramienta debe ponerse entre el 1 y el 100 % de la vida</translation>
-    </message>
-    <message>
-      <location filename="core/production/tool_life.py" />
-      <source>T{number}: tool life must be 0 to {parts_most} parts; 0 means no limit</source>
-      <translation>T{number}: la vida debe ser de 0 a {parts_most} piezas; 0 significa sin límite</translation>
-    </message>
-    <message>
-      <location filename="core/production/tool_life.py" />
-      <source>T{number}: tool life must be 0 to {seconds_most} cutting minutes; 0 means no limit</source>
-      <translation>T{number}: la vida debe ser de 0 a {seconds_most} minutos de corte; 0 significa sin límite</translation>
-    </message>
-    <message>
-      <location filename="core/production/tool_life.py" />
-      <source>no limit</source>
-      <translation>sin límite</translation>
-    </message>
-    <message>
-      <location filename="core/production/tool_life.py" />
-      <source>{parts} of {limit_parts} parts</source>
-      <translation>{parts} de {limit_parts} piezas</translation>
-    </message>
-    <message>
-      <location filename="core/production/tool_life.py" />
-      <source>{parts} parts, {seconds} min</source>
-      <translation>{parts} piezas, {seconds} min</translation>
-    </message>
-    <message>
-      <location filename="core/production/tool_life.py" />
-      <source>{seconds} of {limit_seconds} min</source>
-      <translation>{seconds} de {limit_seconds} min</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>the correction would be less than the smallest offset step, so no correction is needed</source>
-      <translation>la corrección sería menor que el paso mínimo del corrector, así que no hace falta corregir</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>the deviation is within the dead band, so no correction is needed</source>
-      <translation>la desviación está dentro de la banda muerta, así que no hace falta corregir</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>{feature}: a correction of {change} mm is too large to be tool wear; touch the tool off</source>
-      <translation>{feature}: una corrección de {change} mm es demasiado grande para ser desgaste; tome referencia de la herramienta</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>{feature}: a reading is not a number; delete that reading</source>
-      <translation>{feature}: una lectura no es un número; borre esa lectura</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>{feature}: a reading is off by more than {distance} times the tolerance, which is too large for tool wear; measure again</source>
-      <translation>{feature}: una lectura se desvía más de {distance} veces la tolerancia, demasiado para ser desgaste; mida de nuevo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/quality/wear_proposal.py" />
-      <source>{feature}: no part has been measured since the last correction</source>
-      <translation>{feature}: no se ha medido ninguna pieza desde la última corrección</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>a ball-bar plot needs {minimum} samples of an arc; use a lower feed or a larger arc</source>
-      <translation>un diagrama ball-bar necesita {minimum} muestras de un arco; use un avance menor o un arco mayor</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>the arc is shorter than {least_angle} degrees, too short for a ball-bar plot</source>
-      <translation>el arco es más corto que {least_angle} grados, demasiado corto para un diagrama ball-bar</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>the driver does not report the axis positions, so no arc can be shown</source>
-      <translation>el driver no informa de las posiciones de los ejes, así que no se puede mostrar ningún arco</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/ball_bar.py" />
-      <source>this time range does not contain an arc; choose a line that programs an arc</source>
-      <translation>este intervalo no contiene ningún arco; elija una línea que programe un arco</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/path_error.py" />
-      <source>a path error plot needs at least {minimum} samples of a path; record while a program runs</source>
-      <translation>un diagrama de error de trayectoria necesita al menos {minimum} muestras; registre mientras corre un programa</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/path_error.py" />
-      <source>no axis moved in this time range; record while a program runs</source>
-      <translation>ningún eje se movió en este intervalo; registre mientras corre un programa</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/path_error.py" />
-      <source>the driver does not report the axis positions, so no path can be compared</source>
-      <translation>el driver no informa de las posiciones de los ejes, así que no se puede comparar ninguna trayectoria</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/path_error.py" />
-      <source>the number of path points and the number of line numbers differ</source>
-      <translation>el número de puntos de la trayectoria y el de números de línea difieren</translation>
-    </message>
-    <message>
       <location filename="core/records/record.py" />
       <source>a channel name is not text</source>
       <translation>el nombre de un canal no es texto</translation>
@@ -29982,1221 +31202,6 @@
       <location filename="core/records/ring_file.py" />
       <source>{path} is not a TurnDesk record; choose a file in the records folder</source>
       <translation>{path} no es un registro de TurnDesk; elija un archivo de la carpeta records</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>a response measurement needs at least {minimum} samples, but this driver supplies fewer</source>
-      <translation>una medición de respuesta necesita al menos {minimum} muestras, pero este driver da menos</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>a step of {step} is too small for the in-position window of {band}; use a larger step</source>
-      <translation>un escalón de {step} es demasiado pequeño para la ventana de posición de {band}; use un escalón mayor</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>the commanded motion contains no sine wave of {frequency} Hz</source>
-      <translation>el movimiento ordenado no contiene un seno de {frequency} Hz</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>the commanded motion never reaches a constant speed; use a longer move</source>
-      <translation>el movimiento ordenado no llega a una velocidad constante; use un recorrido más largo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>the driver does not report the axis position, so no response can be shown</source>
-      <translation>el driver no informa de la posición del eje, así que no se puede mostrar ninguna respuesta</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/step_response.py" />
-      <source>the record is shorter than one sine period; record for longer</source>
-      <translation>el registro es más corto que un período del seno; registre más tiempo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/thread_passes.py" />
-      <source>an analysis of thread passes needs at least 100 samples; record while a thread is cut</source>
-      <translation>el análisis de pasadas de rosca necesita al menos 100 muestras; registre mientras se corta una rosca</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/thread_passes.py" />
-      <source>no spindle encoder count is available, so the spindle angle is not in the record</source>
-      <translation>no hay cuenta de encoder del husillo, así que el ángulo del husillo no está en el registro</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/thread_passes.py" />
-      <source>the spindle does not turn in this time range; record while a thread is cut</source>
-      <translation>el husillo no gira en este intervalo; registre mientras se corta una rosca</translation>
-    </message>
-    <message>
-      <location filename="core/extras/analyses/thread_passes.py" />
-      <source>this time range does not contain a thread pass, because no axis moves at a steady speed for two spindle revolutions</source>
-      <translation>este intervalo no contiene ninguna pasada de rosca, porque ningún eje avanza a velocidad uniforme durante dos vueltas del husillo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>A bar feed loop cannot be inside another bar feed loop: write this shape before or after the other loop.</source>
-      <translation>Un bucle de avance de barra no puede estar dentro de otro: escriba esta forma antes o después del otro bucle.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>BAR FEED PER MINUTE</source>
-      <translation>AVANCE DE BARRA POR MINUTO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>BAR LENGTH PER PART + CUT-OFF</source>
-      <translation>LARGO DE BARRA POR PIEZA + CORTE</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>BAR LOOP</source>
-      <translation>BUCLE DE BARRA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>EACH PART</source>
-      <translation>CADA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>FACING ALLOWANCE</source>
-      <translation>SOBRANTE PARA CAREAR</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>FEED THE BAR</source>
-      <translation>SACAR LA BARRA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>PART SUBROUTINE NUMBER</source>
-      <translation>NÚMERO DE SUBRUTINA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>TOOL USED AS STOP</source>
-      <translation>HERRAMIENTA DE TOPE</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>This machine has no M codes that open and close the chuck: assign two M codes to the output named collet under [m_codes] in the machine file.</source>
-      <translation>Esta máquina no tiene códigos M que abran y cierren el plato: asigne dos códigos M a la salida llamada collet bajo [m_codes] en el archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>feeds the bar to a stop and repeats the following lines for a number of parts; these lines make the part</source>
-      <translation>saca la barra hasta un tope y repite las líneas siguientes para varias piezas; esas líneas hacen la pieza</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/blade.py" />
-      <source>BLADE WIDTH</source>
-      <translation>ANCHO DE LA CUCHILLA</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/blade.py" />
-      <source>CORNER USED FOR TOUCH-OFF</source>
-      <translation>ESQUINA DE REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/blade.py" />
-      <source>Depth {depth} is more than the reach of {name}, which is {length}. Use a longer blade.</source>
-      <translation>La profundidad {depth} es más que el alcance de {name}, que es {length}. Use una cuchilla más larga.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/blade.py" />
-      <source>The blade width in the tool data of {name} is {width}: enter that width.</source>
-      <translation>El ancho de cuchilla en los datos de herramienta de {name} es {width}: introduzca ese ancho.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>ANGLE TO THE AXIS</source>
-      <translation>ÁNGULO AL EJE</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>DEPTH OF FIRST PASS</source>
-      <translation>PROFUNDIDAD DE LA PRIMERA PASADA</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>DIAMETER AT THE CHUCK</source>
-      <translation>DIÁMETRO JUNTO AL PLATO</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>DIAMETER AT THE FACE</source>
-      <translation>DIÁMETRO JUNTO A LA CARA</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>FEED AND SPEED</source>
-      <translation>AVANCE Y VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>FEED PER MINUTE</source>
-      <translation>AVANCE POR MINUTO</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>FEED PER REVOLUTION</source>
-      <translation>AVANCE POR VUELTA</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>SPINDLE SPEED, RPM</source>
-      <translation>VELOCIDAD DEL HUSILLO, RPM</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>SURFACE SPEED</source>
-      <translation>VELOCIDAD DE CORTE</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>S{number} gives a surface speed of {real} {unit} at this diameter</source>
-      <translation>S{number} da una velocidad de corte de {real} {unit} en este diámetro</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>THREAD PASSES</source>
-      <translation>PASADAS DE ROSCA</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>The taper crosses the spindle centerline: check the angle and the length.</source>
-      <translation>El cono cruza el centro del husillo: revise el ángulo y la longitud.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>These four values do not define a taper: the angle would be {angle}. Clear one of the values.</source>
-      <translation>Estos cuatro valores no definen un cono: el ángulo sería {angle}. Borre uno de los valores.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>X position of each pass: {value}</source>
-      <translation>posición X de cada pasada: {value}</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>calculates a taper from any three of four values: the two diameters, the length and the angle</source>
-      <translation>calcula un cono con tres de cuatro valores: los dos diámetros, la longitud y el ángulo</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>diameters, depth and passes of a standard thread</source>
-      <translation>diámetros, profundidad y pasadas de una rosca normalizada</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>equivalent feed per minute: G94F{number}</source>
-      <translation>avance por minuto equivalente: G94F{number}</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>included angle {number}°</source>
-      <translation>ángulo total {number}°</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>roughing passes {depth} deep per side</source>
-      <translation>pasadas de desbaste de {depth} por lado</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>rpm, surface speed, feed per revolution and feed per minute: TurnDesk calculates the values that you leave empty</source>
-      <translation>rpm, velocidad de corte, avance por vuelta y avance por minuto: TurnDesk calcula los valores que deje vacíos</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>slant length {rise}</source>
-      <translation>generatriz {rise}</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>taper ratio on the diameter: {ratio}</source>
-      <translation>conicidad en el diámetro: {ratio}</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>the tool starts at X {value}</source>
-      <translation>el útil empieza en X {value}</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>thread depth {depth} per side, depth of the first pass {first}</source>
-      <translation>profundidad de rosca {depth} por lado, profundidad de la primera pasada {first}</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>{number} passes require a first pass {depth} deep: clear one of the two values.</source>
-      <translation>{number} pasadas requieren una primera pasada de {depth} de profundidad: borre uno de los dos valores.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/calculators.py" />
-      <source>{number} rpm at {number2} per revolution is {rate} per minute: clear one of the values.</source>
-      <translation>{number} rpm a {number2} por vuelta son {rate} por minuto: borre uno de los valores.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/contour.py" />
-      <source>A contour needs at least two points: enter the next point.</source>
-      <translation>Un contorno necesita al menos dos puntos: introduzca el siguiente.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/contour.py" />
-      <source>Point {number} has a chamfer or radius next to an arc. The control can cut a chamfer or radius only between two straight lines.</source>
-      <translation>El punto {number} tiene un chaflán o radio junto a un arco. El control solo puede cortar un chaflán o radio entre dos rectas.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/contour.py" />
-      <source>Point {number} is past the spindle centerline: X is a diameter and must be 0 or more.</source>
-      <translation>El punto {number} pasa de la línea de centro del husillo: X es un diámetro y debe ser 0 o más.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/contour.py" />
-      <source>Point {number} is the same as the previous point: enter another X or Z.</source>
-      <translation>El punto {number} es igual al anterior: introduzca otra X u otra Z.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/contour.py" />
-      <source>The arc to point {number} spans {chord}, but with radius {arc} it can span only {arc2}: enter a larger radius.</source>
-      <translation>El arco al punto {number} abarca {chord}, pero con radio {arc} solo puede abarcar {arc2}: introduzca un radio mayor.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/contour.py" />
-      <source>The corner at point {number} has a size below 0: enter the correct size.</source>
-      <translation>La esquina del punto {number} tiene una medida menor que 0: introduzca la medida correcta.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/contour.py" />
-      <source>The corner at point {number} needs a line after it: add a point.</source>
-      <translation>La esquina del punto {number} necesita una línea después: añada un punto.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/contour.py" />
-      <source>The corner at point {number} needs {back} of line length, but the line is only {room} long: make the corner smaller.</source>
-      <translation>La esquina del punto {number} necesita {back} de línea, pero la línea solo tiene {room} de largo: haga la esquina menor.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/contour.py" />
-      <source>The first point is the start of the contour: enter X and Z.</source>
-      <translation>El primer punto es el inicio del contorno: introduzca X y Z.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/cutting_data.py" />
-      <source>ALLOY STEEL</source>
-      <translation>ACERO ALEADO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/cutting_data.py" />
-      <source>CAST IRON</source>
-      <translation>FUNDICIÓN</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/cutting_data.py" />
-      <source>FREE STEEL</source>
-      <translation>ACERO DE FÁCIL MECANIZADO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/cutting_data.py" />
-      <source>TOOL STEEL</source>
-      <translation>ACERO PARA HERRAMIENTAS</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/drilling.py" />
-      <source>A peck of {peck} is deeper than the hole: enter 0 for no pecking.</source>
-      <translation>Un picoteo de {peck} es más hondo que el agujero: introduzca 0 para no picotear.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/drilling.py" />
-      <source>DEPTH AT DRILL POINT</source>
-      <translation>PROFUNDIDAD DE LA PUNTA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/drilling.py" />
-      <source>DRILL DIAMETER</source>
-      <translation>DIÁMETRO DE LA BROCA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/drilling.py" />
-      <source>Drilling {depth} diameters deep without pecking clogs the drill: enter a peck depth.</source>
-      <translation>Taladrar {depth} diámetros de profundidad sin picoteo atasca la broca: introduzca una profundidad de picoteo.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/drilling.py" />
-      <source>PREDRILLED DEPTH</source>
-      <translation>PROFUNDIDAD YA TALADRADA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/drilling.py" />
-      <source>The drill diameter in the tool data of {name} is {diameter}: enter that diameter.</source>
-      <translation>El diámetro de broca en los datos de herramienta de {name} es {diameter}: introduzca ese diámetro.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/drilling.py" />
-      <source>The hole starts at a depth of {start} and ends at {depth}, so nothing is drilled.</source>
-      <translation>El agujero empieza a {start} de profundidad y acaba en {depth}, así que no se taladra nada.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/drilling.py" />
-      <source>a hole on the spindle centerline, drilled in one pass or with pecking</source>
-      <translation>un agujero en el centro del husillo, de una vez o con picoteo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>A blade cannot reach under a wall that overhangs the groove: enter 0 or more.</source>
-      <translation>Una cuchilla no llega debajo de una pared que cubre la ranura: introduzca 0 o más.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>A groove in a bore of {top} is cut outward, so bottom diameter {bottom} is too small.</source>
-      <translation>Una ranura en un taladro de {top} se corta hacia fuera, así que el diámetro del fondo {bottom} es demasiado pequeño.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>BOTTOM DIAMETER</source>
-      <translation>DIÁMETRO DEL FONDO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>CHAMFER AT BOTH EDGES</source>
-      <translation>CHAFLÁN EN AMBOS CANTOS</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>CYCLE93 can cut only square walls in this shape: enter 0 for the slope or, to use G1 instead, enter 0 as the D number of the other blade corner.</source>
-      <translation>En esta forma, CYCLE93 solo puede cortar paredes rectas: introduzca 0 para la inclinación o, para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>CYCLE93 cannot chamfer these edges: enter 0 for the chamfer or, to use G1 instead, enter 0 as the D number of the other blade corner.</source>
-      <translation>CYCLE93 no puede achaflanar estos cantos: introduzca 0 para el chaflán o, para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>CYCLE93 does not support a tool at negative X: to use G1 instead, enter 0 as the D number of the other blade corner.</source>
-      <translation>CYCLE93 no admite herramientas en X negativa: para usar G1 en su lugar, introduzca 0 como número D de la otra esquina de la cuchilla.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>CYCLE93: D OF OTHER CORNER</source>
-      <translation>CYCLE93: D DE LA OTRA ESQUINA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>D1 is the cutting corner of the blade: enter the D number of the other corner, or 0 to use G1 instead of CYCLE93.</source>
-      <translation>D1 es la esquina de corte de la cuchilla: introduzca el número D de la otra esquina, o 0 para usar G1 en lugar de CYCLE93.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>DIAMETER TO CLEAR</source>
-      <translation>DIÁMETRO QUE HAY QUE LIBRAR</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>DISTANCE FROM Z0 TO START</source>
-      <translation>DISTANCIA DE Z0 AL INICIO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>DWELL AT BOTTOM</source>
-      <translation>PAUSA EN EL FONDO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>Diameter {excess} is less than diameter {top}, so the tool has nothing to clear: enter 0.</source>
-      <translation>El diámetro {excess} es menor que el diámetro {top}, así que nada estorba el paso de la herramienta: introduzca 0.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>Diameter {excess} is more than the bore diameter of {top}, so the tool has nothing to clear: enter 0.</source>
-      <translation>El diámetro {excess} es mayor que el diámetro interior de {top}, así que nada estorba el paso de la herramienta: introduzca 0.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>Edges of sloped walls cannot be chamfered in this shape: enter 0.</source>
-      <translation>En esta forma no se pueden achaflanar los cantos de paredes inclinadas: introduzca 0.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>GROOVE WIDTH</source>
-      <translation>ANCHO DE LA RANURA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>Grooves of width {long} overlap at a pitch of {number}: enter a larger pitch.</source>
-      <translation>Ranuras de ancho {long} se juntan a un paso de {number}: introduzca un paso mayor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>NUMBER OF GROOVES</source>
-      <translation>NÚMERO DE RANURAS</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>SLOPE OF CHUCK-SIDE WALL</source>
-      <translation>INCLINACIÓN DE LA PARED DEL PLATO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>SLOPE OF FACE-SIDE WALL</source>
-      <translation>INCLINACIÓN DE LA PARED DE LA CARA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>The chamfer is at least as deep as the groove: enter a smaller chamfer.</source>
-      <translation>El chaflán es al menos tan hondo como la ranura: introduzca un chaflán menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>The groove bottom diameter {bottom} must be less than {top}, the diameter at which the groove starts.</source>
-      <translation>El diámetro del fondo de la ranura, {bottom}, debe ser menor que {top}, el diámetro donde empieza la ranura.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>The groove is {long} wide, but the blade is {wide} wide: use a narrower blade.</source>
-      <translation>La ranura tiene {long} de ancho, pero la cuchilla tiene {wide} de ancho: use una cuchilla más estrecha.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>With these walls, the groove bottom is {bottom} wide, but the blade is {wide} wide: use a narrower blade, or check the angles.</source>
-      <translation>Con estas paredes, el fondo de la ranura mide {bottom} de ancho, pero la cuchilla mide {wide}: use una cuchilla más estrecha, o revise los ángulos.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>one or more grooves on the outside, in a bore or with a rear tool, with chamfered edges and square or sloped walls</source>
-      <translation>una o varias ranuras por fuera, en un interior o con herramienta trasera, con chaflanes y paredes rectas o inclinadas</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>ACROSS FLATS</source>
-      <translation>ENTRE CARAS</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>ANGLE AROUND THE PART</source>
-      <translation>ÁNGULO ALREDEDOR DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>ANGLE BETWEEN HOLES</source>
-      <translation>ÁNGULO ENTRE AGUJEROS</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>ANGLE BETWEEN SLOTS</source>
-      <translation>ÁNGULO ENTRE RANURAS</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>CROSS DRILL</source>
-      <translation>TALADRADO TRANSVERSAL</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>CUTTER DIAMETER</source>
-      <translation>DIÁMETRO DE LA FRESA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>DEPTH PER PASS</source>
-      <translation>PROFUNDIDAD DE PASADA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>DISTANCE FROM Z0 TO CENTER</source>
-      <translation>DISTANCIA DE Z0 AL CENTRO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>Depth {depth} is more than the diameter of {across}: the drill would come out on the far side.</source>
-      <translation>La profundidad {depth} es más que el diámetro de {across}: la broca saldría por el otro lado.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>Depth {number} goes past the spindle centerline of a part {number2} in diameter: enter a smaller depth.</source>
-      <translation>La profundidad {number} pasa del centro del husillo en una pieza de diámetro {number2}: introduzca una profundidad menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>FIRST ANGLE</source>
-      <translation>PRIMER ÁNGULO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>LENGTH ALONG Z</source>
-      <translation>LONGITUD EN Z</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>LIVE TOOL SPEED</source>
-      <translation>VELOCIDAD DE LA MOTORIZADA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>MILL FLATS</source>
-      <translation>FRESADO DE CARAS</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>MILL SLOT</source>
-      <translation>FRESADO DE RANURA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>PART DIAMETER</source>
-      <translation>DIÁMETRO DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>The depth per pass is more than the length of the flats: enter a smaller depth.</source>
-      <translation>La profundidad de pasada es más que el largo de las caras: introduzca una profundidad menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>The depth per pass is more than the slot depth: enter a smaller depth per pass.</source>
-      <translation>La profundidad de pasada es más que la de la ranura: introduzca una profundidad de pasada menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>The slot has no length: enter its length along Z, or its angle around the part.</source>
-      <translation>La ranura no tiene longitud: introduzca su longitud en Z, o su ángulo alrededor de la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>The third axis of this machine is named Y, but the plane of this shape needs a separate Y axis: mill this shape on another machine.</source>
-      <translation>El tercer eje de esta máquina se llama Y, pero el plano de esta forma necesita un eje Y separado: frese esta forma en otra máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>This machine has no output that drives a live tool: define an output named live under [io.out] in the machine file.</source>
-      <translation>Esta máquina no tiene una salida que mueva una herramienta motorizada: defina una salida llamada live bajo [io.out] en el archivo de máquina.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>This machine has no third axis that holds and turns the part.</source>
-      <translation>Esta máquina no tiene un tercer eje que sujete y gire la pieza.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>a keyway along Z, around the part or on a helix, in the ZC plane</source>
-      <translation>un chavetero a lo largo de Z, alrededor de la pieza o en hélice, en el plano ZC</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>flats or a hexagon on the end of the part, in the XC plane</source>
-      <translation>caras o un hexágono en el extremo de la pieza, en el plano XC</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>radial holes around the part, drilled with the spindle stopped in position</source>
-      <translation>agujeros radiales alrededor de la pieza, taladrados con el husillo parado en posición</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>{across} across flats is not less than the part diameter of {stock}, so nothing is cut.</source>
-      <translation>{across} entre caras no es menos que el diámetro de la pieza de {stock}, así que no se corta nada.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>{many} flats at {across} across flats have corners at diameter {corner}, but the part diameter is {stock}: enter a smaller value, or set CORNERS to ROUND.</source>
-      <translation>{many} caras con {across} entre caras tienen esquinas en el diámetro {corner}, pero el diámetro de la pieza es {stock}: introduzca un valor menor, o ponga las esquinas en ROUND.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/live_tools.py" />
-      <source>{number} holes spaced {number2}° apart go around the part more than once: enter a smaller angle.</source>
-      <translation>{number} agujeros separados {number2}° dan más de una vuelta a la pieza: introduzca un ángulo menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>A chamfer of {word} removes the whole wall: enter a smaller chamfer.</source>
-      <translation>Un chaflán de {word} quita toda la pared: introduzca un chaflán menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>CHAMFER ON THE BAR</source>
-      <translation>CHAFLÁN DE LA BARRA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>CHAMFER ON THE PART</source>
-      <translation>CHAFLÁN DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>END DIAMETER</source>
-      <translation>DIÁMETRO FINAL</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>PART LENGTH</source>
-      <translation>LONGITUD DE LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>PART OFF</source>
-      <translation>TRONZADO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>Parting off starts at diameter {top} and runs inward: end diameter {end} must be less.</source>
-      <translation>El tronzado empieza en el diámetro {top} y va hacia dentro: el diámetro final {end} debe ser menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>The chamfer is longer than the part: enter a smaller chamfer.</source>
-      <translation>El chaflán es más largo que la pieza: introduzca un chaflán menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/parting.py" />
-      <source>parts off to the center or to a bore, with chamfers on both sides of the cut</source>
-      <translation>tronza hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/program_head.py" />
-      <source>BAR DIAMETER</source>
-      <translation>DIÁMETRO DE LA BARRA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/program_head.py" />
-      <source>TOOL CHANGE AT Z</source>
-      <translation>CAMBIO DE HERRAMIENTA EN Z</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/program_head.py" />
-      <source>the start of the program: units, diameter programming, rapid rates, material</source>
-      <translation>el inicio del programa: unidades, programación en diámetros, avances rápidos, material</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/shape.py" />
-      <source>The tool data of T{tool_word} specifies the type {kind}, but this shape needs {expected}</source>
-      <translation>Los datos de herramienta de T{tool_word} indican el tipo {kind}, pero esta forma necesita {expected}</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/shape.py" />
-      <source>{what}: enter another tool.</source>
-      <translation>{what}: introduzca otra herramienta.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/shape_fields.py" />
-      <source>{label} is missing: enter a value, or choose one with the arrows.</source>
-      <translation>{label} falta: introduzca un valor, o elija uno con las flechas.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/shape_fields.py" />
-      <source>{label} is missing: enter a value.</source>
-      <translation>{label} falta: introduzca un valor.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/shape_fields.py" />
-      <source>{label} is {value}, but must be more than 0.</source>
-      <translation>{label} es {value}, pero debe ser más que 0.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/shape_fields.py" />
-      <source>{label} {value} is more than {maximum}: enter a smaller value.</source>
-      <translation>{label} {value} es más que {maximum}: introduzca un valor menor.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/shape_fields.py" />
-      <source>{label} {value} is not a whole number: enter a number such as 1, 2 or 3.</source>
-      <translation>{label} {value} no es un número entero: introduzca un número como 1, 2 o 3.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/shape_fields.py" />
-      <source>{label} {value} is not valid: choose one of {choices}.</source>
-      <translation>{label} {value} no es válido: elija uno de {choices}.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/sinumerik_helpers.py" />
-      <source>CYCLE95 ROUGHING</source>
-      <translation>DESBASTE CYCLE95</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/sinumerik_helpers.py" />
-      <source>THREAD CYCLE97</source>
-      <translation>ROSCA CYCLE97</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/sinumerik_helpers.py" />
-      <source>calls the tool, leads in, and cuts passes with a constant chip cross-section</source>
-      <translation>llama al útil, entra y corta pasadas con sección de viruta constante</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/sinumerik_helpers.py" />
-      <source>equivalent feed per minute: G94 F{number}</source>
-      <translation>avance por minuto equivalente: G94 F{number}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>A pitch of {pitch} is more than the largest feed, {maximum}: cut the thread with G33.</source>
-      <translation>Un paso de {pitch} es más que el avance máximo, {maximum}: corte la rosca con G33.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>A rigid tap turns with the C axis, which reaches {maximum} rpm: enter {maximum2} or less.</source>
-      <translation>Un macho rígido gira con el eje C, que alcanza {maximum} rpm: introduzca {maximum2} o menos.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: enter a lower speed.</source>
-      <translation>Con S{number} el eje necesita {speed} in/min, pero el límite del eje es 300 in/min: introduzca una velocidad menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>DWELL DURING REVERSAL</source>
-      <translation>ESPERA DURANTE LA INVERSIÓN</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>STOP DISTANCE BEFORE DEPTH</source>
-      <translation>DISTANCIA DE PARO ANTES DEL FONDO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>The spindle of this machine cannot be positioned and turned in sync with Z: use a floating tap holder.</source>
-      <translation>El husillo de esta máquina no se puede posicionar y girar en sincronía con Z: use un portamachos con compensación.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>The tap would stop {number} short of depth {number2}, so nothing is cut.</source>
-      <translation>El macho pararía {number} antes de la profundidad {number2}, así que no se corta nada.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>The tool data of {name} specifies a pitch of {pitch}, but this thread has a pitch of {needed}: use another tap.</source>
-      <translation>Los datos de herramienta de {name} indican un paso de {pitch}, pero esta rosca tiene un paso de {needed}: use otro macho.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>hole diameter before tapping: {crest}; limits {minimum} to {maximum}</source>
-      <translation>diámetro del agujero antes de roscar: {crest}; límites {minimum} a {maximum}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>tap drill: {series}</source>
-      <translation>broca para el macho: {series}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>tapping on the spindle centerline: feed in, reverse the spindle, feed out at the pitch</source>
-      <translation>roscado con macho en el centro del husillo: entra, invierte el husillo, sale al paso</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/tapping.py" />
-      <source>{series} threads cannot be tapped with this shape: cut the thread with G33.</source>
-      <translation>Las roscas {series} no se pueden roscar con macho en esta forma: corte la rosca con G33.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/templates.py" />
-      <source>BAR FEED LOOP</source>
-      <translation>BUCLE DE BARRA</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/templates.py" />
-      <source>FINISHING ALLOWANCE</source>
-      <translation>SOBRANTE PARA ACABAR</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/templates.py" />
-      <source>START OF PROGRAM</source>
-      <translation>INICIO DE PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/templates.py" />
-      <source>TOOL CHANGE</source>
-      <translation>CAMBIO DE ÚTIL</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/templates.py" />
-      <source>calls the tool, leads in, cuts passes with a constant chip cross-section, and pulls out</source>
-      <translation>llama al útil, entra, corta pasadas con sección de viruta constante y sale</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/templates.py" />
-      <source>makes roughing passes down to a contour whose points you edit by hand</source>
-      <translation>hace pasadas de desbaste hasta un contorno cuyos puntos se editan a mano</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/templates.py" />
-      <source>positions a stop, opens the collet and feeds the bar, with the part program as a subroutine</source>
-      <translation>coloca un tope, abre la pinza y avanza la barra, con el programa de la pieza como subrutina</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/templates.py" />
-      <source>retracts, changes the tool, starts the spindle and moves to the part</source>
-      <translation>retira, cambia la herramienta, arranca el husillo y va a la pieza</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/templates.py" />
-      <source>units, diameter programming, rapid rates, coolant</source>
-      <translation>unidades, programación en diámetros, avances rápidos, refrigerante</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>A lead of {lead} is more than the maximum that the control can cut, {coarse}.</source>
-      <translation>Un avance de rosca de {lead} es más que el máximo que puede cortar el control, {coarse}.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>A relief width of {relief} is less than {lead}, which is 1.5 times the lead.</source>
-      <translation>Un ancho de salida de {relief} es menos que {lead}, que es 1.5 veces el avance de rosca.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>An external thread is cut inward, so the diameter at the last pass, {root}, must be smaller than the diameter before threading, {crest}.</source>
-      <translation>Una rosca exterior se corta hacia dentro, así que el diámetro en la última pasada, {root}, debe ser menor que el diámetro antes de roscar, {crest}.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>An infeed angle of {angle}° is more than the flank angle of {flank}°, so the first passes would cut into the flank. Enter {limit} or less.</source>
-      <translation>Un ángulo de penetración de {angle}° es más que el del flanco, {flank}°, así que las primeras pasadas cortarían el flanco. Introduzca {limit} o menos.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>An internal thread is cut outward, so the diameter at the last pass, {root}, must be larger than the diameter before threading, {crest}.</source>
-      <translation>Una rosca interior se corta hacia fuera, así que el diámetro en la última pasada, {root}, debe ser mayor que el diámetro antes de roscar, {crest}.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>At S{number} the axis needs {speed} in/min, but the axis limit is 300 in/min: enter S{slow} or less.</source>
-      <translation>Con S{number} el eje necesita {speed} in/min, pero el límite del eje es 300 in/min: introduzca S{slow} o menos.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>CLASS {tolerance} is not valid: choose one of {allowed}.</source>
-      <translation>La CLASE {tolerance} no es válida: elija una de {allowed}.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>DIAMETER AT LAST PASS</source>
-      <translation>DIÁMETRO DE LA ÚLTIMA PASADA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>DIAMETER BEFORE THREADING</source>
-      <translation>DIÁMETRO ANTES DE ROSCAR</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>INFEED ANGLE</source>
-      <translation>ÁNGULO DE PENETRACIÓN</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>PULL OUT WHILE FEEDING</source>
-      <translation>SALIR SIN PARAR</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>RELIEF WIDTH</source>
-      <translation>ANCHO DE LA SALIDA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>TAPER ON THE DIAMETER</source>
-      <translation>CONICIDAD EN DIÁMETRO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>The bar of {name} does not fit into a bore of {number}.</source>
-      <translation>La barra de {name} no cabe en un taladro de {number}.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>The thread is {filled} deep, but at a pitch of {pitch} its flanks meet at a depth of {sharp}. Check both diameters.</source>
-      <translation>La rosca tiene {filled} de hondo, pero con un paso de {pitch} sus flancos se juntan a {sharp} de hondo. Revise los dos diámetros.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>Thread relief missing: the tool cuts a ring where it stops. Enter the relief width, or set pull-out to YES.</source>
-      <translation>Falta la salida de rosca: la herramienta corta un anillo donde para. Introduzca su ancho, o ponga SÍ en salir sin parar.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>Thread relief missing: the tool cuts a ring where it stops. Enter the relief width.</source>
-      <translation>Falta la salida de rosca: la herramienta corta un anillo donde para. Introduzca su ancho.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>a thread defined by series, size and class (UNC, UNF, M, NPT, BSP, ACME) or by custom dimensions</source>
-      <translation>una rosca definida por serie, medida y clase (UNC, UNF, M, NPT, BSP, ACME) o por medidas propias</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>major diameter {minimum} to {maximum}, pitch diameter {low} to {high}</source>
-      <translation>diámetro exterior {minimum} a {maximum}, diámetro de flancos {low} a {high}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>minor diameter {minimum} to {maximum}, pitch diameter {low} to {high}</source>
-      <translation>diámetro interior {minimum} a {maximum}, diámetro de flancos {low} a {high}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>pitch diameter {low} at the start of the thread</source>
-      <translation>diámetro de flancos {low} al inicio de la rosca</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>taper before threading: diameter {number} at the start, {distance} at the end</source>
-      <translation>cono previo al roscado: diámetro {number} al inicio, {distance} al final</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>{name} cuts a thread angle of {point}°, but this thread needs {angle}°: use another insert.</source>
-      <translation>{name} corta un ángulo de rosca de {point}°, pero esta rosca necesita {angle}°: use otra plaquita.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>{name} is made for a pitch of {pitch}, not {needed}: use another insert.</source>
-      <translation>{name} está hecha para un paso de {pitch}, no {needed}: use otra plaquita.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/threads/threading.py" />
-      <source>{series} does not include size {size}: choose a size with the arrows.</source>
-      <translation>{series} no incluye la medida {size}: elija una medida con las flechas.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>A finishing allowance of {leave} is more than a pass of {rough}: enter a smaller allowance.</source>
-      <translation>Un sobrante para acabado de {leave} es más que una pasada de {rough}: introduzca un sobrante menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>A pass would be {depth} deep, but the insert of T{number} allows a depth of only {maximum}: enter a smaller depth of cut.</source>
-      <translation>Una pasada tendría {depth} de profundidad, pero la plaquita de T{number} solo admite una profundidad de {maximum}: introduzca una profundidad de pasada menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>An edge size of {edge} is more than half of diameter {across}: enter {across2} or less.</source>
-      <translation>Un canto de {edge} es más que la mitad del diámetro {across}: introduzca {across2} o menos.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>CHAMFER AT BORE MOUTH</source>
-      <translation>CHAFLÁN EN LA BOCA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>CONTOUR NUMBER</source>
-      <translation>NÚMERO DEL CONTORNO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>DISTANCE FROM Z0 TO FACE</source>
-      <translation>DISTANCIA DE Z0 A LA CARA</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>Diameter {number} is more than the stock diameter of {number2}.</source>
-      <translation>El diámetro {number} es más que el diámetro del material de {number2}.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>EDGE TURN</source>
-      <translation>MATAR CANTOS</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>FACE AT Z</source>
-      <translation>CARA EN Z</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>Facing starts at diameter {number} and runs inward: end diameter {number2} must be less.</source>
-      <translation>El refrentado empieza en el diámetro {number} y va hacia dentro: el diámetro final {number2} debe ser menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>G41 does not work in a subroutine, and a bar feed loop runs this shape in a subroutine: enter 0.</source>
-      <translation>G41 no funciona en una subrutina, y un bucle de avance de barra ejecuta esta forma en una subrutina: introduzca 0.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>Point {position} is outside the stock diameter of {number}: enter a smaller X.</source>
-      <translation>El punto {position} está fuera del diámetro del material de {number}: introduzca una X menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>Point {position} runs back toward the face, but roughing can move only toward the chuck along Z.</source>
-      <translation>El punto {position} vuelve hacia la cara, pero el desbaste solo puede ir por Z hacia el plato.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>ROUGHING FEED</source>
-      <translation>AVANCE DE DESBASTE</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>START DIAMETER</source>
-      <translation>DIÁMETRO INICIAL</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>TAPER TURN</source>
-      <translation>CONO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>The boring bar of T{number} has a diameter of {diameter}, but the hole diameter is {hole}, so the bar does not fit; drill a larger hole, or use a smaller boring bar.</source>
-      <translation>La barra de mandrinar de T{number} tiene un diámetro de {diameter}, pero el diámetro del agujero es {hole}, así que la barra no entra; taladre un agujero mayor o use una barra de mandrinar menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>The chamfer is at least as long as the bore depth of {depth}: enter a smaller chamfer.</source>
-      <translation>El chaflán es al menos tan largo como la profundidad del taladro de {depth}: introduzca un chaflán menor.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>The contour cuts deeper directly after its first point, and roughing cannot return past that point: add a point before the first point, at the same Z and at the lowest X.</source>
-      <translation>El contorno corta más hondo justo después de su primer punto, y el desbaste no puede volver más allá de ese punto: añada un punto antes del primer punto, en la misma Z y en la X más baja.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>The hole diameter of {hole} is not less than the bore diameter of {across}, so nothing is cut.</source>
-      <translation>El diámetro del agujero, {hole}, no es menor que el diámetro del mandrinado, {across}, así que no se corta nada.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>The reach of T{number} is only {stick_out}, but the bore is {depth} deep: use a longer boring bar.</source>
-      <translation>El alcance de T{number} es de solo {stick_out}, pero el taladro tiene {depth} de hondo: use una barra de mandrinar más larga.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>The taper gets smaller toward the chuck, so a turning tool would run into the stock.</source>
-      <translation>El cono se estrecha hacia el plato, así que una herramienta de torneado chocaría con el material.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>a chamfer or a radius on an edge, on the outside or in a bore</source>
-      <translation>un chaflán o un radio en un canto, por fuera o en un taladro</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>a drilled hole bored to a diameter, with a chamfer at the mouth of the hole</source>
-      <translation>un agujero taladrado que se mandrina a un diámetro, con chaflán en la boca del agujero</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>a profile of points, corners and arcs, with or without roughing</source>
-      <translation>un perfil de puntos, esquinas y arcos, con o sin desbaste</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>a taper defined by two diameters, or by one diameter and an angle</source>
-      <translation>un cono definido por dos diámetros, o por un diámetro y un ángulo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>the end of the part faced square, in one or more passes</source>
-      <translation>el extremo de la pieza refrentado a escuadra, en una o varias pasadas</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/usual_fields.py" />
-      <source>A feed of {word} per revolution is more than {maximum}: did you mean F.003?</source>
-      <translation>Un avance de {word} por vuelta es más que {maximum}: ¿quería decir F.003?</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/usual_fields.py" />
-      <source>Depth {depth} is more than the flute length of T{number}, which is {length}: use a longer tool.</source>
-      <translation>La profundidad {depth} es más que el largo de estrías de T{number}, que es {length}: use una herramienta más larga.</translation>
-    </message>
-    <message>
-      <location filename="core/shapes/usual_fields.py" />
-      <source>S{revolutions} is more than the {maximum} rpm limit of this spindle: enter {maximum2} or less.</source>
-      <translation>S{revolutions} es más que el límite de {maximum} rpm de este husillo: introduzca {maximum2} o menos.</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/connection_string.py" />
-      <source>{named} (TLS certificate not verified)</source>
-      <translation>{named} (certificado TLS sin verificar)</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/shared_folder.py" />
-      <source>{mark} is damaged</source>
-      <translation>{mark} está dañado</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/shared_place.py" />
-      <source>the database {address}</source>
-      <translation>la base de datos {address}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/shared_place.py" />
-      <source>the folder {folder}</source>
-      <translation>la carpeta {folder}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>[sharing] postgresql is not a valid connection string; put a value that contains spaces in quotation marks, and write / and @ in the password of an address as %2F and %40</source>
-      <translation>[sharing] postgresql no es una cadena de conexión válida; ponga entre comillas un valor que contenga espacios, y escriba / y @ en la contraseña de una dirección como %2F y %40</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>[sharing] postgresql needs psycopg, which is not installed; install turndesk[postgresql]</source>
-      <translation>[sharing] postgresql necesita psycopg, que no está instalado; instale turndesk[postgresql]</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>the certificate of {place} cannot be verified ({why}); set sslrootcert=FILE in [sharing] postgresql to the certificate of its issuer</source>
-      <translation>el certificado de {place} no se puede verificar ({why}); indique en [sharing] postgresql sslrootcert=FILE con el certificado de su emisor</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>the disk of {place} is full; free up space on that disk</source>
-      <translation>el disco de {place} está lleno; libere espacio en ese disco</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>this user does not have permission for this action in {place} ({why}); ask the administrator for permission</source>
-      <translation>este usuario no tiene permiso para esta acción en {place} ({why}); pida el permiso al administrador</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} accepts only TLS connections ({why}); remove sslmode from [sharing] postgresql</source>
-      <translation>{place} solo acepta conexiones TLS ({why}); quite sslmode de [sharing] postgresql</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} contains no shared programs; check that it is mounted and that its name is right. To set up a new location, run: turndesk share begin</source>
-      <translation>{place} no contiene programas compartidos; revise que esté montado y que su nombre sea correcto. Para preparar una ubicación nueva, ejecute: turndesk share begin</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} does not respond ({why}); this control continues to work, and will share programs again when the connection is restored</source>
-      <translation>{place} no responde ({why}); este control sigue trabajando, y volverá a compartir programas cuando se restablezca la conexión</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} does not support TLS ({why}); turn on TLS at that server, or, on a network where you trust every user, write sslmode=disable in [sharing] postgresql</source>
-      <translation>{place} no ofrece TLS ({why}); active TLS en ese servidor o, en una red en la que confía en todos los usuarios, escriba sslmode=disable en [sharing] postgresql</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} is not set up for shared programs ({why}); specify another location</source>
-      <translation>{place} no está preparado para programas compartidos ({why}); indique otra ubicación</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} rejects the user name or the password ({why}); correct the user name or the password in [sharing] postgresql</source>
-      <translation>{place} rechaza el nombre de usuario o la contraseña ({why}); corrija el nombre de usuario o la contraseña en [sharing] postgresql</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} was not found ({why}); check that it is mounted and that its name is right</source>
-      <translation>no se encontró {place} ({why}); revise que esté montado y que su nombre sea correcto</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place} was set up by a newer TurnDesk (format {why}); update TurnDesk on this control</source>
-      <translation>{place} fue preparado por un TurnDesk más nuevo (formato {why}); actualice TurnDesk en este control</translation>
-    </message>
-    <message>
-      <location filename="core/extras/sharing/sharing_errors.py" />
-      <source>{place}: another control is also named {why}; give this control a name that no other control uses (desk in [sharing]) or, if the other computer no longer exists, run: turndesk share publish --claim</source>
-      <translation>{place}: otro control también se llama {why}; dé a este control un nombre que no use ningún otro (desk en [sharing]) o, si la otra computadora ya no existe, ejecute: turndesk share publish --claim</translation>
     </message>
     <message>
       <location filename="core/store/backup.py" />

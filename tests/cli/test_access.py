@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -92,8 +91,8 @@ READS = {
     "access reset",  # for those whose PINs are forgotten, at the machine's own keyboard
 }  # fmt: skip
 """Commands that change nothing here that a level could guard."""
-for _each in sorted((Path(__file__).parents[1] / "extras").glob("*/options.py")):
-    READS |= getattr(import_module(f"tests.extras.{_each.parent.name}.options"), "READS", set())
+for _module in of_extras("options"):
+    READS |= getattr(_module, "READS", set())
 
 
 def commands(parser: argparse.ArgumentParser, *words: str) -> Iterator[tuple[str, bool]]:

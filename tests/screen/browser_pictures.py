@@ -41,9 +41,9 @@ def main(argv: list[str] | None = None) -> int:
     with TemporaryDirectory() as folder:
         os.environ["TURNDESK_HOME"] = folder
         for each in of_extras("browser_pages"):
-            for name, address, size in getattr(each, "served", tuple)():
+            for name, address, size in getattr(each, "served", lambda: ())():
                 _taken(browser, address, args.out / name, size)
-            for name, (page, size) in getattr(each, "written", dict)(Path(folder)).items():
+            for name, (page, size) in getattr(each, "written", lambda _folder: {})(Path(folder)).items():
                 _taken(browser, page.as_uri(), args.out / f"{name}.png", size)
     del app
     return 0

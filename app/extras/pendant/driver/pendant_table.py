@@ -124,7 +124,7 @@ class PendantModel:
 
 
 def _rules(file: FileReading) -> Iterator[Finding]:
-    buttons = _buttons(file)
+    buttons = _pendant_inputs(file)
     for path, terminal in buttons.items():
         if why := _wrong_button(path, terminal):
             yield Finding(f"{path}.at", written(terminal), why)
@@ -145,7 +145,7 @@ def _rules(file: FileReading) -> Iterator[Finding]:
         yield Finding(f"[{_PATH}]", "", expected)
 
 
-def _buttons(file: FileReading) -> Mapping[str, str]:
+def _pendant_inputs(file: FileReading) -> Mapping[str, str]:
     """Return the inputs and outputs that are at the pendant, by path."""
     return {path: at for path, at in file.elsewhere.items() if at.startswith(AT_PENDANT)}
 
