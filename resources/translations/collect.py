@@ -93,7 +93,7 @@ APART = frozenset(
         ),
         *("sharing_table.py", "sharing_check.py", "share_json_keys.py"),
         *("mtconnect/shop_floor.py", "mtconnect_command.py", "mtconnect_check.py", "pendant_wire.py"),
-        *("office/office.py", "office_check.py", "page_server.py", "shop_network_tables.py"),
+        *("office_desk.py", "office_check.py", "page_server.py", "shop_network_tables.py"),
         *("profile_command.py", "profile_json_keys.py", "shapes_json_keys.py"),
         *("shapes_command.py", "shape_steps.py"),
         *("screen/pdf_pages.py", "lines/sinumerik_lines.py", "lines/bar_lines.py"),

@@ -34,7 +34,7 @@ OF_LATER = (
         "drivers.inverter.inverter_spindle",
         "app.extras.pendant.driver.pendant_station",
     ),
-    *("app.extras.mtconnect.shop_floor", "app.extras.office.office", "drivers.transfer"),
+    *("app.extras.mtconnect.shop_floor", "app.extras.office.office_desk", "drivers.transfer"),
     *("core.part.milled_part", "core.part.solid_picture", "core.proving.part_proof", "core.extras.shapes"),
     *("ezdxf", "svgelements"),
 )

@@ -22,7 +22,12 @@ PAGES = (
     (("F1", "F10"), "SPECIAL FUNCTIONS"),
     (("F1", "b"), "PART"),
     (("F1", "q"), "SCOPE"),
-    *((("F1", page.key.lower()), page.name) for extra in extras().values() for page in extra.pages),
+    *(
+        (("F1", page.key.lower()), page.name)
+        for extra in extras().values()
+        for page in extra.pages
+        if page.key
+    ),
     (("F1",), "MAIN MENU"),
 )
 OURS = ("setpoint", "too early", "splice", "Error", "queue")  # words of whoever wrote the control

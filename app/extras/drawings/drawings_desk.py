@@ -11,7 +11,7 @@ from app.desk.desk import Desk
 from app.desk.latest import Watch
 from app.extras.drawings.added_drawing import AddedDrawing
 from app.extras.drawings.drawing_plan import Plan
-from app.extras.drawings.profile_trial import TrialStock, tried
+from app.extras.drawings.profile_trial_desk import TrialStock, tried
 from app.extras.shapes.shapes_model import Shapes
 from core.extras.drawings.part_against_drawing import Comparison
 from core.extras.drawings.profile_program import greatest_diameter

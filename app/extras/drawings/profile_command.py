@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from app.cli.figures import Json
     from app.cli.program_options import SubParsers
-    from app.extras.drawings.profile_trial import Trial
+    from app.extras.drawings.profile_trial_desk import Trial
     from core.extras.drawings.contour_walk import Net
     from core.extras.drawings.drawing import Drawing
     from core.extras.drawings.drawing_view import Profile, View
@@ -322,7 +322,7 @@ def _list(drawing: Drawing, view: View, found: list[Net], *, as_json: bool) -> N
 
 
 def _make(drawing: Drawing, view: View, net: Net, args: argparse.Namespace, machine: Machine) -> int:
-    from app.extras.drawings.profile_trial import TrialStock, tried
+    from app.extras.drawings.profile_trial_desk import TrialStock, tried
     from core.extras.drawings.drawing_view import Side, profile
 
     shapes = _shapes(args)

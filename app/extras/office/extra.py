@@ -37,7 +37,7 @@ class Office(Extra):
     def start(self, desk: Desk, journal: Journal, tell: Tell) -> Close | None:
         if desk.lathe is None or _TABLES.isdisjoint(desk.lathe.hardware.tables):
             return None
-        from app.extras.office.office import open_office
+        from app.extras.office.office_desk import open_office
 
         return open_office(desk, desk.lathe, journal, tell)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.extras.drawings.profile_trial import TrialStock, tried
+from app.extras.drawings.profile_trial_desk import TrialStock, tried
 from core.extras.drawings.drawing_view import Front, Side, Zero
 from core.extras.drawings.profile_words import is_corner
 from core.extras.shapes.contour import points

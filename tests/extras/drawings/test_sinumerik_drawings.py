@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from app.cli.main import main
-from app.extras.drawings.profile_trial import Trial, TrialStock, tried
+from app.extras.drawings.profile_trial_desk import Trial, TrialStock, tried
 from core.extras.drawings.drawing_view import Profile, Side
 from core.extras.drawings.profile_program import ProfileProgram
 from core.extras.drawings.profile_words import in_json, in_words

@@ -24,7 +24,7 @@ from app.compose.machine_answers import check_ports
 from app.compose.machine_files import load_machine, parse_machine
 from app.extras.office import other_desks
 from app.extras.office.alarm_drawing import HIGH, alarm_drawing
-from app.extras.office.office import AlarmDrawing, PartPicture
+from app.extras.office.office_desk import AlarmDrawing, PartPicture
 from app.extras.office.office_status import STOPS, OfficeLook
 from app.extras.office.other_desks import OtherDesks, asked, status_address
 from app.extras.office.page_connections import DEADLINE, MOST, MOST_OF_ONE
