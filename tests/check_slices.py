@@ -21,9 +21,9 @@ from app.compose.extra import NAMES, extras
 HOUSE = Path(__file__).parents[1]
 PLACES = ("app/extras", "core/extras", "tests/extras")
 QUICK = (
-    *("tests/language", "tests/geometry", "tests/interpreter", "tests/motion", "tests/proving"),
-    *("tests/executor", "tests/alarms", "tests/machine", "tests/test_extras.py", "tests/test_contracts.py"),
-    *("tests/cli", "tests/desk", "tests/screen", "tests/extras"),
+    *("tests/language", "tests/interpreter", "tests/proving", "tests/machine", "tests/cli", "tests/desk"),
+    *("tests/test_extras.py", "tests/test_contracts.py", "tests/screen/test_pages.py"),
+    *("tests/screen/test_start.py", "tests/screen/test_escape.py", "tests/screen/test_accessible.py"),
 )
 CHECKS: Mapping[str, Sequence[str]] = {
     "lint": ("-m", "ruff", "check", "--quiet", "."),
