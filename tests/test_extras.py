@@ -49,6 +49,10 @@ def test_additions_that_follow_the_same_item_keep_their_order() -> None:
     assert insert_after("ab", str, [("x", "a"), ("y", "a")]) == ["a", "x", "y", "b"]
 
 
+def test_an_addition_may_follow_one_that_is_added_later() -> None:
+    assert insert_after("ab", str, [("y", "x"), ("x", "a")]) == ["a", "x", "y", "b"]
+
+
 def test_an_addition_whose_item_is_absent_is_the_last() -> None:
     assert insert_after("ab", str, [("x", "gone")]) == ["a", "b", "x"]
 

@@ -176,13 +176,15 @@ def drawing_endings() -> tuple[str, ...]:
 def insert_after(items: Iterable[T], name_of: Callable[[T], str], added: Iterable[tuple[T, str]]) -> list[T]:
     """Return ``items`` with each pair of ``added`` inserted after the item that the pair names.
 
-    If there is no item of that name, the addition becomes the last one. Additions that follow the same item
-    keep their order.
+    That item may also be an addition. Additions that follow the same item keep their order. If there is no
+    item of that name, the addition becomes the last one.
     """
-    found = list(items)
+    found, waiting = list(items), list(added)
     newest: dict[str, str] = {}
-    for item, after in added:
+    while waiting:
         names = [name_of(each) for each in found]
+        item, after = next((pair for pair in waiting if pair[1] in names), waiting[0])
+        waiting.remove((item, after))
         place = newest.get(after, after)
         found.insert(names.index(place) + 1 if place in names else len(found), item)
         newest[after] = name_of(item)

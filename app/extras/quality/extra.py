@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 class Quality(Extra):
     """The page MEASURED PARTS, the shift report, their commands, and [gauge] of the machine file."""
 
-    commands = {"parts": "alarms", "shift": "parts"}
+    commands = {"parts": "alarms", "shift": "share"}
     pages = (
         PageEntry(
             "MEASURED PARTS",
@@ -58,7 +58,7 @@ class Quality(Extra):
 
         report = ShiftReport(desk, machine.name, worker, data_folder() / "sheets")
         parts = MeasuredPartsFunction(desk)
-        return ((parts, "SCOPE"), (report, parts.name))
+        return ((parts, "SCOPE"), (report, "JOBS"))
 
     def json_outputs(self) -> Mapping[str, Sequence[Output]]:
         from app.extras.quality.quality_json_keys import OUTPUTS
