@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from app.cli.store_command import opened_store
 from app.cli.who_changes import RESET, add_as_option, demand_own_keyboard, who_changes
 from app.desk.command_errors import EXIT_OK, CommandError, as_command_error
-from app.extras.access.pin_question import asked_pin
 from core.access.access_table import RULES, Act, Level
 from core.message import Message
 
@@ -124,6 +123,7 @@ def _pin(store: Store, args: argparse.Namespace) -> str:
 
 def _kept(store: Store, args: argparse.Namespace, name: str, level: Level, done: str) -> str:
     """Ask for the PIN twice and keep it."""
+    from app.extras.access.pin_question import asked_pin
     from core.extras.access.pins import PinError, check_pin, hashed
     from core.store import people
 

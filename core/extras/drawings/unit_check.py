@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from core.extras.drawings.contour_walk import Net
+from typing import TYPE_CHECKING
+
 from core.message import Message
+
+if TYPE_CHECKING:
+    from core.extras.drawings.contour_walk import Net
 
 UNITS = {"MM": 1.0, "INCH": 25.4}
 """The units that a user can choose, mm."""

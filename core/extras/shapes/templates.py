@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from core.extras.shapes.cutting_data import Work, finish_depth, rough_depth
+from core.extras.shapes.cutting_data import Work
+from core.extras.shapes.cutting_depth import finish_depth, rough_depth
 from core.extras.shapes.forms.program_head import HEAD
 from core.extras.shapes.lines.code_lines import Code
 from core.extras.shapes.number_words import plain, rounded_up

@@ -10,7 +10,8 @@ import resources
 from app.compose.machine_files import parse_machine
 from app.extras.shapes.shapes_desk import shop_of
 from core.extras.shapes.contour import Row
-from core.extras.shapes.cutting_data import MATERIALS, facing_depth, finish_depth, most_depth, rough_depth
+from core.extras.shapes.cutting_data import MATERIALS
+from core.extras.shapes.cutting_depth import facing_depth, finish_depth, most_depth, rough_depth
 from core.extras.shapes.shape import Filled, filled
 from core.extras.shapes.shape_fields import Value
 from core.extras.shapes.shape_setting import Setting, Shop
