@@ -14,8 +14,8 @@ _dropped: list[type[BaseException]] = []
 
 
 @contextmanager
-def kept() -> Iterator[None]:
-    """Whatever is dropped in here is raised by the next ``look``."""
+def keep_interrupts() -> Iterator[None]:
+    """Whatever is dropped in here is raised by the next ``raise_interrupt``."""
     before = sys.unraisablehook
 
     def keep(told: UnraisableHookArgs) -> None:
@@ -32,8 +32,8 @@ def kept() -> Iterator[None]:
         sys.unraisablehook = before
 
 
-def look() -> None:
-    """Raises the KeyboardInterrupt that was dropped, once."""
+def raise_interrupt() -> None:
+    """Raise the KeyboardInterrupt that was dropped, once."""
     if _dropped:
         _dropped.clear()
         raise KeyboardInterrupt

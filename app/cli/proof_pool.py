@@ -13,7 +13,7 @@ from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from typing import Generic, Protocol, TypeVar
 
-from app.cli import dropped_interrupt
+from app.cli.dropped_interrupt import raise_interrupt
 
 Unit = TypeVar("Unit")
 Made = TypeVar("Made")
@@ -111,7 +111,7 @@ class Proving(Generic[Unit, Made]):
         done = False
         try:
             while True:
-                dropped_interrupt.look()
+                raise_interrupt()
                 for unit in units:
                     executor = executor or self._workers.open()
                     self._give(executor, unit)
