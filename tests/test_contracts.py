@@ -14,7 +14,8 @@ from app.compose.extra import extras
 OURS = ("app", "core", "drivers", "resources")
 QT = {"PySide6", "shiboken6"}
 SCREEN = "app.screen"
-COMMANDS = {"app.cli.main", "app.cli.report_file"}  # open the screen, print a PDF, and import Qt only then
+# They open the screen or print a PDF, and import Qt only then.
+COMMANDS = {"app.cli.main", "app.cli.proofs.report_file"}
 
 
 def test_import_contracts_hold() -> None:
@@ -138,7 +139,7 @@ def test_every_folder_of_a_driver_is_in_its_contracts() -> None:
 
 def test_pickle_goes_between_our_own_processes_alone() -> None:
     """Unpickling runs what it is given: it is no format of a file."""
-    sender_and_receiver = {"app/cli/proof_job.py", "app/cli/proof_work.py", "app/compose/feeder_process.py"}
+    sender_and_receiver = {"app/cli/proofs/proof_work.py", "app/compose/feeder_process.py"}
     house = Path(__file__).parents[1]
     paths = [path for top in OURS for path in (house / top).rglob("*.py")]
     found = [

@@ -13,9 +13,8 @@ import threading
 from collections.abc import Sequence
 from types import ModuleType
 
-from app.cli.dropped_interrupt import keep_interrupts, raise_interrupt
 from app.cli.command_parser import Parser, add_screen_options, settled
-from app.cli.crash_report import report_crash, report_thread
+from app.cli.crash_report import keep_interrupts, raise_interrupt, report_crash, report_thread
 from app.compose.extra import command_modules, extras, insert_after
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError

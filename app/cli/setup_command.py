@@ -90,7 +90,7 @@ def _load(args: argparse.Namespace) -> int:
 
 
 def _desktop(args: argparse.Namespace) -> int:
-    from app.cli.desktop_entry import install, remove
+    from app.cli.actions.desktop_entry import install, remove
 
     if args.remove and args.autostart:
         raise CommandError(

@@ -66,10 +66,10 @@ BEHIND_A_RULE = {
     "transfer/line_transfer.py": "asked by serial_command.py and serial_transfer.py",
 }
 NO_CHANGE = {
-    "cli/desktop_entry.py": "the menu of the system's user",
-    "cli/json_page.py": "a page of the manual",
-    "cli/proof_cache.py": "proofs that can be made again",
-    "cli/report_file.py": "a report, to a file of whoever asks",
+    "cli/actions/desktop_entry.py": "the menu of the system's user",
+    "cli/json_reference/json_page.py": "a page of the manual",
+    "cli/proofs/proof_cache.py": "proofs that can be made again",
+    "cli/proofs/report_file.py": "a report, to a file of whoever asks",
     "extras/quality/shift_command.py": "a report",
     "cli/trace_command.py": "setpoints, to a file of whoever asks",
     "compose/demo_store.py": "a store for trying",

@@ -18,7 +18,7 @@ import numpy as np
 
 import resources
 from app.cli import scope_command
-from app.cli.inputs_file import read_inputs
+from app.cli.program_options import read_inputs
 from app.compose.machine_drivers import read_machine_file
 from app.compose.machine_files import shipped_machine
 from app.compose.machine_setup import setup_for

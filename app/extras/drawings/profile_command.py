@@ -20,7 +20,7 @@ from core.message import Message
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from app.cli.figures import Json
+    from app.cli.figures.units import Json
     from app.cli.program_options import SubParsers
     from app.extras.drawings.profile_trial_desk import Trial
     from core.extras.drawings.contour_walk import Net

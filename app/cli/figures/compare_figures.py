@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.cli.figures import MM_PER_INCH, Json, length_of, seconds, volume_of
-from app.cli.proof_json import diagnostic_json
+from app.cli.figures.proof_json import diagnostic_json
+from app.cli.figures.units import MM_PER_INCH, Json, length_of, seconds, volume_of
 from core.language.source import Dialect
 
 if TYPE_CHECKING:
-    from app.cli.proof_job import ProofJob
+    from app.cli.proofs.proof_work import ProofJob
     from core.language.source import Source
     from core.proving.other_offsets import Pair
     from core.proving.proof_report import PartReport, Report

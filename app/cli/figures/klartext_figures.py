@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from app.cli.figures import Json, block_head, degrees, millimetres, path_feed, seconds
+from app.cli.figures.units import Json, block_head, degrees, millimetres, path_feed, seconds
 
 if TYPE_CHECKING:
     from core.interpreter.elementary_blocks import Block

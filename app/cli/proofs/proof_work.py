@@ -1,23 +1,58 @@
-"""One program to prove as a unit of work: it and its result can be sent to another process or computer."""
+"""What is proved: the job that all programs share, on a machine that fits, and one program as a unit of work.
+
+Job, program and result can be sent to another process or computer. Without --machine each program is proved
+on a machine that can run it: Klartext on a shipped mill.
+"""
 
 from __future__ import annotations
 
+import argparse
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from functools import lru_cache
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.cli.proof_job import ProofJob
-
 if TYPE_CHECKING:
-    from app.cli.figures import Json
+    from app.cli.figures.units import Json
     from app.report.run_record import RunRecord
+    from core.interpreter.job_setup import Setup
     from core.language.source import Source
+    from core.machine.machine_model import Machine
+    from core.proving.program_tools import PartSetting
     from core.proving.proof_report import PartReport, Report
 
-_ROOT = Path(__file__).parents[2]
+
+@dataclass(frozen=True)
+class OtherOffsets:
+    """Offsets to compare with: the name of their file, and the setup with them."""
+
+    name: str
+    setup: Setup
+
+
+@dataclass(frozen=True)
+class ProofJob:
+    """What is the same for all programs that are proved together."""
+
+    machine: Machine
+    setup: Setup
+    setting: PartSetting
+    ideal: bool = False
+    optional_stop: bool = False
+    reported: bool = False  # a section of a report is wanted too
+    other: OtherOffsets | None = None
+
+    @cached_property
+    def packed(self) -> bytes:
+        """The job as it is sent."""
+        import pickle
+
+        return pickle.dumps(self)
+
+
+_ROOT = Path(__file__).parents[3]
 _ROOMS = ("app/cli", "app/compose", "app/report", "core")  # what a proof is made by
 
 
@@ -60,7 +95,7 @@ def proof_of(packed: bytes, version: str, source: Source) -> Proof:
 
 def proved(job: ProofJob, source: Source) -> Proof:
     """Prove one program here."""
-    from app.cli.proof_json import report_json
+    from app.cli.figures.proof_json import report_json
 
     found = findings(job, source)
     json = report_json(source.name, found.report, found.part, optional_stop=job.optional_stop)
@@ -87,7 +122,7 @@ def findings(job: ProofJob, source: Source, progress: Callable[[float], None] | 
     report = refusing_missing_offsets(report, job.setup)
     compare: Json | None = None
     if job.other is not None:
-        from app.cli.compare_figures import compared
+        from app.cli.figures.compare_figures import compared
 
         compare = compared(job, source, report, part)
     if record is None:
@@ -96,7 +131,7 @@ def findings(job: ProofJob, source: Source, progress: Callable[[float], None] | 
 
     section = ProgramReport(source, report, part, record, job.machine, job.setup).html()
     if compare is not None:
-        from app.cli.compare_figures import compare_lines
+        from app.cli.figures.compare_figures import compare_lines
 
         section += compared_part(compare_lines(compare, metric=report.metric, dialect=report.dialect))
     return Findings(report, part, section, compare)
@@ -129,3 +164,34 @@ def code_version() -> str:
         for path in sorted((_ROOT / room).rglob("*.py")):
             total.update(path.relative_to(_ROOT).as_posix().encode() + b"\0" + path.read_bytes())
     return total.hexdigest()
+
+
+@dataclass(slots=True)
+class FittingJobs:
+    """The job of all programs, and one for each shipped machine that some of them need; ``make`` makes it."""
+
+    args: argparse.Namespace
+    make: Callable[[argparse.Namespace], ProofJob]
+    _made: dict[str, ProofJob] = field(default_factory=dict)  # by machine; empty: the one of the options
+
+    def machine_of(self, source: Source) -> str:
+        """The name of the shipped machine that is taken for this program; empty: the one of the options."""
+        if self.args.machine is not None:
+            return ""
+        from app.compose.fitting_machine import fitting_machine
+
+        return fitting_machine(source)
+
+    def of(self, machine: str) -> ProofJob:
+        """The job on this machine. Raises CommandError."""
+        if machine not in self._made:
+            args = self.args
+            if machine:
+                args = argparse.Namespace(**{**vars(args), "machine": machine})
+            self._made[machine] = self.make(args)
+        return self._made[machine]
+
+
+def on_machine(what: str, machine: str) -> str:
+    """The line that says on which machine something is proved."""
+    return f"turndesk: {what} is proved on the shipped {machine}; --machine chooses another one\n"

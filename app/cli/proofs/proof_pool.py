@@ -13,7 +13,7 @@ from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from typing import Generic, Protocol, TypeVar
 
-from app.cli.dropped_interrupt import raise_interrupt
+from app.cli.crash_report import raise_interrupt
 
 Unit = TypeVar("Unit")
 Made = TypeVar("Made")
@@ -21,8 +21,8 @@ Made = TypeVar("Made")
 KILLED = "the worker process was killed twice while proving this program (out of memory?)"
 # Imported once, in the process that all workers are forked from.
 _PRELOAD = (
-    "app.cli.proof_json",
-    "app.cli.proof_work",
+    "app.cli.figures.proof_json",
+    "app.cli.proofs.proof_work",
     "core.interpreter.omniturn.omniturn_interpreter",
     "core.proving.part_proof",
 )

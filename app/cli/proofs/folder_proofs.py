@@ -1,4 +1,4 @@
-"""``turndesk prove DIR``: many programs on all cores, told in the order of names."""
+"""``turndesk prove DIR``: programs of folders, proved on all cores, told in the order of names."""
 
 from __future__ import annotations
 
@@ -6,24 +6,29 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError, Executor, Future
 from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.fitting_jobs import FittingJobs, on_machine
 from app.cli.part_options import with_kept
-from app.cli.program_files import ProgramFiles, program_files
 from app.cli.program_options import read_source
 from app.cli.progress_bar import Progress
-from app.cli.proof_cache import ProofCache
-from app.cli.proof_job import ProofJob
-from app.cli.proof_pool import KILLED, Proving, Workers, WorkerSource, cores
-from app.cli.proof_table import table
-from app.cli.proof_work import OtherVersionError, Proof, code_version, proof_of
-from app.cli.report_file import ReportFile, report_file
+from app.cli.proofs.proof_cache import ProofCache
+from app.cli.proofs.proof_pool import KILLED, Proving, Workers, WorkerSource, cores
+from app.cli.proofs.proof_work import (
+    FittingJobs,
+    OtherVersionError,
+    Proof,
+    ProofJob,
+    code_version,
+    on_machine,
+    proof_of,
+)
+from app.cli.proofs.report_file import ReportFile, report_file
 from app.compose.extra import proof_workers
 from app.compose.kept_stock import kept_with_all
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
@@ -32,6 +37,81 @@ from core.message import Message
 
 if TYPE_CHECKING:
     from core.proving.program_tools import PartSetting
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramFiles:
+    """The programs in the order of their names, and how many files of the folders are none."""
+
+    paths: tuple[Path, ...]
+    others: int
+
+
+def program_files(names: Iterable[str]) -> ProgramFiles:
+    """The programs that files and folders name; a file that is named counts whatever its ending is.
+
+    Raises CommandError for a folder that cannot be read or holds no program.
+    """
+    found: set[Path] = set()
+    others = 0
+    for path in map(Path, _named(names)):
+        if not path.is_dir():
+            found.add(path)
+            continue
+        there = list(_files(path))
+        programs = {each for each in there if _is_program(each)}
+        if not programs:
+            raise CommandError(
+                Message(
+                    "{path} does not contain any programs{there_count}; use a different folder",
+                    path=path,
+                    there_count=_among(len(there)),
+                ),
+                "no-programs",
+            )
+        found |= programs
+        others += len(there) - len(programs)
+    return ProgramFiles(tuple(sorted(found, key=_by_name)), others)
+
+
+def _named(names: Iterable[str]) -> Iterator[str]:
+    """They, unless one is empty, as a script's variable may be: that would be the folder one stands in."""
+    for name in names:
+        if not name:
+            raise CommandError("the file name is empty; use . for the programs in this folder", "empty-name")
+        yield name
+
+
+def _among(count: int) -> str:
+    return Message(", only {count} other file{value}", count=count, value="s" * (count > 1)) if count else ""
+
+
+def _by_name(path: Path) -> tuple[list[str], str]:
+    return [part.lower() for part in path.parts], str(path)
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    """All files in and below a folder but those of hidden folders; links to folders lead nowhere."""
+    for where, folders, names in os.walk(folder, onerror=_unreadable):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        yield from (Path(where) / name for name in names)
+
+
+def _unreadable(error: OSError) -> None:
+    raise CommandError(
+        Message(
+            "{file} cannot be read ({cause}); check its permissions",
+            file=error.filename,
+            cause=error.strerror,
+        ),
+        "unreadable",
+    ) from error
+
+
+def _is_program(path: Path) -> bool:
+    from app.desk.program_folder import ENDINGS
+
+    return path.suffix.lower() in ENDINGS and not path.name.startswith(".") and path.is_file()
 
 
 def prove_many(args: argparse.Namespace, jobs: FittingJobs) -> int:
@@ -214,3 +294,82 @@ def _status(proof: Proof) -> int:
 def _own(setting: PartSetting) -> object:
     """What counts for one program alone: what the store keeps of its part."""
     return setting.stock, setting.clamping, setting.silenced
+
+
+_SLOWEST = 3
+_HEAD = "verdict     errors  warnings      cycle s       removed  program\n"
+
+Row = tuple[Path, Proof]
+
+
+def table(rows: Sequence[Row], others: int) -> str:
+    """All of it; ``others`` files in the folders are no programs."""
+    return _HEAD + "".join(_line(path, proof) for path, proof in rows) + _sum(rows, others) + _slowest(rows)
+
+
+def verdict(proof: Proof) -> str:
+    """One word for what proving has come to."""
+    if proof.fault:
+        return "not proved"
+    return "errors" if proof.count("error") else "proved"
+
+
+def _line(path: Path, proof: Proof) -> str:
+    word = verdict(proof)
+    if proof.fault:
+        return f"{word:10s}{'':38s}  {path}\n            {proof.fault}\n"
+    first = next(proof.findings("error"), None)
+    return (
+        f"{word:10s}{proof.count('error'):8d}{proof.count('warning'):10d}"
+        f"{_number(proof.report['cycle_time_s']):13.2f}{_removed(proof):>14s}  {path}\n"
+        + _compared(proof)
+        + (f"            line {first['line']}: {first['message']}\n" if first else "")
+    )
+
+
+def _compared(proof: Proof) -> str:
+    """What other offsets change, in one line."""
+    found = proof.report.get("compare")
+    if not isinstance(found, dict):
+        return ""
+    unit = "in" if proof.report["dialect"] == "omniturn" else "mm"
+    here, there = found["cycle_time_s"]
+    return (
+        f"            with {found['offsets']}: {found['differing']} of {len(found['features'])} diameters and"
+        f" shoulders differ, by {found['largest']:.4f} {unit} at most; cycle {there - here:+.2f} s;"
+        f" {len(found['added'])} findings new, {len(found['gone'])} gone\n"
+    )
+
+
+def _removed(proof: Proof) -> str:
+    stock = proof.report.get("stock")
+    if not isinstance(stock, dict):
+        return "–"
+    unit = "in³" if proof.report["dialect"] == "omniturn" else "mm³"
+    return f"{stock['removed_volume']:.4g} {unit}"
+
+
+def _number(value: object) -> float:
+    assert isinstance(value, int | float)
+    return float(value)
+
+
+def _sum(rows: Sequence[Row], others: int) -> str:
+    words = Counter(verdict(proof) for _, proof in rows)
+    parts = [f"{words['proved']} proved"]
+    parts += [Message("{words} with errors", words=words["errors"])] if words["errors"] else []
+    parts += [Message("{words} not proved", words=words["not proved"])] if words["not proved"] else []
+    parts += (
+        [Message("{others} other file{value} skipped", others=others, value="s" * (others > 1))]
+        if others
+        else []
+    )
+    return f"{len(rows)} program{'s' * (len(rows) != 1)}: {', '.join(parts)}\n"
+
+
+def _slowest(rows: Iterable[Row]) -> str:
+    proved = sorted((row for row in rows if row[1].seconds), key=lambda row: -row[1].seconds)
+    if not proved:
+        return ""
+    named = ", ".join(f"{path} {proof.seconds:.2f} s" for path, proof in proved[:_SLOWEST])
+    return f"slowest to prove: {named}\n"

@@ -18,10 +18,10 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.proof_work import Proof, code_version
+from app.cli.proofs.proof_work import Proof, code_version
 
 if TYPE_CHECKING:
-    from app.cli.proof_job import ProofJob
+    from app.cli.proofs.proof_work import ProofJob
     from core.language.source import Source
 
 LARGEST = 256 * 2**20  # bytes of all proofs together

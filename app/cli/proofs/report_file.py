@@ -14,7 +14,7 @@ from core.file_placing import put_in_place
 from core.message import Message
 
 if TYPE_CHECKING:
-    from app.cli.proof_work import Proof
+    from app.cli.proofs.proof_work import Proof
 
 _TITLE = "Proof"
 _HTML, _PDF = {".html", ".htm"}, {".pdf"}
