@@ -34,7 +34,7 @@ def test_no_command_but_the_screen_imports_qt(command: str) -> None:
     importlib.import_module(f"app.cli.{command}_command")
     script = (
         "import sys; from app.cli.main import build_parser; "
-        f"build_parser(['{command}']); import app.compose.machine_setup; "
+        f"build_parser(['{command}']); import app.compose.machine.machine_setup; "
         "sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
     )
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
@@ -139,7 +139,7 @@ def test_every_folder_of_a_driver_is_in_its_contracts() -> None:
 
 def test_pickle_goes_between_our_own_processes_alone() -> None:
     """Unpickling runs what it is given: it is no format of a file."""
-    sender_and_receiver = {"app/cli/proofs/proof_work.py", "app/compose/feeder_process.py"}
+    sender_and_receiver = {"app/cli/proofs/proof_work.py", "app/compose/backends/feeder_process.py"}
     house = Path(__file__).parents[1]
     paths = [path for top in OURS for path in (house / top).rglob("*.py")]
     found = [

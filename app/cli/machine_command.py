@@ -29,7 +29,7 @@ from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.compose.hal_file import WrittenHal
+    from app.compose.backends.hal_file import WrittenHal
     from core.machine.machine_file import Change
     from core.machine.machine_model import Machine
 
@@ -55,8 +55,8 @@ def add_hal_parser(actions: SubParsers) -> None:
 
 def write_hal(args: argparse.Namespace) -> int:
     """Writes it: 0 done, 2 a machine file or an output that cannot be used. Raises CommandError."""
-    from app.compose.hal_file import written_hal
-    from app.compose.machine_setup import read_machine
+    from app.compose.backends.hal_file import written_hal
+    from app.compose.machine.machine_setup import read_machine
     from core.table_schema import MachineFileError
 
     machine = read_machine(args.file)
@@ -168,9 +168,9 @@ Rows = Sequence[tuple[str, str, str, str]]  # name, where it hangs, state, detai
 
 def check(file: str | None, *, json_wanted: bool) -> int:
     """Validates, connects and reports; answers the exit status."""
-    from app.compose.check_rows import NOT_CHECKED
-    from app.compose.machine_answers import check_ports
-    from app.compose.machine_files import named_machine
+    from app.compose.backends.backend_entry import NOT_CHECKED
+    from app.compose.backends.machine_answers import check_ports
+    from app.compose.machine.machine_files import named_machine
     from core.table_schema import MachineFileError
 
     try:
@@ -253,7 +253,7 @@ MOST = 5  # changes that a run tells; a check tells all
 def changed(machine: Machine) -> tuple[Change, ...]:
     """What differs from the file that was accepted last; nothing for one that never was. CommandError."""
     from app.cli.store_command import opened_store
-    from app.compose.accepted_machine import differences
+    from app.compose.machine.accepted_machine import differences
 
     with opened_store(read_only=True) as store:
         return differences(machine, store) or ()
@@ -261,7 +261,7 @@ def changed(machine: Machine) -> tuple[Change, ...]:
 
 def demand_accepted(machine: Machine) -> None:
     """A run tells what has changed; on a machine that is not simulated it does not begin. CommandError."""
-    from app.compose.backends import real_time
+    from app.compose.backends.connection import real_time
 
     try:
         told = changed(machine)
@@ -300,8 +300,8 @@ def demand_accepted(machine: Machine) -> None:
 def accept(file: str, args: argparse.Namespace) -> int:
     """Shows what has changed, and takes the file as it is now. Raises CommandError."""
     from app.cli.store_command import opened_store
-    from app.compose.accepted_machine import differences, key_of, record_of
-    from app.compose.machine_setup import read_machine
+    from app.compose.machine.accepted_machine import differences, key_of, record_of
+    from app.compose.machine.machine_setup import read_machine
 
     machine = read_machine(file)
     with opened_store() as store:
@@ -336,8 +336,8 @@ def _counted(changes: int) -> str:
 
 def play(file: str) -> int:
     """Answers on the bus of ``file`` until Ctrl-C or SIGTERM. Raises CommandError."""
-    from app.compose.backend_entry import backend_of, playable
-    from app.compose.machine_setup import read_machine
+    from app.compose.backends.backend_entry import backend_of, playable
+    from app.compose.machine.machine_setup import read_machine
     from core.ports import DriverError
 
     machine = read_machine(file)
@@ -366,7 +366,7 @@ def play(file: str) -> int:
 
 def _typed() -> Callable[[], Iterable[str]]:
     """Lines of the standard input, where there is one."""
-    from app.compose.played_machine import Typed
+    from app.compose.backends.played_machine import Typed
 
     try:
         return Typed(sys.stdin.fileno()).lines

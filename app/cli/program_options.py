@@ -61,7 +61,7 @@ class Circumstances:
 
 def circumstances(args: argparse.Namespace) -> Circumstances:
     """Read machine, offsets and inputs that the options name; raises CommandError with one sentence."""
-    from app.compose.machine_setup import read_machine
+    from app.compose.machine.machine_setup import read_machine
     from app.compose.stored_offsets import chosen_offsets, setup_with
 
     machine = read_machine(args.machine)

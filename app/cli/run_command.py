@@ -113,8 +113,8 @@ def _proved(args: argparse.Namespace, around: Circumstances, job: Job) -> Report
 
 def _run(args: argparse.Namespace, around: Circumstances, job: Job, report: Report) -> int:
     from app.cli.machine_command import demand_accepted
-    from app.compose.headless_run import headless
-    from app.compose.run_log import EventLog
+    from app.compose.runs.headless_run import headless
+    from app.compose.runs.run_log import EventLog
     from app.compose.workshop import proof_of
 
     demand_accepted(around.machine)

@@ -14,9 +14,8 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
-    from app.compose.backend_entry import Connected
-    from app.compose.check_rows import Answers
-    from app.compose.journal import Journal
+    from app.compose.backends.backend_entry import Answers, Connected
+    from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from app.desk.latest import Latest
     from app.desk.page_description import PageEntry

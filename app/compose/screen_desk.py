@@ -9,19 +9,15 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.accepted_machine import file_changes, guarded
-from app.compose.backend_entry import NO_PRIORITY, Connected, has_inverter, played
-from app.compose.backends import connect
-from app.compose.desk_functions import furnish
-from app.compose.error_log import Log
+from app.compose.backends.backend_entry import NO_PRIORITY, Connected, has_inverter, played
+from app.compose.backends.connection import connect
+from app.compose.desk_functions import furnish, give_production, give_scope, keep_status
 from app.compose.extra import drawing_endings, extras
-from app.compose.journal import Journal
-from app.compose.kinematics_chain import kinematics_of
-from app.compose.machine_in_use import remember_machine
-from app.compose.machine_setup import read_machine
-from app.compose.machine_status import keep_status
-from app.compose.production_desk import give_production
-from app.compose.scope_desk import give_scope
+from app.compose.machine.accepted_machine import file_changes, guarded
+from app.compose.machine.kinematics_chain import kinematics_of
+from app.compose.machine.machine_setup import read_machine, remember_machine
+from app.compose.runs.error_log import Log
+from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import Offsets, book_of, shapes_at_hand, stored_offsets
 from app.compose.workshop import (
     drawer,

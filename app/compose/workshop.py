@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.compose.desk_part import KeptOfProgram, PartDesk, Shapes, nothing_kept
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import Offsets, setup_with
 from app.compose.thumbnails import HIGH, WIDE, Thumbnails
 from app.desk.data_folder import data_folder

@@ -5359,22 +5359,22 @@
       <translation>A la línea</translation>
     </message>
     <message>
-      <location filename="app/compose/accepted_machine.py" />
+      <location filename="app/compose/machine/accepted_machine.py" />
       <source>canopen.nodes.{name}, all values written to the node</source>
       <translation>canopen.nodes.{name}, todos los valores que se escriben en el nodo</translation>
     </message>
     <message>
-      <location filename="app/compose/accepted_machine.py" />
+      <location filename="app/compose/machine/accepted_machine.py" />
       <source>machine file</source>
       <translation>archivo de máquina</translation>
     </message>
     <message>
-      <location filename="app/compose/accepted_machine.py" />
+      <location filename="app/compose/machine/accepted_machine.py" />
       <source>machine file {path} accepted</source>
       <translation>archivo de máquina {path} aceptado</translation>
     </message>
     <message>
-      <location filename="app/compose/accepted_machine.py" />
+      <location filename="app/compose/machine/accepted_machine.py" />
       <source>machine file {path} accepted by {name}</source>
       <translation>archivo de máquina {path} aceptado por {name}</translation>
     </message>
@@ -5409,12 +5409,12 @@
       <translation>El material en bruto indicado no se puede usar ({why}). En su lugar se emplea uno supuesto.</translation>
     </message>
     <message>
-      <location filename="app/compose/journal.py" />
+      <location filename="app/compose/runs/journal.py" />
       <source>loaded to run</source>
       <translation>cargado para correr</translation>
     </message>
     <message>
-      <location filename="app/compose/journal.py" />
+      <location filename="app/compose/runs/journal.py" />
       <source>the data store is closed</source>
       <translation>el almacén de datos está cerrado</translation>
     </message>

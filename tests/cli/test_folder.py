@@ -18,7 +18,7 @@ import pytest
 from app.cli.proofs.proof_cache import ProofCache, plain
 from app.cli.proofs.proof_pool import KILLED, Proving, Workers
 from app.cli.proofs.proof_work import Proof, ProofJob
-from app.compose.machine_setup import read_machine, setup_for
+from app.compose.machine.machine_setup import read_machine, setup_for
 from core.language.source import Source
 from core.proving.program_tools import PartSetting
 from tests.benchmarks.bench_folder import program

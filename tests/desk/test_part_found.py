@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from app.compose.desk_part import NO_STOCK, NOT_MADE
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from app.compose.stored_offsets import Offsets
 from app.compose.workshop import workshop
 from app.desk.kept_part import NOTHING_KEPT, KeptPart

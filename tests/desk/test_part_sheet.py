@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.machine.machine_files import load_machine, parse_machine
 from app.compose.stored_offsets import Offsets
 from app.compose.workshop import workshop
 from app.desk.arithmetic import EntryError

@@ -7,7 +7,7 @@ from functools import cache
 
 import pytest
 
-from app.compose.machine_files import load_machine
+from app.compose.machine.machine_files import load_machine
 from app.compose.stored_offsets import read_offsets
 from app.compose.workshop import samples, workshop
 from app.desk.latest import AbandonedError

@@ -7,8 +7,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from app.compose.kinematics_chain import kinematics_of
-from app.compose.machine_files import shipped_machine
+from app.compose.machine.kinematics_chain import kinematics_of
+from app.compose.machine.machine_files import shipped_machine
 from app.desk.machine_status import status_of
 from app.desk.readouts import Lamp, Readout, lamps_of
 from app.path.path_picture import picture_of

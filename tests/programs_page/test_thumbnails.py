@@ -10,7 +10,7 @@ import pytest
 
 import resources
 from app.compose.desk_part import PartDesk
-from app.compose.machine_files import load_machine, parse_machine
+from app.compose.machine.machine_files import load_machine, parse_machine
 from app.compose.stored_offsets import Offsets
 from app.compose.thumbnails import HIGH, WIDE, Thumbnails
 from app.compose.workshop import workshop

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from app.compose.desk_functions import furnish
+from app.compose.desk_functions import furnish, give_production, give_scope
 from app.compose.extra import drawing_endings, extras
-from app.compose.journal import Journal
-from app.compose.machine_files import load_machine
-from app.compose.machine_setup import setup_for
-from app.compose.production_desk import give_production
-from app.compose.scope_desk import give_scope
+from app.compose.machine.machine_files import load_machine
+from app.compose.machine.machine_setup import setup_for
+from app.compose.runs.journal import Journal
 from app.compose.workshop import drawer, proof_of
 from app.desk.desk import Desk
 from app.desk.latest import Watch

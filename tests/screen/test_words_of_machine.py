@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.compose.machine_files import shipped_machine
+from app.compose.machine.machine_files import shipped_machine
 from app.desk.readouts import spindle_figures
 from app.screen.page_table import menu_keys
 from app.special.inputs_outputs import InputsOutputs

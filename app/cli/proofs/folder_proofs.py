@@ -30,7 +30,7 @@ from app.cli.proofs.proof_work import (
 )
 from app.cli.proofs.report_file import ReportFile, report_file
 from app.compose.extra import proof_workers
-from app.compose.kept_stock import kept_with_all
+from app.compose.known_part import kept_with_all
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from core.language.source import Source
 from core.message import Message

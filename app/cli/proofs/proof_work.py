@@ -178,7 +178,7 @@ class FittingJobs:
         """The name of the shipped machine that is taken for this program; empty: the one of the options."""
         if self.args.machine is not None:
             return ""
-        from app.compose.fitting_machine import fitting_machine
+        from app.compose.machine.fitting_machine import fitting_machine
 
         return fitting_machine(source)
 

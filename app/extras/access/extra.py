@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from app.compose.extra import Extra
 
 if TYPE_CHECKING:
-    from app.compose.journal import Journal
+    from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from app.desk.latest import Latest
     from app.desk.persistence import Persistence

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from app.compose.desk_part import PartDesk
-from app.compose.journal import Journal
+from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import shapes_at_hand
 from app.desk.desk import Desk
 from app.desk.kept_part import kept_part

@@ -23,7 +23,7 @@ from core.extras.office.shop_network_tables import AnnounceTable, StatusPageTabl
 from core.ports import DriverError
 
 if TYPE_CHECKING:
-    from app.compose.journal import Journal
+    from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from app.extras.office.announcements import Told
     from app.extras.office.status_page import OtherDesk

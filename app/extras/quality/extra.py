@@ -9,7 +9,7 @@ from app.compose.extra import Extra
 from app.desk.page_description import PageEntry
 
 if TYPE_CHECKING:
-    from app.compose.journal import Journal
+    from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from app.desk.latest import Latest
     from app.desk.persistence import Persistence

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from app.compose.extra import Extra
 
 if TYPE_CHECKING:
-    from app.compose.journal import Journal
+    from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from app.desk.program_loading import LoadingSteps
     from app.extras.shapes.shapes_model import Shapes

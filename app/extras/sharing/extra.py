@@ -9,8 +9,8 @@ from app.compose.extra import Close, Extra, Tell
 from app.desk.page_description import PageEntry
 
 if TYPE_CHECKING:
-    from app.compose.check_rows import Answers
-    from app.compose.journal import Journal
+    from app.compose.backends.backend_entry import Answers
+    from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from app.desk.program_loading import LoadingSteps
     from core.json_key import Output

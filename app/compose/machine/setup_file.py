@@ -14,9 +14,8 @@ from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
 from typing import Self
 
-from app.compose.journal import UNDER_WAY
-from app.compose.machine_setup import read_machine
-from app.compose.setup_archive import (
+from app.compose.machine.machine_setup import read_machine
+from app.compose.machine.setup_archive import (
     BESIDE,
     FORMAT,
     MACHINE,
@@ -28,6 +27,7 @@ from app.compose.setup_archive import (
     problem,
     unpack,
 )
+from app.compose.runs.journal import UNDER_WAY
 from app.desk.command_errors import CommandError, as_command_error, cannot_write
 from app.desk.data_folder import data_folder
 from core.file_placing import make_folder, put_in_place, restrict, write_in_place

@@ -1,7 +1,11 @@
-"""The one list of drivers: what each adds to a machine file; and files read with all of it."""
+"""Machine files by their names, shipped ones and others, read with what the list of drivers adds."""
 
 from __future__ import annotations
 
+from functools import lru_cache
+from pathlib import Path
+
+import resources
 from app.compose.extra import extras, insert_after
 from core.machine import desk_tables, machine_file, setter_table
 from core.machine.machine_model import Machine
@@ -14,6 +18,7 @@ from drivers.hal.boards import board_table
 from drivers.inverter import inverter_table
 from drivers.simulated import simulated_table
 
+SHIPPED = "gt75.toml"
 # What each driver adds to the file, in the order in which a machine file's owner is told of them. The module
 # that puts a backend together stands in ``backend_entry``, where no table has to be loaded for it.
 _OWN_DRIVERS: tuple[Driver, ...] = (
@@ -36,7 +41,8 @@ DRIVERS: tuple[Driver, ...] = tuple(
 )
 
 
-def read_machine_file(text: str, source: str) -> Machine:
+@lru_cache(maxsize=8)  # by the text itself: a folder of proofs and its workers ask for the same one
+def parse_machine(text: str, source: str) -> Machine:
     """The machine that the TOML ``text`` describes, with everything that drivers add; ``source`` names it.
 
     Raises MachineFileError naming every mistake.
@@ -55,3 +61,29 @@ def _known_checks(silenced: tuple[str, ...], source: str) -> None:
         expected = Message("the name must be one of the part checks: {checks}", checks=", ".join(CHECKS))
         found = [Finding("checks.silenced", written(name), expected) for name in wrong]
         raise MachineFileError(found, source)
+
+
+def load_machine(path: Path | None = None) -> Machine:
+    """The machine that ``path`` describes; None: the shipped simulated lathe.
+
+    Raises MachineFileError with everything that is wrong, also where the file cannot be read at all.
+    """
+    if path is None:
+        return _shipped(SHIPPED)
+    return parse_machine(machine_file.text_of(path), str(path))
+
+
+def named_machine(name: str | None) -> Machine:
+    """The machine of a file, a shipped one by its name, or (None) the shipped lathe; as ``load_machine``."""
+    if name and name in resources.machine_names() and not Path(name).exists():
+        return shipped_machine(name)
+    return load_machine(Path(name) if name else None)
+
+
+def shipped_machine(name: str) -> Machine:
+    """One of the machines that come with the product. Raises FileNotFoundError for another name."""
+    return _shipped(f"{name}.toml")
+
+
+def _shipped(name: str) -> Machine:
+    return parse_machine(resources.machine_file(name), name)

@@ -15,7 +15,7 @@ from typing import BinaryIO
 from xml.parsers import expat
 
 from app.compose.extra import drawing_endings
-from app.compose.machine_setup import read_machine
+from app.compose.machine.machine_setup import read_machine
 from app.desk.command_errors import CommandError
 from core.input_file import TooLargeError, failures_as, input_bytes, open_input
 from core.language.source import SourceError, source_of

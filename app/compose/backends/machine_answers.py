@@ -4,9 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from app.compose.backend_entry import Connected, backend_of, has_inverter, played
-from app.compose.backends import connect, real_time, wired
-from app.compose.check_rows import FAILED, MISSING, NOT_CHECKED, Answers, Row
+from app.compose.backends.backend_entry import (
+    FAILED,
+    MISSING,
+    NOT_CHECKED,
+    Answers,
+    Connected,
+    Row,
+    backend_of,
+    has_inverter,
+    played,
+)
+from app.compose.backends.connection import connect, real_time, wired
 from app.compose.extra import extras
 from core.key_declaration import Unit, shown
 from core.machine.machine_model import Axis, Machine

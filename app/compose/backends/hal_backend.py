@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import resources
-from app.compose.backend_entry import Backend, axis_figures, has_station, wired_inputs
+from app.compose.backends.backend_entry import Backend, axis_figures, has_station, wired_inputs
 from core.machine.hardware_model import HomeModel
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError

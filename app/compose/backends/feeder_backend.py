@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.compose.backend_entry import Connected, backend_of, has_station, played
-from app.compose.feeder_process import FeederProcess, driven
+from app.compose.backends.backend_entry import Connected, backend_of, has_station, played
+from app.compose.backends.feeder_process import FeederProcess, driven
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
 from drivers.feeder.feeder_line import Line, LoopLink

@@ -92,7 +92,7 @@ def guarded(
 def _hashes(machine: Machine) -> dict[str, str]:
     if machine.backend != "canopen":
         return {}
-    from app.compose.canopen_backend import written_at_start
+    from app.compose.backends.canopen_backend import written_at_start
 
     try:
         objects = written_at_start(machine)

@@ -1,17 +1,19 @@
-"""What the composition asks of a backend: one ``BACKEND`` in the module that puts it together."""
+"""What the composition asks of a backend: one ``BACKEND`` in the module that puts it together.
+
+And the rows of ``turndesk machine check``: what answered, and how it is.
+"""
 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypedDict
+from collections.abc import Callable, Container, Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple, TypedDict
 
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError, MachinePorts
 
 if TYPE_CHECKING:
-    from app.compose.check_rows import Row
     from app.desk.station_hands import StationPanel
     from drivers.feeder.feeder_server import Driven
 
@@ -79,7 +81,7 @@ def backend_of(machine: Machine) -> Backend:
 
 
 def _backend(word: str) -> Backend:
-    found = importlib.import_module(f"app.compose.{BACKENDS[word]}").BACKEND
+    found = importlib.import_module(f"app.compose.backends.{BACKENDS[word]}").BACKEND
     assert isinstance(found, Backend)
     return found
 
@@ -139,3 +141,43 @@ def has_inverter(machine: Machine) -> bool:
 def played(machine: Machine) -> bool:
     """Whether the machine is simulated, on a virtual bus or on none."""
     return backend_of(machine).played(machine)
+
+
+MISSING, NOT_CHECKED = "missing", "not checked"
+FAILED = (
+    "fault",
+    "no answer",
+    "wrong",
+    MISSING,
+)  # states that are trouble; an E-stop that is pressed is none
+
+
+class Row(NamedTuple):
+    """One thing of the machine: where it hangs, how it is, and what it says."""
+
+    name: str
+    at: str
+    state: str
+    detail: str
+
+    @property
+    def verdict(self) -> str:
+        """Return ``ok``, ``FAIL`` where it is not as the machine file has it, or ``not checked``."""
+        if self.state in FAILED:
+            return "FAIL"
+        return NOT_CHECKED if self.state == NOT_CHECKED else "ok"
+
+    def checked(self, measured: Container[str]) -> Row:
+        """Return the row as ``not checked`` if it is not one of the ``measured`` rows and does not fail."""
+        if self.name in measured or self.state in FAILED:
+            return self
+        return self._replace(state=NOT_CHECKED, detail=self.detail or self.state)
+
+
+@dataclass(slots=True)
+class Answers:
+    """What answered; ``warnings``: worth knowing although nothing is broken; ``trouble``: what is."""
+
+    rows: list[Row] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    trouble: list[str] = field(default_factory=list)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import sys
 
-from app.compose.backend_entry import Connected, backend_of, has_inverter, played
+from app.compose.backends.backend_entry import Connected, backend_of, has_inverter, played
 from app.compose.extra import extras
 from core.machine.machine_model import Machine
 from core.ports import Clock
@@ -35,7 +35,7 @@ def _connected(machine: Machine, clock: Clock) -> Connected:
     apart = backend.driven is not None and machine.hardware.feeder and FEEDER
     if backend.connect is not None and not apart:
         return backend.connect(machine, clock)
-    from app.compose.feeder_backend import connect_feeder
+    from app.compose.backends.feeder_backend import connect_feeder
 
     return connect_feeder(machine, clock)
 

@@ -1,4 +1,7 @@
-"""A run without a screen: the executor on the simulated lathe, on a clock that moves as fast as it can."""
+"""A run without a screen: the executor on the simulated lathe, on a clock that moves as fast as it can.
+
+Tool life is counted and told as on the desk, and no part begins with a spent insert.
+"""
 
 from __future__ import annotations
 
@@ -6,28 +9,73 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 
-from app.compose.backend_entry import Connected, played
-from app.compose.backends import connect, real_time
+from app.compose.backends.backend_entry import Connected, played
+from app.compose.backends.connection import connect, real_time
 from app.compose.extra import extras
-from app.compose.headless_lives import HeadlessLives
-from app.compose.journal import Journal
-from app.compose.run_log import EventLog
+from app.compose.runs.journal import Journal
+from app.compose.runs.run_log import EventLog
 from app.desk.command_errors import CommandError, as_command_error
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.run_without_screen import HeadlessRun
-from app.production.parts_book import tools_of
+from app.production.parts_book import PartsBook, production, tools_of
+from app.production.tool_life_watch import ToolLifeWatch
+from core.executor.commands import BarNextPart, Command
 from core.executor.executor import Executor
 from core.executor.interruption_watch import Note
+from core.executor.job import Proof
 from core.executor.recorder import Recorder, recorded_of
-from core.executor.snapshot import Event, InterruptedJob
+from core.executor.snapshot import Event, InterruptedJob, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
 from core.records.record_ring import LASTS
 from core.records.ring_file import RUN
+from core.store.store_errors import StoreError
+from core.store.store_rows import Kind
 from core.tool_edges import edge_name
 from drivers.simulated.simulated_table import SimulatedTable
 from drivers.waiting import RealClock, StepClock
+
+
+class HeadlessLives:
+    """``see`` is called at every step of a run. Without a store nothing is counted, and that is said."""
+
+    def __init__(
+        self,
+        journal: Journal,
+        post: Callable[[Command], None],
+        say: Callable[[str], None],
+        tools: Kind = Kind.TOOL,
+    ) -> None:
+        self._book = journal.parts_book(tools)
+        self._watch = ToolLifeWatch(self._book)
+        self._post, self._say = post, say
+        self._barred = ""
+        try:
+            self._read(self._book)
+        except StoreError as error:
+            say(Message("tool life is not counted: {error}", error=error))
+
+    def _read(self, book: PartsBook) -> None:
+        if book.store is None:
+            raise StoreError(book.locked)
+        book.now = production(book.store, "", book.tools, {})
+        book.loads = 1
+
+    def see(self, snapshot: Snapshot, proof: Proof) -> None:
+        """Count what was cut, tell what is due, and bar the next part."""
+        if not self._book.loads:
+            return
+        self._watch.see(snapshot, self._say)
+        wanted = self._watch.bar(snapshot, proof.tools)
+        if wanted != self._barred:
+            self._post(BarNextPart(wanted))
+        self._barred = wanted
+
+    def close(self) -> None:
+        """Hand the store what was counted since it was kept last."""
+        self._watch.keep_all()
+        self._book.close()
 
 
 @contextmanager

@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Callable
 from functools import partial
 
-from app.compose.serial_ports import open_wire
+from app.compose.backends.serial_ports import open_wire
 from core.machine.machine_model import Machine
 from core.ports import AxisSink, Clock, DriverError, FloatArray, MachinePorts, SampleSource, Unknown
 from drivers.inverter.inverter_attendant import AttendantThread

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.backend_entry import Backend, axis_figures, has_station, wired_inputs
+from app.compose.backends.backend_entry import Backend, axis_figures, has_station, wired_inputs
 from core.machine.hardware_model import HomeModel
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
@@ -45,7 +45,7 @@ def canopen_machine(machine: Machine, clock: Clock, idle: Callable[[], None] | N
 
 def canopen_peers(machine: Machine, clock: Clock) -> CanopenDevices:
     """Simulated drives and terminals for the other end of that bus. Raises DriverError."""
-    from app.compose.simulated_backend import sim_config
+    from app.compose.backends.simulated_backend import sim_config
 
     try:
         from drivers.simulators.canopen_devices import CanopenDevices
@@ -194,7 +194,7 @@ def _play(
     say: Callable[[str], None],
     typed: Callable[[], Iterable[str]],
 ) -> None:
-    from app.compose.played_machine import play_peers
+    from app.compose.backends.played_machine import play_peers
 
     play_peers(machine, going, say, typed, canopen_peers)
 

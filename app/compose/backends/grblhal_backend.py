@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from app.compose.backend_entry import Backend, Connected, has_inverter
-from app.compose.inverter_backend import with_inverter
+from app.compose.backends.backend_entry import Backend, Connected, has_inverter
+from app.compose.backends.inverter_backend import with_inverter
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
 from core.ports import Clock, DriverError

@@ -1,4 +1,7 @@
-"""Starts the feeder, and is it: ``python -m app.compose.feeder_process FD ZERO BELL``, machine on stdin."""
+"""Starts the feeder, and is it.
+
+``python -m app.compose.backends.feeder_process FD ZERO BELL``, with the machine on stdin.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,8 @@ import subprocess
 import sys
 from dataclasses import replace
 
-from app.compose.backend_entry import NO_PRIORITY, backend_of, has_inverter
-from app.compose.inverter_backend import with_inverter
+from app.compose.backends.backend_entry import NO_PRIORITY, backend_of, has_inverter
+from app.compose.backends.inverter_backend import with_inverter
 from core.machine.machine_model import Machine
 from core.message import Message as Text
 from core.ports import Clock, DriverError
@@ -74,7 +77,7 @@ class FeederProcess:
             command = [
                 sys.executable,
                 "-m",
-                "app.compose.feeder_process",
+                "app.compose.backends.feeder_process",
                 str(theirs.fileno()),
                 repr(clock.zero),
                 str(self._bell.far.fileno()),

@@ -1,17 +1,27 @@
-"""The machine file and the circumstances of one pass through a program."""
+"""The machine file and the circumstances of one pass through a program.
+
+The machine in use is the one that the operator screen was opened for last: commands about offsets take its
+travel.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.desk.command_errors import as_command_error
+from app.desk.command_errors import CommandError, as_command_error
 from core.interpreter.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.message import Message
 
 if TYPE_CHECKING:
+    from app.compose.machine.accepted_machine import Settings
+    from app.desk.persistence import Persistence
     from core.geometry.rotary_axes import Kinematics
     from core.machine.machine_model import Machine
+
+_KEY = "machine in use"  # the setting: the path of its file, or the name of a shipped machine
 
 
 def read_machine(path: str | None) -> Machine:
@@ -19,7 +29,7 @@ def read_machine(path: str | None) -> Machine:
 
     Raises CommandError naming every mistake.
     """
-    from app.compose.machine_files import named_machine
+    from app.compose.machine.machine_files import named_machine
     from core.table_schema import MachineFileError
 
     with as_command_error(MachineFileError):
@@ -101,6 +111,26 @@ def _kinematics(machine: Machine) -> Kinematics | None:
     """The chain of axes of a mill."""
     if machine.kinematics is None:
         return None
-    from app.compose.kinematics_chain import kinematics_of
+    from app.compose.machine.kinematics_chain import kinematics_of
 
     return kinematics_of(machine)
+
+
+def remember_machine(machine_file: str | None, persistence: Persistence) -> None:
+    """Store which machine is in use; None: the shipped lathe."""
+    path = Path(machine_file) if machine_file else None
+    place = str(path.resolve()) if path is not None and path.exists() else machine_file
+    if persistence.setting(_KEY) != place:
+        persistence.save_setting(_KEY, place)
+
+
+def machine_in_use(settings: Settings) -> Machine:
+    """Return the machine in use. Raises CommandError if its file cannot be read."""
+    place = settings.setting(_KEY)
+    try:
+        return read_machine(place if isinstance(place, str) else None)
+    except CommandError as error:
+        raise CommandError(
+            Message("the travel of the current machine is unknown: {error}. Use --machine FILE", error=error),
+            error.code,
+        ) from error

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.compose.backend_entry import Backend, Connected, axis_figures, has_inverter
+from app.compose.backends.backend_entry import Backend, Connected, axis_figures, has_inverter
 from core.machine.machine_model import Axis, Machine
 from core.machine.setter_table import SetterModel
 from core.ports import Clock
@@ -84,7 +84,7 @@ def _in_process(machine: Machine, clock: Clock) -> Connected:
     ports, hands = simulated(machine, clock)
     close = _nothing
     if has_inverter(machine):
-        from app.compose.inverter_backend import with_inverter
+        from app.compose.backends.inverter_backend import with_inverter
 
         ports, close = with_inverter(machine, ports, clock, close)
     return Connected(ports, hands, hands.set_input, close)
