@@ -5359,26 +5359,6 @@
       <translation>A la línea</translation>
     </message>
     <message>
-      <location filename="app/compose/machine/accepted_machine.py" />
-      <source>canopen.nodes.{name}, all values written to the node</source>
-      <translation>canopen.nodes.{name}, todos los valores que se escriben en el nodo</translation>
-    </message>
-    <message>
-      <location filename="app/compose/machine/accepted_machine.py" />
-      <source>machine file</source>
-      <translation>archivo de máquina</translation>
-    </message>
-    <message>
-      <location filename="app/compose/machine/accepted_machine.py" />
-      <source>machine file {path} accepted</source>
-      <translation>archivo de máquina {path} aceptado</translation>
-    </message>
-    <message>
-      <location filename="app/compose/machine/accepted_machine.py" />
-      <source>machine file {path} accepted by {name}</source>
-      <translation>archivo de máquina {path} aceptado por {name}</translation>
-    </message>
-    <message>
       <location filename="app/compose/desk_part.py" />
       <source>Change the specified stock or the tool shapes.</source>
       <translation>Cambie el material en bruto indicado o las formas de herramienta.</translation>
@@ -5407,6 +5387,26 @@
       <location filename="app/compose/desk_part.py" />
       <source>The specified stock cannot be used ({why}). An assumed stock is used instead.</source>
       <translation>El material en bruto indicado no se puede usar ({why}). En su lugar se emplea uno supuesto.</translation>
+    </message>
+    <message>
+      <location filename="app/compose/machine/accepted_machine.py" />
+      <source>canopen.nodes.{name}, all values written to the node</source>
+      <translation>canopen.nodes.{name}, todos los valores que se escriben en el nodo</translation>
+    </message>
+    <message>
+      <location filename="app/compose/machine/accepted_machine.py" />
+      <source>machine file</source>
+      <translation>archivo de máquina</translation>
+    </message>
+    <message>
+      <location filename="app/compose/machine/accepted_machine.py" />
+      <source>machine file {path} accepted</source>
+      <translation>archivo de máquina {path} aceptado</translation>
+    </message>
+    <message>
+      <location filename="app/compose/machine/accepted_machine.py" />
+      <source>machine file {path} accepted by {name}</source>
+      <translation>archivo de máquina {path} aceptado por {name}</translation>
     </message>
     <message>
       <location filename="app/compose/runs/journal.py" />
