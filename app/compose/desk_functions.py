@@ -17,9 +17,9 @@ from app.compose.runs.journal import Journal
 from app.desk.access import Access
 from app.desk.data_folder import RECORDS, data_folder
 from app.desk.desk import Desk
-from app.desk.first_job import FirstJob
+from app.desk.pages.first_job import FirstJob
 from app.desk.persistence import Persistence
-from app.desk.program_loading import LoadingSteps
+from app.desk.programs.program_loading import LoadingSteps
 from app.desk.screen_settings import SettingsBook
 from app.offsets.mill_lives import MillLives
 from app.production.parts_book import PartsBook, tools_of

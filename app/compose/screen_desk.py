@@ -29,17 +29,17 @@ from app.compose.workshop import (
     thumbnails,
     workshop,
 )
-from app.desk.alarm_log import KEPT, KINDS
 from app.desk.command_errors import as_command_error
 from app.desk.daily_backup import DailyBackup
 from app.desk.data_folder import BACKUPS, RECORDS, data_folder
 from app.desk.desk import Desk
 from app.desk.kept_part import kept_part
 from app.desk.persistence import Persistence
-from app.desk.program_folder import ProgramFile, ProgramFolders
-from app.desk.program_loading import LoadingSteps, ProgramLoader
-from app.desk.prompt_line import UNDER_WAY
-from app.desk.start_watch import StartWatch
+from app.desk.programs.program_folder import ProgramFile, ProgramFolders
+from app.desk.programs.program_loading import LoadingSteps, ProgramLoader
+from app.desk.programs.start_watch import StartWatch
+from app.desk.status.alarm_log import KEPT, KINDS
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.mill_touch import MillTouch
 from app.offsets.offset_effect import Effect

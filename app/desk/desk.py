@@ -14,25 +14,24 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
-from app.desk import interrupted_notice, prompt_line
 from app.desk.access import Access
-from app.desk.alarm_log import AlarmLog
-from app.desk.first_job import FirstJob
-from app.desk.interrupted_notice import NoticeRow
-from app.desk.machine_file_changes import FileChanges
-from app.desk.machine_status import MachineStatus, SilenceWatch, Tone, status_of
 from app.desk.page_description import ProgramKey
-from app.desk.page_entry import program_barred
-from app.desk.program_folder import ProgramFolders
-from app.desk.program_loading import Loaded, PartProved, Phase, ProgramLoader
-from app.desk.program_renewal import ProgramRenewal
-from app.desk.prompt_line import ONE_HAND, UNDER_WAY, YES, PromptAnswers
-from app.desk.readouts import Readout
+from app.desk.pages.first_job import FirstJob
+from app.desk.pages.page_entry import program_barred
+from app.desk.programs.program_folder import ProgramFolders
+from app.desk.programs.program_loading import Loaded, PartProved, Phase, ProgramLoader
+from app.desk.programs.program_renewal import ProgramRenewal
+from app.desk.programs.start_watch import StartWatch
 from app.desk.screen_settings import SettingsBook
-from app.desk.start_watch import StartWatch
 from app.desk.station_hands import OVERRIDE_MOST, StationHands, StationPanel, stepped
+from app.desk.status import interrupted_notice, prompt_line
+from app.desk.status.alarm_log import AlarmLog
+from app.desk.status.interrupted_notice import NoticeRow
+from app.desk.status.machine_file_changes import FileChanges
+from app.desk.status.machine_status import MachineStatus, SilenceWatch, Tone, how_it_ends, status_of
+from app.desk.status.prompt_line import ONE_HAND, UNDER_WAY, YES, PromptAnswers
+from app.desk.status.readouts import Readout
 from app.desk.translation import tr
-from app.desk.waiting import how_it_ends
 from app.offsets.offset_book import NONE_KEPT, OffsetBook
 from app.programs.run_history import RunHistory
 from app.special.part_count import PartCounter

@@ -9,9 +9,9 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk import formats
 from app.desk.desk import Desk
 from app.desk.station_hands import Pot
+from app.desk.status import formats
 from app.desk.translation import tr
 from app.screen.look import CENTRE, RIGHT, Look, Painter
 from app.screen.panel import Control, FingerPanel, Shown, pressed

@@ -10,15 +10,14 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
 from app.automatic.automatic_view import AutomaticPage
-from app.desk import formats, prompt_line
 from app.desk.desk import Desk
-from app.desk.first_job import CLOSE
-from app.desk.interrupted_notice import NoticeRow, may_go_on, notice_of
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded
-from app.desk.readouts import Lamp, drives_lamp
+from app.desk.pages.first_job import CLOSE
+from app.desk.programs.program_loading import Loaded
+from app.desk.status import formats, prompt_line
+from app.desk.status.interrupted_notice import NoticeRow, may_go_on, notice_of, unheard_notice
+from app.desk.status.machine_status import MachineStatus
+from app.desk.status.readouts import Lamp, drives_lamp
 from app.desk.translation import tr
-from app.desk.unheard_notice import unheard_notice
 from app.screen import page_table
 from app.screen.alarm_panels import AlarmList, Notice
 from app.screen.keys import OF_AUTOMATIC

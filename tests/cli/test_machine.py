@@ -10,8 +10,8 @@ import pytest
 import resources
 from app.cli.machine_command import summary, table
 from app.cli.main import main
-from app.compose.backends.backend_entry import FAILED, Backend, Row, backend_of
 from app.compose.backends import simulated_backend
+from app.compose.backends.backend_entry import FAILED, Backend, Row, backend_of
 from app.compose.machine.machine_files import shipped_machine
 from drivers.simulated.simulated_machine import SimIO
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from app.desk.desk import SILENT, Desk
-from app.desk.machine_status import Tone
-from app.desk.program_folder import ProgramFolders
-from app.desk.program_loading import LoadingSteps, Phase, ProgramLoader
-from app.desk.prompt_line import CONTROL_SILENT, GIVE_UP, ONE_HAND, ONE_PALM, RESTORING
+from app.desk.programs.program_folder import ProgramFolders
+from app.desk.programs.program_loading import LoadingSteps, Phase, ProgramLoader
+from app.desk.status.machine_status import Tone
+from app.desk.status.prompt_line import CONTROL_SILENT, GIVE_UP, ONE_HAND, ONE_PALM, RESTORING
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, FeedOverride, Reset, SetSwitch
 from core.executor.snapshot import Alarm, Event, State
 from tests.screen.desks import desk_on

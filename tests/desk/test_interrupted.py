@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from app.desk import interrupted_notice
 from app.desk.desk import Desk
-from app.desk.formats import wall_time
-from app.desk.program_loading import Loaded
+from app.desk.programs.program_loading import Loaded
 from app.desk.screen_settings import Units
+from app.desk.status import interrupted_notice
+from app.desk.status.formats import wall_time
 from app.programs.copy_rename_delete import RENAME
 from app.programs.program_list import ProgramList
 from core.executor.commands import ConfirmStart, LoadJob

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.dialects_page import BEGIN, END, generated, machines, with_generated
+from app.compose.dialects_page import BEGIN, END, generated, machines, with_generated
 
 PAGE = Path(__file__).parents[2] / "docs" / "dialects.md"
 
 
 def test_the_generated_part_is_up_to_date() -> None:
     text = PAGE.read_text("utf-8")
-    assert with_generated(text) == text, "python -m app.compose.machine.dialects_page docs/dialects.md"
+    assert with_generated(text) == text, "python -m app.compose.dialects_page docs/dialects.md"
 
 
 def test_every_language_has_a_machine_and_a_book() -> None:

@@ -14,7 +14,7 @@ import app.extras
 import core.extras
 import core.machine
 import drivers
-from app.compose.machine.machine_file_page import document, main, number, references
+from app.compose.machine_file_page import document, main, number, references
 from core.key_declaration import Field, Kind, file_key, keys_of
 from core.machine.machine_tables import TABLES_OF_A_LATHE
 from core.page_contents import anchor_of
@@ -41,7 +41,7 @@ def _modules() -> Iterator[str]:
 
 @WHOLE_PRODUCT
 def test_the_page_is_up_to_date() -> None:
-    command = "python -m app.compose.machine.machine_file_page docs/integrator/machine-file.md"
+    command = "python -m app.compose.machine_file_page docs/integrator/machine-file.md"
     assert PAGE.read_text("utf-8") == document(), command
 
 

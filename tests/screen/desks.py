@@ -11,11 +11,11 @@ from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import setup_for
 from app.compose.runs.journal import Journal
 from app.compose.workshop import drawer, proof_of
+from app.desk.background_work import Watch
 from app.desk.desk import Desk
-from app.desk.latest import Watch
 from app.desk.persistence import Persistence
-from app.desk.program_folder import ProgramFolders
-from app.desk.program_loading import LoadingSteps, ProgramLoader, Proved
+from app.desk.programs.program_folder import ProgramFolders
+from app.desk.programs.program_loading import LoadingSteps, ProgramLoader, Proved
 from app.editor.editor import Editor
 from app.editor.versions import Archive, NoArchive
 from app.jog.hand_functions import HandFunctions

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.desk.data_folder import data_folder
-from app.desk.prompt_line import MOVING, Sort
+from app.desk.status.prompt_line import MOVING, Sort
 from app.jog import hand_functions
 from app.programs.whole_file import write_whole
 from app.screen import page_table

@@ -109,7 +109,7 @@ def _unreadable(error: OSError) -> None:
 
 
 def _is_program(path: Path) -> bool:
-    from app.desk.program_folder import ENDINGS
+    from app.desk.programs.program_folder import ENDINGS
 
     return path.suffix.lower() in ENDINGS and not path.name.startswith(".") and path.is_file()
 

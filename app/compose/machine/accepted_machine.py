@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
-from app.desk.machine_file_changes import FileChanges
 from app.desk.persistence import Persistence
+from app.desk.status.machine_file_changes import FileChanges
 from core.executor.commands import Command, EnableDrives
 from core.machine.machine_file import ABSENT, Change, changes
 from core.machine.machine_model import Machine

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from app.compose.stored_offsets import shapes_at_hand
 from app.compose.workshop import thumbnails
 from app.desk.kept_part import kept_part
-from app.desk.prompt_line import UNDER_WAY
+from app.desk.status.prompt_line import UNDER_WAY
 from app.extras.office.office_status import OfficeLook
 from app.extras.office.page_server import PageServer, listening_at
 from app.production.parts_watch import PartsWatch

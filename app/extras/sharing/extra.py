@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from app.compose.backends.backend_entry import Answers
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
-    from app.desk.program_loading import LoadingSteps
+    from app.desk.programs.program_loading import LoadingSteps
     from core.json_key import Output
     from core.machine.machine_model import Machine
     from core.table_schema import Driver

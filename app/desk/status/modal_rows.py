@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.desk import formats
+from app.desk.status import formats
 from app.desk.translation import data, tr
 from core.interpreter.checkpoint import Checkpoint
 from core.interpreter.modal_state import Modal

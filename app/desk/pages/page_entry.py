@@ -8,9 +8,9 @@ another one may be written and proved meanwhile, and Pause, Scroll Lock and Esc 
 
 from __future__ import annotations
 
-from app.desk.program_loading import Loaded, Phase
-from app.desk.prompt_line import UNDER_WAY
-from app.desk.readouts import TURNING
+from app.desk.programs.program_loading import Loaded, Phase
+from app.desk.status.prompt_line import UNDER_WAY
+from app.desk.status.readouts import TURNING
 from app.desk.translation import tr
 from core.executor.snapshot import CYCLE, Snapshot, State
 from core.ports import Unknown

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from app.desk.latest import AbandonedError, Latest, Request
-from app.desk.program_loading import Loaded, Phase, ProgramLoader, settled
-from app.desk.prompt_line import UNDER_WAY
+from app.desk.background_work import AbandonedError, Latest, Request
+from app.desk.programs.program_loading import Loaded, Phase, ProgramLoader, settled
+from app.desk.status.prompt_line import UNDER_WAY
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offsets_in_force import secondary_offsets, tool_offsets

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from app.desk.interrupted_notice import NoticeRow
 from app.desk.persistence import Persistence
-from app.desk.program_loading import Loaded, Phase
-from app.desk.prompt_line import missing_tools
+from app.desk.programs.program_loading import Loaded, Phase
+from app.desk.status.interrupted_notice import NoticeRow
+from app.desk.status.prompt_line import missing_tools
 from app.desk.translation import tr
 from core.executor.snapshot import CYCLE, Snapshot, State
 from core.message import Message

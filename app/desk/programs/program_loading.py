@@ -8,10 +8,9 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from app.desk.first_move_seen import FirstMoveSeen
-from app.desk.latest import Latest, Request, Watch
+from app.desk.background_work import Latest, Request, Watch
 from core.executor.commands import Clearance, Command, GiveProof, LoadJob
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity
@@ -20,6 +19,26 @@ from core.language.source import Source
 if TYPE_CHECKING:
     from app.path.path_picture import Picture
     from core.proving.proof_report import PartReport
+
+
+Legs = tuple[tuple[float, float, bool], ...]
+"""A path in machine X and Z, mm, with whether each leg is a rapid."""
+
+
+class FirstMoveSeen(NamedTuple):
+    """The answer to one question: the verdict here and that of Cycle Repeat, and the legs that are drawn.
+
+    ``zero`` is machine X and Z, mm, with the tip for which they are drawn on part zero.
+    """
+
+    verdicts: tuple[Clearance, ...]
+    legs: Legs = ()
+    zero: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def clearance(self) -> Clearance:
+        """The verdict on a start from where the axes are."""
+        return self.verdicts[0]
 
 
 class Phase(StrEnum):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.desk.sheet import Key
+from app.desk.pages.sheet import Key
 
 
 class PanelModel:

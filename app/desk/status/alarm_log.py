@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from app.desk.formats import wall_time
+from app.desk.status.formats import wall_time
 from core.alarms import CATALOGUE, Code
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, Event

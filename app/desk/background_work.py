@@ -1,20 +1,20 @@
-"""Slow work of the desk on one thread of its own: the newest request wins, answers are taken up once a frame.
+"""Slow and repeated work of the desk, on threads of its own.
 
-What is proved, drawn or looked for is only worth something as long as nobody wants something newer; what is
-written is written to its end. Whoever asks is answered on his own thread, when he polls.
+Of slow work the newest request wins, and answers are taken up once a frame. What is proved, drawn or looked
+for is only worth something as long as nobody wants something newer; what is written is written to its end.
+Whoever asks is answered on his own thread, when he polls.
 """
 
 from __future__ import annotations
 
 import logging
+import queue
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeVar
-
-from app.desk.daemon_worker import DaemonWorker
 
 _log = logging.getLogger(__name__)
 
@@ -23,6 +23,43 @@ T = TypeVar("T")
 Watch = Callable[[float], None]
 """Told how far slow work has come; it may raise AbandonedError, which has to be let through."""
 Failed = Callable[[str], None]
+
+
+class DaemonWorker:
+    """Carries tasks out, one after the other, on one daemon thread; the thread starts with the first task.
+
+    A ThreadPoolExecutor would join its threads when the interpreter ends, however long they hang. A task may
+    raise nothing.
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._tasks: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
+        self._thread: threading.Thread | None = None
+        self._lock = threading.Lock()
+        self._closed = False
+
+    def submit(self, task: Callable[[], None]) -> None:
+        """Queue a task; a closed worker drops it."""
+        with self._lock:
+            if self._closed:
+                return
+            self._tasks.put(task)
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._work, name=self._name, daemon=True)
+                self._thread.start()
+
+    def close(self, limit: float) -> None:
+        """Finish the queued tasks; wait ``limit`` seconds for them at most."""
+        with self._lock:
+            self._closed = True
+            self._tasks.put(None)
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join(limit)
+
+    def _work(self) -> None:
+        while (task := self._tasks.get()) is not None:
+            task()
 
 
 class AbandonedError(Exception):
@@ -228,3 +265,33 @@ def _answer_of(request: Request) -> Callable[[], None] | None:
 def _is_a_defect(error: BaseException) -> bool:
     """Whether it is no sentence of ours or of the system: whoever mends it needs its traceback."""
     return type(error).__module__ == "builtins" and not isinstance(error, OSError | ValueError)
+
+
+class RepeatingThread:
+    """Calls ``look`` after ``first`` s, then every ``every`` s; its name is what the watchdog knows."""
+
+    def __init__(self, name: str, look: Callable[[], object], every: float, first: float = 0.0) -> None:
+        self._look, self._every, self._first = look, every, first
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._repeat, name=name, daemon=True)
+
+    @property
+    def closing(self) -> bool:
+        """Whether it was told to end; else its end is a mistake."""
+        return self._closing.is_set()
+
+    def start(self) -> None:
+        """Once."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """Wait ``ENDS`` seconds at most for a look that is under way; one that hangs is left running."""
+        self._closing.set()
+        if self._thread.is_alive():
+            self._thread.join(ENDS)
+
+    def _repeat(self) -> None:
+        wait = self._first
+        while not self._closing.wait(wait):
+            self._look()
+            wait = self._every

@@ -6,9 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 
-from app.desk.first_move_seen import FirstMoveSeen
-from app.desk.latest import Latest, Watch
-from app.desk.program_loading import Proved
+from app.desk.background_work import Latest, Watch
+from app.desk.programs.program_loading import FirstMoveSeen, Proved
 from core.executor.commands import Command, Prepare
 from core.executor.job import Job
 from core.executor.snapshot import CYCLE, Snapshot, Starts

@@ -11,11 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 
-from app.desk.first_move_seen import FirstMoveSeen
-from app.desk.latest import Latest, Watch
-from app.desk.prepared_line import ProveLine
-from app.desk.program_loading import Loaded, Proved
-from app.desk.start_verdict import KnownPart, StartJudge, StartQuestion, with_verdict
+from app.desk.background_work import Latest, Watch
+from app.desk.programs.prepared_line import ProveLine
+from app.desk.programs.program_loading import FirstMoveSeen, Loaded, Proved
+from app.desk.programs.start_verdict import KnownPart, StartJudge, StartQuestion, with_verdict
 from app.desk.translation import tr
 from app.path.path_aspects import DrawnLeg
 from core.executor.commands import Clearance, Command, GiveClearance

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.desk.program_loading import Loaded
+from app.desk.programs.program_loading import Loaded
 from app.desk.translation import tr
 from core.executor.raised_alarm import Attempt
 from core.language.source import Source, SourceError, load_source

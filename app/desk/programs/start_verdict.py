@@ -11,10 +11,9 @@ from functools import partial
 from threading import Lock
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.desk.first_move_seen import FirstMoveSeen
-from app.desk.interrupted_notice import may_go_on
-from app.desk.latest import Watch
-from app.desk.program_loading import Loaded, Proved
+from app.desk.background_work import Watch
+from app.desk.programs.program_loading import FirstMoveSeen, Loaded, Proved
+from app.desk.status.interrupted_notice import may_go_on
 from app.desk.translation import tr
 from core.executor.commands import CROSSES, INSIDE, Clearance
 from core.executor.job import Job, interpret

@@ -1,17 +1,21 @@
-"""The interrupted job in words and figures for every page: which it is, where its tool stood and stands."""
+"""The interrupted job in words and figures for every page: which it is, where its tool stood and stands.
+
+And the row that says of what nothing is heard any more: its wire is lost, the machine may go on without it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.desk import formats
-from app.desk.program_loading import Loaded
+from app.desk.programs.program_loading import Loaded
 from app.desk.screen_settings import Units
+from app.desk.status import formats
 from app.desk.translation import tr
 from core.executor.snapshot import CONTROL_LOST, InterruptedJob, Snapshot, Starts, State
 from core.language.source import Dialect
 from core.message import Message
+from core.ports import Unknown
 
 _SAME = 0.05  # mm, degrees: nearer than this the tool still stands where it stood
 
@@ -138,3 +142,22 @@ def _figures(axes: Sequence[str], where: Sequence[float], snapshot: Snapshot, un
         if name in "XYZ"
     ]
     return " ".join(found)
+
+
+def unheard_notice(snapshot: Snapshot) -> NoticeRow | None:
+    """Of what the snapshot does not know; None when it knows all."""
+    unknown = snapshot.unknown
+    if not unknown:
+        return None
+    named = {
+        Unknown.SLIDES: tr("POSITIONS"),
+        Unknown.SPINDLE: tr("SPINDLE"),
+        Unknown.OUTPUTS: tr("OUTPUTS"),
+        Unknown.INPUTS: tr("INPUTS"),
+    }
+    what = ", ".join(words for which, words in named.items() if which in unknown)
+    head = tr(Message("{what} UNKNOWN: NO RESPONSE FROM THE MACHINE", what=what))
+    if Unknown.SPINDLE in unknown:
+        head = tr("SPINDLE UNKNOWN – SPINDLE MAY BE TURNING: PRESS E-STOP")
+    below = tr(Message("UNKNOWN: {what} · LAST KNOWN VALUES ARE SHOWN", what=what))
+    return NoticeRow(head, below, tone="alarm")

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from app.desk import formats
+from app.desk.status import formats
 from app.desk.translation import tr
 from core.executor.snapshot import Snapshot
 from core.interpreter.working_plane import Swivel

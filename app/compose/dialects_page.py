@@ -1,6 +1,6 @@
 """The generated part of ``docs/dialects.md``: languages, their code books and the shipped machines.
 
-``python -m app.compose.machine.dialects_page docs/dialects.md`` writes it between its two marks.
+``python -m app.compose.dialects_page docs/dialects.md`` writes it between its two marks.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from core.language.source import Dialect, dialect_of
 from core.machine.machine_model import Machine
 from core.message import Message
 
-BEGIN = "<!-- generated: python -m app.compose.machine.dialects_page docs/dialects.md -->"
+BEGIN = "<!-- generated: python -m app.compose.dialects_page docs/dialects.md -->"
 END = "<!-- end of what is generated -->"
 _ENDINGS = (".nc", ".txt", ".h", ".mpf", ".spf")
 _PAGES = {
@@ -23,7 +23,7 @@ _PAGES = {
     Dialect.KLARTEXT: "klartext-codes",
     Dialect.SINUMERIK: "sinumerik-codes",
 }
-_MACHINES = Path(__file__).parents[3] / "resources" / "machines"
+_MACHINES = Path(__file__).parents[2] / "resources" / "machines"
 
 
 def machines() -> dict[str, Machine]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from app.desk.arithmetic import CHARACTERS, LONGEST
-from app.desk.machine_status import Tone
+from app.desk.status.machine_status import Tone
 
 if TYPE_CHECKING:
     from core.part.tool_outline import ToolOutline

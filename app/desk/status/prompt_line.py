@@ -11,9 +11,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from app.desk import interrupted_notice
-from app.desk.machine_status import MachineStatus
-from app.desk.program_loading import Loaded, Phase
+from app.desk.programs.program_loading import Loaded, Phase
+from app.desk.status import interrupted_notice
+from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import data, tr
 from core.alarms import CATALOGUE, Code
 from core.executor.job import WARNING

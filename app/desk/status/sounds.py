@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.desk.latest import sentence
+from app.desk.background_work import sentence
 from core.message import Message
 
 PLAYERS = (("pw-play",), ("paplay",), ("aplay", "-q"), ("afplay",))
