@@ -139,7 +139,11 @@ def test_every_folder_of_a_driver_is_in_its_contracts() -> None:
 
 def test_pickle_goes_between_our_own_processes_alone() -> None:
     """Unpickling runs what it is given: it is no format of a file."""
-    sender_and_receiver = {"app/cli/proofs/proof_work.py", "app/compose/backends/feeder_process.py"}
+    sender_and_receiver = {
+        "app/cli/proofs/proof_job.py",
+        "app/cli/proofs/proof_work.py",
+        "app/compose/backends/feeder_process.py",
+    }
     house = Path(__file__).parents[1]
     paths = [path for top in OURS for path in (house / top).rglob("*.py")]
     found = [

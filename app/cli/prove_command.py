@@ -23,7 +23,8 @@ MOST_JOBS = 256
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.cli.proofs.proof_work import Findings, FittingJobs, OtherOffsets, ProofJob
+    from app.cli.proofs.proof_job import FittingJobs, OtherOffsets, ProofJob
+    from app.cli.proofs.proof_work import Findings
     from app.cli.proofs.report_file import ReportFile
     from core.interpreter.job_setup import Setup
     from core.language.source import Source
@@ -92,7 +93,7 @@ def _count(word: str) -> int:
 def run(args: argparse.Namespace) -> int:
     """Prove each file; 1 when any has errors, 2 when one cannot be read."""
     many = _for_workers(args)
-    from app.cli.proofs.proof_work import FittingJobs
+    from app.cli.proofs.proof_job import FittingJobs
 
     jobs = FittingJobs(args, _job)
     jobs.of("")  # what is wrong with the options is told before anything is proved
@@ -137,7 +138,7 @@ def _for_workers(args: argparse.Namespace) -> bool:
 def _job(args: argparse.Namespace) -> ProofJob:
     """What the options say about all programs. Raises CommandError."""
     from app.cli.part_options import part_setting
-    from app.cli.proofs.proof_work import ProofJob
+    from app.cli.proofs.proof_job import ProofJob
 
     around = circumstances(args)
     setting = part_setting(args, around)
@@ -153,7 +154,7 @@ def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
     """The offsets of --compare. Raises CommandError naming every mistake in them."""
     if args.compare is None:
         return None
-    from app.cli.proofs.proof_work import OtherOffsets
+    from app.cli.proofs.proof_job import OtherOffsets
     from app.compose.stored_offsets import read_offsets
 
     tools, secondary, zero, *_ = read_offsets(Path(args.compare))
@@ -163,7 +164,8 @@ def _other(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
 def _status(path: Path, jobs: FittingJobs, args: argparse.Namespace, report: ReportFile | None) -> int:
     """Prove one file; one that cannot be read does not keep the others from their proof."""
     from app.cli.part_options import with_kept_stock
-    from app.cli.proofs.proof_work import Proof, on_machine
+    from app.cli.proofs.proof_job import on_machine
+    from app.cli.proofs.proof_work import Proof
 
     try:
         source = read_source(path, args)

@@ -95,17 +95,17 @@ def build_desk(machine_file: str | None = None, offsets: Callable[[], Offsets] =
     file = ProgramFile(lambda: desk.session.now)
 
     watchdog = Watchdog(thread, executor.halt, SUPERVISED, partial(_thread_ended, desk, journal))
-    desk.stops += [
+    desk.closing.stops += [
         ClosingStep("watchdog", watchdog.end),  # what ends from now on ends in good order
         ClosingStep("executor", thread.close, EXECUTOR_CLOSES),
     ]
-    desk.workers += [
+    desk.closing.workers += [
         ClosingStep("watchdog", watchdog.close),
         ClosingStep("program-file", file.close),
         ClosingStep("recorder", recorder.close),
         *(ClosingStep(f"shop-floor-{number}", close) for number, close in enumerate(floor, 1)),
     ]
-    desk.ends += [
+    desk.closing.ends += [
         ClosingStep("store", partial(_close_store, journal), STORE_CLOSES),
         ClosingStep("log", log.close),
     ]
@@ -217,7 +217,7 @@ def desk_and_executor(
     if journal is not None:
         desk.log.recall(_stops(journal))
         journal.when_late(partial(_came_late, desk, journal))
-    desk.shut = connected.close
+    desk.closing.shut = connected.close
     for warning in (
         *connected.ports.warnings,
         *(Message("machine file: {item}", item=each) for each in desk.changes.changes),

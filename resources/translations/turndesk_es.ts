@@ -5579,11 +5579,6 @@
       <translation>{entry} es demasiado grande; escriba un número menor</translation>
     </message>
     <message>
-      <location filename="app/desk/pages/code_help.py" />
-      <source>MATCHING CODES</source>
-      <translation>CÓDIGOS QUE COINCIDEN</translation>
-    </message>
-    <message>
       <location filename="app/desk/daily_backup.py" />
       <source>the backup was written, but {wrong}; check the disk that holds {folder}</source>
       <translation>la copia se escribió, pero {wrong}; revise el disco de {folder}</translation>
@@ -5620,11 +5615,6 @@
     </message>
     <message>
       <location filename="app/desk/desk.py" />
-      <source>CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART</source>
-      <translation>COMPROBANDO SI EL PRIMER MOVIMIENTO CHOCA CON LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
       <source>CONTROL SILENT</source>
       <translation>CONTROL SIN RESPUESTA</translation>
     </message>
@@ -5647,16 +5637,6 @@
       <location filename="app/desk/desk.py" />
       <source>F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE</source>
       <translation>F2: ELIJA UN PROGRAMA ANTES DE CAMBIAR EL SALTO DE BLOQUE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>FILE NOT FOUND: {named}</source>
-      <translation>NO SE ENCONTRÓ EL ARCHIVO: {named}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/desk.py" />
-      <source>INTERRUPTED PROGRAM {name} NOT FOUND. F2: CHOOSE A PROGRAM</source>
-      <translation>PROGRAMA INTERRUMPIDO {name} NO ENCONTRADO. F2: ELEGIR PROGRAMA</translation>
     </message>
     <message>
       <location filename="app/desk/desk.py" />
@@ -5739,9 +5719,9 @@
       <translation>una tecla o un toque en la pantalla</translation>
     </message>
     <message>
-      <location filename="app/desk/desk.py" />
-      <source>{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD</source>
-      <translation>{name} NO SE CARGÓ: EN SU LUGAR SE CARGÓ EL TRABAJO INTERRUMPIDO</translation>
+      <location filename="app/desk/pages/code_help.py" />
+      <source>MATCHING CODES</source>
+      <translation>CÓDIGOS QUE COINCIDEN</translation>
     </message>
     <message>
       <location filename="app/desk/pages/first_job.py" />
@@ -5819,6 +5799,251 @@
       <translation>¿HERRAMIENTAS SIN CORRECTOR? PULSE F8. PARA TOCAR: F1, F5, LUEGO T, X, Z</translation>
     </message>
     <message>
+      <location filename="app/desk/pages/page_entry.py" />
+      <source>AXES ARE MOVING. STOP THEM (H) BEFORE CHOOSING A PROGRAM</source>
+      <translation>LOS EJES SE MUEVEN. PÁRELOS (H) ANTES DE ELEGIR UN PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/page_entry.py" />
+      <source>AXES ARE MOVING. WAIT UNTIL THEY STOP BEFORE EDITING</source>
+      <translation>LOS EJES SE MUEVEN. ESPERE A QUE PAREN ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/page_entry.py" />
+      <source>CHOOSE A PROGRAM FIRST (F2)</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/page_entry.py" />
+      <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE A NEW NAME THERE</source>
+      <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ UN NOMBRE NUEVO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/page_entry.py" />
+      <source>FIX PROGRAM ERRORS FIRST</source>
+      <translation>CORRIJA PRIMERO LOS ERRORES DEL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/page_entry.py" />
+      <source>PROGRAM RUNNING. LET IT END, OR STOP IT AND PRESS R FIRST</source>
+      <translation>PROGRAMA EN MARCHA. DEJE QUE TERMINE, O PÁRELO Y PULSE R</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/page_entry.py" />
+      <source>SPINDLE IS COASTING. WAIT UNTIL IT STOPS BEFORE EDITING</source>
+      <translation>EL HUSILLO GIRA POR INERCIA. ESPERE A QUE SE DETENGA ANTES DE EDITAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/page_entry.py" />
+      <source>SPINDLE IS ON. STOP IT (M05 OR R). EDIT WHEN IT IS AT REST</source>
+      <translation>HUSILLO ENCENDIDO. PÁRELO (M05 O R). EDITE CUANDO SE DETENGA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/page_entry.py" />
+      <source>SPINDLE MAY BE TURNING: PRESS E-STOP. DO NOT EDIT NOW</source>
+      <translation>EL HUSILLO PUEDE ESTAR GIRANDO: PULSE PARO DE EMERGENCIA. NO EDITE AHORA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/page_entry.py" />
+      <source>TO OPEN MDI, LET THE PROGRAM END, OR STOP IT AND PRESS R</source>
+      <translation>PARA ABRIR MDI, DEJE TERMINAR EL PROGRAMA, O PÁRELO Y PULSE R</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/page_entry.py" />
+      <source>TO USE SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R</source>
+      <translation>PARA USAR BUSCAR A, DEJE TERMINAR EL PROGRAMA, O PÁRELO Y PULSE R</translation>
+    </message>
+    <message>
+      <location filename="app/desk/persistence.py" />
+      <source>no data is being saved; start turndesk with a writable folder (TURNDESK_HOME)</source>
+      <translation>no se está guardando ningún dato; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/first_program.py" />
+      <source>FILE NOT FOUND: {named}</source>
+      <translation>NO SE ENCONTRÓ EL ARCHIVO: {named}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/first_program.py" />
+      <source>INTERRUPTED PROGRAM {name} NOT FOUND. F2: CHOOSE A PROGRAM</source>
+      <translation>PROGRAMA INTERRUMPIDO {name} NO ENCONTRADO. F2: ELEGIR PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/first_program.py" />
+      <source>{name} NOT LOADED: THE INTERRUPTED JOB WAS LOADED INSTEAD</source>
+      <translation>{name} NO SE CARGÓ: EN SU LUGAR SE CARGÓ EL TRABAJO INTERRUMPIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/prepared_line.py" />
+      <source>Set the tool with F8.</source>
+      <translation>Regle la herramienta con F8.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/prepared_line.py" />
+      <source>Tool {number} has not been set.</source>
+      <translation>La herramienta {number} no está reglada.</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_folder.py" />
+      <source>CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION</source>
+      <translation>NO SE PUEDE LEER {name}: REVISE LA CARPETA. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN CARGADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_folder.py" />
+      <source>{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION</source>
+      <translation>{name} HA CAMBIADO. F2: RECARGAR. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN ANTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_folder.py" />
+      <source>{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED PROGRAM</source>
+      <translation>{name} NO ESTÁ EN EL DISCO. EL ARRANQUE DE CICLO EJECUTA EL PROGRAMA CARGADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_loading.py" />
+      <source>DRAWING</source>
+      <translation>DIBUJO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_loading.py" />
+      <source>EMPTY</source>
+      <translation>VACÍO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_loading.py" />
+      <source>PROVING</source>
+      <translation>COMPROBANDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_loading.py" />
+      <source>PROVING PART:</source>
+      <translation>COMPROBANDO PIEZA:</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_loading.py" />
+      <source>READING</source>
+      <translation>LEYENDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_loading.py" />
+      <source>READY</source>
+      <translation>LISTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_loading.py" />
+      <source>REJECTED</source>
+      <translation>RECHAZADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_loading.py" />
+      <source>UNREADABLE</source>
+      <translation>ILEGIBLE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/program_renewal.py" />
+      <source>AFTER THIS OFFSET CHANGE, THE NEXT PART WILL NOT START: {why}</source>
+      <translation>CON ESTE CAMBIO DE CORRECTORES, LA PRÓXIMA PIEZA NO ARRANCARÁ: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>F6, ENTER: RESUME   F6, F4: RETRACT   OR {jog}</source>
+      <translation>F6, ENTER: REANUDAR   F6, F4: RETIRAR   O {jog}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>JOG THE TOOL BACK OUT ALONG ITS ENTRY PATH</source>
+      <translation>SAQUE LA HERRAMIENTA EN JOG POR SU TRAYECTORIA DE ENTRADA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>JOG {direction} UNTIL THE TOOL IS CLEAR</source>
+      <translation>MUEVA {direction} EN JOG HASTA QUE LA HERRAMIENTA QUEDE LIBRE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>THE CHUCK</source>
+      <translation>EL PLATO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>THE FIRST MOVE WOULD TAKE {tool} THROUGH {what}</source>
+      <translation>EL PRIMER MOVIMIENTO HARÍA QUE {tool} ATRAVESARA {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>THE PART</source>
+      <translation>LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>THE TAILSTOCK</source>
+      <translation>EL CONTRAPUNTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>UNKNOWN PART IN CHUCK. CHECK THE FIRST MOVE BEFORE STARTING</source>
+      <translation>PIEZA DESCONOCIDA EN EL PLATO. REVISE EL PRIMER MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_verdict.py" />
+      <source>{tool} IS INSIDE {what}</source>
+      <translation>{tool} ESTÁ DENTRO DE {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_watch.py" />
+      <source>START</source>
+      <translation>ARRANQUE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/programs/start_watch.py" />
+      <source>THE FIRST MOVE COULD NOT BE CHECKED: {why}</source>
+      <translation>NO SE PUDO COMPROBAR EL PRIMER MOVIMIENTO: {why}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>AS THE PROGRAM</source>
+      <translation>COMO EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>DISTANCE TO GO</source>
+      <translation>DISTANCIA POR RECORRER</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>FROM HOME</source>
+      <translation>DESDE REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>INCH</source>
+      <translation>PULGADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>MM</source>
+      <translation>MM</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>POSITION</source>
+      <translation>POSICIÓN</translation>
+    </message>
+    <message>
+      <location filename="app/desk/screen_settings.py" />
+      <source>screen: {name} {before} → {value}</source>
+      <translation>pantalla: {name} {before} → {value}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/standard_input.py" />
+      <source>"-" (stdin) is already used for the {other}; specify a file for the {what}</source>
+      <translation>- (stdin) ya se usa para «{other}»; indique un archivo para «{what}»</translation>
+    </message>
+    <message>
+      <location filename="app/desk/standard_input.py" />
+      <source>stdin is closed, so the {what} cannot be read from it; specify a file</source>
+      <translation>stdin está cerrado y «{what}» no se puede leer de ahí; indique un archivo</translation>
+    </message>
+    <message>
       <location filename="app/desk/status/formats.py" />
       <source>{size} GB</source>
       <translation>{size} GB</translation>
@@ -5840,8 +6065,18 @@
     </message>
     <message>
       <location filename="app/desk/status/interrupted_notice.py" />
+      <source>INPUTS</source>
+      <translation>ENTRADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
       <source>INTERRUPTED: {program} LINE {line}{passed}, T{tool}, PART {part}, {position}: {why}{changed}</source>
       <translation>INTERRUMPIDO: {program} LÍNEA {line}{passed}, T{tool}, PIEZA {part}, {position}: {why}{changed}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>OUTPUTS</source>
+      <translation>SALIDAS</translation>
     </message>
     <message>
       <location filename="app/desk/status/interrupted_notice.py" />
@@ -5865,6 +6100,21 @@
     </message>
     <message>
       <location filename="app/desk/status/interrupted_notice.py" />
+      <source>POSITIONS</source>
+      <translation>POSICIONES</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>SPINDLE</source>
+      <translation>HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>SPINDLE UNKNOWN – SPINDLE MAY BE TURNING: PRESS E-STOP</source>
+      <translation>HUSILLO DESCONOCIDO – PUEDE ESTAR GIRANDO: PULSE PARO DE EMERGENCIA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
       <source>STARTS AT LINE 1 ({text}) FROM CURRENT T{tool} POSITION. {start}. ESC: CANCEL</source>
       <translation>EMPIEZA EN LA LÍNEA 1 ({text}) DESDE LA POSICIÓN ACTUAL DE T{tool}. {start}. ESC: CANCELAR</translation>
     </message>
@@ -5884,6 +6134,16 @@
       <translation>T{tool} PUEDE ESTAR DENTRO DE LA PIEZA ({program}, LÍNEA {line}). PULSE Y PARA CANCELAR EL TRABAJO INTERRUMPIDO Y CARGAR {name}, N PARA CONSERVAR EL TRABAJO INTERRUMPIDO</translation>
     </message>
     <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>UNKNOWN: {what} · LAST KNOWN VALUES ARE SHOWN</source>
+      <translation>DESCONOCIDO: {what} · SE MUESTRAN LOS ÚLTIMOS VALORES CONOCIDOS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/interrupted_notice.py" />
+      <source>{what} UNKNOWN: NO RESPONSE FROM THE MACHINE</source>
+      <translation>{what}: DESCONOCIDO, LA MÁQUINA NO RESPONDE</translation>
+    </message>
+    <message>
       <location filename="app/desk/status/machine_file_changes.py" />
       <source>MACHINE FILE CHANGED ({count}). F10: REVIEW AND ACCEPT</source>
       <translation>ARCHIVO DE MÁQUINA CAMBIADO ({count}). F10: REVISAR Y ACEPTAR</translation>
@@ -5895,8 +6155,58 @@
     </message>
     <message>
       <location filename="app/desk/status/machine_status.py" />
+      <source>AT SPEED</source>
+      <translation>A SU VELOCIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>COLLET</source>
+      <translation>PINZA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>COLLET MOVING: PROGRAM CONTINUES AUTOMATICALLY</source>
+      <translation>LA PINZA SE MUEVE: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>DWELL</source>
+      <translation>ESPERA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>F10, 3, ENTER, F4: SWITCH SIMULATED INPUTS</source>
+      <translation>F10, 3, ENTER, F4: CONMUTAR LAS ENTRADAS SIMULADAS</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>FEED HOLD BEHIND THE TAP</source>
+      <translation>RETENCIÓN DE AVANCE TRAS EL MACHO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
       <source>FEED HOLD {number}: {stop}</source>
       <translation>RETENCIÓN DE AVANCE {number}: {stop}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>FEED OVERRIDE AT 0</source>
+      <translation>AJUSTE DE AVANCE EN 0</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>FEED OVERRIDE IS AT 0: TURN IT UP (+)</source>
+      <translation>EL AJUSTE DE AVANCE ESTÁ EN 0: SÚBALO (+)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>GUARD OPEN</source>
+      <translation>GUARDA ABIERTA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>INPUT {name} TO TURN {state}</source>
+      <translation>QUE LA ENTRADA {name} PASE A {state}</translation>
     </message>
     <message>
       <location filename="app/desk/status/machine_status.py" />
@@ -5905,8 +6215,88 @@
     </message>
     <message>
       <location filename="app/desk/status/machine_status.py" />
+      <source>OFF</source>
+      <translation>APAGADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>ON</source>
+      <translation>ENCENDIDO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>PAUSE (FEED HOLD), THEN R: CANCEL THE PROGRAM</source>
+      <translation>PAUSA (RETENCIÓN DE AVANCE), LUEGO R: CANCELAR EL PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>PROGRAM DWELL (G04): CONTINUES AUTOMATICALLY</source>
+      <translation>PAUSA DEL PROGRAMA (G04): CONTINÚA AUTOMÁTICAMENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
       <source>PROGRAM STOP</source>
       <translation>PARO DE PROGRAMA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>PROGRAM WAITING FOR {what}</source>
+      <translation>EL PROGRAMA ESPERA: {what}</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE COMING TO SPEED: PROGRAM CONTINUES AUTOMATICALLY</source>
+      <translation>EL HUSILLO ALCANZA SU VELOCIDAD: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE OVERRIDE AT 0</source>
+      <translation>AJUSTE DEL HUSILLO EN 0</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE OVERRIDE IS AT 0. TO RAISE IT, PRESS THE DOT KEY (.)</source>
+      <translation>EL AJUSTE DEL HUSILLO ESTÁ EN 0. PARA SUBIRLO, PULSE LA TECLA PUNTO (.)</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE STOP</source>
+      <translation>PARO DE HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE STOPPED</source>
+      <translation>HUSILLO PARADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE STOPPING: PROGRAM CONTINUES AUTOMATICALLY</source>
+      <translation>EL HUSILLO SE DETIENE: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE SWITCH IS OFF. A: SWITCH TO AUTO</source>
+      <translation>EL INTERRUPTOR DEL HUSILLO ESTÁ EN OFF. A: PONERLO EN AUTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>SPINDLE SWITCH OFF</source>
+      <translation>INTERRUPTOR DEL HUSILLO APAGADO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>THE GUARD IS OPEN: CLOSE IT</source>
+      <translation>LA PROTECCIÓN ESTÁ ABIERTA: CIÉRRELA</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>THE TAP BACKS OUT OF THE HOLE FIRST. E-STOP: STOP AT ONCE</source>
+      <translation>EL MACHO SALE PRIMERO DEL AGUJERO. PARO DE EMERGENCIA: DETENER EN EL ACTO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/status/machine_status.py" />
+      <source>TURN SPINDLE SWITCH OFF, THEN TO AUTO (A). PRESS CYCLE START</source>
+      <translation>PONGA EL INTERRUPTOR DEL HUSILLO EN OFF Y LUEGO EN AUTO (A). PULSE ARRANQUE DE CICLO</translation>
     </message>
     <message>
       <location filename="app/desk/status/machine_status.py" />
@@ -5922,11 +6312,6 @@
       <location filename="app/desk/status/modal_rows.py" />
       <source>COARSE FEED</source>
       <translation>AVANCE BURDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/modal_rows.py" />
-      <source>COLLET</source>
-      <translation>PINZA</translation>
     </message>
     <message>
       <location filename="app/desk/status/modal_rows.py" />
@@ -6030,11 +6415,6 @@
     </message>
     <message>
       <location filename="app/desk/status/modal_rows.py" />
-      <source>OFF</source>
-      <translation>APAGADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/modal_rows.py" />
       <source>PRESET</source>
       <translation>PRESET</translation>
     </message>
@@ -6062,11 +6442,6 @@
       <location filename="app/desk/status/modal_rows.py" />
       <source>SPEED</source>
       <translation>VELOC</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/modal_rows.py" />
-      <source>SPINDLE</source>
-      <translation>HUSILLO</translation>
     </message>
     <message>
       <location filename="app/desk/status/modal_rows.py" />
@@ -6137,136 +6512,6 @@
       <location filename="app/desk/status/modal_rows.py" />
       <source>tool offset</source>
       <translation>corrector de herramienta</translation>
-    </message>
-    <message>
-      <location filename="app/desk/pages/page_entry.py" />
-      <source>AXES ARE MOVING. STOP THEM (H) BEFORE CHOOSING A PROGRAM</source>
-      <translation>LOS EJES SE MUEVEN. PÁRELOS (H) ANTES DE ELEGIR UN PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/pages/page_entry.py" />
-      <source>AXES ARE MOVING. WAIT UNTIL THEY STOP BEFORE EDITING</source>
-      <translation>LOS EJES SE MUEVEN. ESPERE A QUE PAREN ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/pages/page_entry.py" />
-      <source>CHOOSE A PROGRAM FIRST (F2)</source>
-      <translation>ELIJA PRIMERO UN PROGRAMA (F2)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/pages/page_entry.py" />
-      <source>CHOOSE A PROGRAM FIRST (F2), OR TYPE A NEW NAME THERE</source>
-      <translation>ELIJA PRIMERO UN PROGRAMA (F2), O ESCRIBA AHÍ UN NOMBRE NUEVO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/pages/page_entry.py" />
-      <source>FIX PROGRAM ERRORS FIRST</source>
-      <translation>CORRIJA PRIMERO LOS ERRORES DEL PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/pages/page_entry.py" />
-      <source>PROGRAM RUNNING. LET IT END, OR STOP IT AND PRESS R FIRST</source>
-      <translation>PROGRAMA EN MARCHA. DEJE QUE TERMINE, O PÁRELO Y PULSE R</translation>
-    </message>
-    <message>
-      <location filename="app/desk/pages/page_entry.py" />
-      <source>SPINDLE IS COASTING. WAIT UNTIL IT STOPS BEFORE EDITING</source>
-      <translation>EL HUSILLO GIRA POR INERCIA. ESPERE A QUE SE DETENGA ANTES DE EDITAR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/pages/page_entry.py" />
-      <source>SPINDLE IS ON. STOP IT (M05 OR R). EDIT WHEN IT IS AT REST</source>
-      <translation>HUSILLO ENCENDIDO. PÁRELO (M05 O R). EDITE CUANDO SE DETENGA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/pages/page_entry.py" />
-      <source>SPINDLE MAY BE TURNING: PRESS E-STOP. DO NOT EDIT NOW</source>
-      <translation>EL HUSILLO PUEDE ESTAR GIRANDO: PULSE PARO DE EMERGENCIA. NO EDITE AHORA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/pages/page_entry.py" />
-      <source>TO OPEN MDI, LET THE PROGRAM END, OR STOP IT AND PRESS R</source>
-      <translation>PARA ABRIR MDI, DEJE TERMINAR EL PROGRAMA, O PÁRELO Y PULSE R</translation>
-    </message>
-    <message>
-      <location filename="app/desk/pages/page_entry.py" />
-      <source>TO USE SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R</source>
-      <translation>PARA USAR BUSCAR A, DEJE TERMINAR EL PROGRAMA, O PÁRELO Y PULSE R</translation>
-    </message>
-    <message>
-      <location filename="app/desk/persistence.py" />
-      <source>no data is being saved; start turndesk with a writable folder (TURNDESK_HOME)</source>
-      <translation>no se está guardando ningún dato; arranque turndesk con una carpeta en la que se pueda escribir (TURNDESK_HOME)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/prepared_line.py" />
-      <source>Set the tool with F8.</source>
-      <translation>Regle la herramienta con F8.</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/prepared_line.py" />
-      <source>Tool {number} has not been set.</source>
-      <translation>La herramienta {number} no está reglada.</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_folder.py" />
-      <source>CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION</source>
-      <translation>NO SE PUEDE LEER {name}: REVISE LA CARPETA. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN CARGADA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_folder.py" />
-      <source>{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION</source>
-      <translation>{name} HA CAMBIADO. F2: RECARGAR. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN ANTERIOR</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_folder.py" />
-      <source>{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED PROGRAM</source>
-      <translation>{name} NO ESTÁ EN EL DISCO. EL ARRANQUE DE CICLO EJECUTA EL PROGRAMA CARGADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_loading.py" />
-      <source>DRAWING</source>
-      <translation>DIBUJO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_loading.py" />
-      <source>EMPTY</source>
-      <translation>VACÍO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_loading.py" />
-      <source>PROVING</source>
-      <translation>COMPROBANDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_loading.py" />
-      <source>PROVING PART:</source>
-      <translation>COMPROBANDO PIEZA:</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_loading.py" />
-      <source>READING</source>
-      <translation>LEYENDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_loading.py" />
-      <source>READY</source>
-      <translation>LISTO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_loading.py" />
-      <source>REJECTED</source>
-      <translation>RECHAZADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_loading.py" />
-      <source>UNREADABLE</source>
-      <translation>ILEGIBLE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/program_renewal.py" />
-      <source>AFTER THIS OFFSET CHANGE, THE NEXT PART WILL NOT START: {why}</source>
-      <translation>CON ESTE CAMBIO DE CORRECTORES, LA PRÓXIMA PIEZA NO ARRANCARÁ: {why}</translation>
     </message>
     <message>
       <location filename="app/desk/status/prompt_line.py" />
@@ -6530,11 +6775,6 @@
     </message>
     <message>
       <location filename="app/desk/status/readouts.py" />
-      <source>DISTANCE TO GO</source>
-      <translation>DISTANCIA POR RECORRER</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/readouts.py" />
       <source>DRIVES ?</source>
       <translation>SERVOS ?</translation>
     </message>
@@ -6545,18 +6785,8 @@
     </message>
     <message>
       <location filename="app/desk/status/readouts.py" />
-      <source>FROM HOME</source>
-      <translation>DESDE REFERENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/readouts.py" />
       <source>HEAD ROTATED</source>
       <translation>CABEZAL GIRADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/readouts.py" />
-      <source>INCH</source>
-      <translation>PULGADAS</translation>
     </message>
     <message>
       <location filename="app/desk/status/readouts.py" />
@@ -6605,11 +6835,6 @@
     </message>
     <message>
       <location filename="app/desk/status/readouts.py" />
-      <source>MM</source>
-      <translation>MM</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/readouts.py" />
       <source>OPTIONAL STOP</source>
       <translation>PARO OPCIONAL</translation>
     </message>
@@ -6617,11 +6842,6 @@
       <location filename="app/desk/status/readouts.py" />
       <source>ORIENTED {angle}</source>
       <translation>ORIENTADO {angle}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/readouts.py" />
-      <source>POSITION</source>
-      <translation>POSICIÓN</translation>
     </message>
     <message>
       <location filename="app/desk/status/readouts.py" />
@@ -6694,16 +6914,6 @@
       <translation>{names}  ·  EL CONTROL USA {names2}</translation>
     </message>
     <message>
-      <location filename="app/desk/screen_settings.py" />
-      <source>AS THE PROGRAM</source>
-      <translation>COMO EL PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/screen_settings.py" />
-      <source>screen: {name} {before} → {value}</source>
-      <translation>pantalla: {name} {before} → {value}</translation>
-    </message>
-    <message>
       <location filename="app/desk/status/sounds.py" />
       <source>{command} did not finish in time</source>
       <translation>{command} no terminó a tiempo</translation>
@@ -6714,224 +6924,14 @@
       <translation>{command} ha fallado</translation>
     </message>
     <message>
-      <location filename="app/desk/standard_input.py" />
-      <source>"-" (stdin) is already used for the {other}; specify a file for the {what}</source>
-      <translation>- (stdin) ya se usa para «{other}»; indique un archivo para «{what}»</translation>
-    </message>
-    <message>
-      <location filename="app/desk/standard_input.py" />
-      <source>stdin is closed, so the {what} cannot be read from it; specify a file</source>
-      <translation>stdin está cerrado y «{what}» no se puede leer de ahí; indique un archivo</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>F6, ENTER: RESUME   F6, F4: RETRACT   OR {jog}</source>
-      <translation>F6, ENTER: REANUDAR   F6, F4: RETIRAR   O {jog}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>JOG THE TOOL BACK OUT ALONG ITS ENTRY PATH</source>
-      <translation>SAQUE LA HERRAMIENTA EN JOG POR SU TRAYECTORIA DE ENTRADA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>JOG {direction} UNTIL THE TOOL IS CLEAR</source>
-      <translation>MUEVA {direction} EN JOG HASTA QUE LA HERRAMIENTA QUEDE LIBRE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>THE CHUCK</source>
-      <translation>EL PLATO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>THE FIRST MOVE WOULD TAKE {tool} THROUGH {what}</source>
-      <translation>EL PRIMER MOVIMIENTO HARÍA QUE {tool} ATRAVESARA {what}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>THE PART</source>
-      <translation>LA PIEZA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>THE TAILSTOCK</source>
-      <translation>EL CONTRAPUNTO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>UNKNOWN PART IN CHUCK. CHECK THE FIRST MOVE BEFORE STARTING</source>
-      <translation>PIEZA DESCONOCIDA EN EL PLATO. REVISE EL PRIMER MOVIMIENTO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_verdict.py" />
-      <source>{tool} IS INSIDE {what}</source>
-      <translation>{tool} ESTÁ DENTRO DE {what}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_watch.py" />
-      <source>START</source>
-      <translation>ARRANQUE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/programs/start_watch.py" />
-      <source>THE FIRST MOVE COULD NOT BE CHECKED: {why}</source>
-      <translation>NO SE PUDO COMPROBAR EL PRIMER MOVIMIENTO: {why}</translation>
+      <location filename="app/desk/status/standing_prompt.py" />
+      <source>CHECKING THE FIRST MOVE FOR COLLISION WITH THE PART</source>
+      <translation>COMPROBANDO SI EL PRIMER MOVIMIENTO CHOCA CON LA PIEZA</translation>
     </message>
     <message>
       <location filename="app/desk/stored_shapes.py" />
       <source>a profile needs at least three points, each with Z and X in mm, for example 0,0 2.5,0 1.2,1.5</source>
       <translation>un perfil necesita al menos tres puntos, cada uno con Z y X en mm, por ejemplo 0,0 2.5,0 1.2,1.5</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/interrupted_notice.py" />
-      <source>INPUTS</source>
-      <translation>ENTRADAS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/interrupted_notice.py" />
-      <source>OUTPUTS</source>
-      <translation>SALIDAS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/interrupted_notice.py" />
-      <source>POSITIONS</source>
-      <translation>POSICIONES</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/interrupted_notice.py" />
-      <source>SPINDLE UNKNOWN – SPINDLE MAY BE TURNING: PRESS E-STOP</source>
-      <translation>HUSILLO DESCONOCIDO – PUEDE ESTAR GIRANDO: PULSE PARO DE EMERGENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/interrupted_notice.py" />
-      <source>UNKNOWN: {what} · LAST KNOWN VALUES ARE SHOWN</source>
-      <translation>DESCONOCIDO: {what} · SE MUESTRAN LOS ÚLTIMOS VALORES CONOCIDOS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/interrupted_notice.py" />
-      <source>{what} UNKNOWN: NO RESPONSE FROM THE MACHINE</source>
-      <translation>{what}: DESCONOCIDO, LA MÁQUINA NO RESPONDE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>AT SPEED</source>
-      <translation>A SU VELOCIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>COLLET MOVING: PROGRAM CONTINUES AUTOMATICALLY</source>
-      <translation>LA PINZA SE MUEVE: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>DWELL</source>
-      <translation>ESPERA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>F10, 3, ENTER, F4: SWITCH SIMULATED INPUTS</source>
-      <translation>F10, 3, ENTER, F4: CONMUTAR LAS ENTRADAS SIMULADAS</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>FEED HOLD BEHIND THE TAP</source>
-      <translation>RETENCIÓN DE AVANCE TRAS EL MACHO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>FEED OVERRIDE AT 0</source>
-      <translation>AJUSTE DE AVANCE EN 0</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>FEED OVERRIDE IS AT 0: TURN IT UP (+)</source>
-      <translation>EL AJUSTE DE AVANCE ESTÁ EN 0: SÚBALO (+)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>GUARD OPEN</source>
-      <translation>GUARDA ABIERTA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>INPUT {name} TO TURN {state}</source>
-      <translation>QUE LA ENTRADA {name} PASE A {state}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>ON</source>
-      <translation>ENCENDIDO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>PAUSE (FEED HOLD), THEN R: CANCEL THE PROGRAM</source>
-      <translation>PAUSA (RETENCIÓN DE AVANCE), LUEGO R: CANCELAR EL PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>PROGRAM DWELL (G04): CONTINUES AUTOMATICALLY</source>
-      <translation>PAUSA DEL PROGRAMA (G04): CONTINÚA AUTOMÁTICAMENTE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>PROGRAM WAITING FOR {what}</source>
-      <translation>EL PROGRAMA ESPERA: {what}</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>SPINDLE COMING TO SPEED: PROGRAM CONTINUES AUTOMATICALLY</source>
-      <translation>EL HUSILLO ALCANZA SU VELOCIDAD: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>SPINDLE OVERRIDE AT 0</source>
-      <translation>AJUSTE DEL HUSILLO EN 0</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>SPINDLE OVERRIDE IS AT 0. TO RAISE IT, PRESS THE DOT KEY (.)</source>
-      <translation>EL AJUSTE DEL HUSILLO ESTÁ EN 0. PARA SUBIRLO, PULSE LA TECLA PUNTO (.)</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>SPINDLE STOP</source>
-      <translation>PARO DE HUSILLO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>SPINDLE STOPPED</source>
-      <translation>HUSILLO PARADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>SPINDLE STOPPING: PROGRAM CONTINUES AUTOMATICALLY</source>
-      <translation>EL HUSILLO SE DETIENE: EL PROGRAMA CONTINÚA AUTOMÁTICAMENTE</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>SPINDLE SWITCH IS OFF. A: SWITCH TO AUTO</source>
-      <translation>EL INTERRUPTOR DEL HUSILLO ESTÁ EN OFF. A: PONERLO EN AUTO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>SPINDLE SWITCH OFF</source>
-      <translation>INTERRUPTOR DEL HUSILLO APAGADO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>THE GUARD IS OPEN: CLOSE IT</source>
-      <translation>LA PROTECCIÓN ESTÁ ABIERTA: CIÉRRELA</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>THE TAP BACKS OUT OF THE HOLE FIRST. E-STOP: STOP AT ONCE</source>
-      <translation>EL MACHO SALE PRIMERO DEL AGUJERO. PARO DE EMERGENCIA: DETENER EN EL ACTO</translation>
-    </message>
-    <message>
-      <location filename="app/desk/status/machine_status.py" />
-      <source>TURN SPINDLE SWITCH OFF, THEN TO AUTO (A). PRESS CYCLE START</source>
-      <translation>PONGA EL INTERRUPTOR DEL HUSILLO EN OFF Y LUEGO EN AUTO (A). PULSE ARRANQUE DE CICLO</translation>
     </message>
     <message>
       <location filename="app/editor/code_help_view.py" />

@@ -16,8 +16,9 @@ from typing import Any
 import pytest
 
 from app.cli.proofs.proof_cache import ProofCache, plain
+from app.cli.proofs.proof_job import ProofJob
 from app.cli.proofs.proof_pool import KILLED, Proving, Workers
-from app.cli.proofs.proof_work import Proof, ProofJob
+from app.cli.proofs.proof_work import Proof
 from app.compose.machine.machine_setup import read_machine, setup_for
 from core.language.source import Source
 from core.proving.program_tools import PartSetting

@@ -45,7 +45,7 @@ def test_meanings_are_sentences() -> None:
 
 
 def test_every_command_with_json_is_on_the_page() -> None:
-    folder = Path(json_keys.__file__).parent
+    folder = Path(json_keys.__file__).parents[1]
     commands = {
         path.stem.removesuffix("_command")
         for path in (*folder.glob("*_command.py"), *folder.parent.glob("extras/*/*_command.py"))

@@ -17,6 +17,7 @@ from app.compose.screen_desk import desk_and_executor
 from app.compose.stored_offsets import NONE
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
+from app.desk.status.standing_prompt import prompt
 from app.special.machine_file_acceptance import MachineFileAcceptance
 from app.special.special_functions import SpecialFunctions
 from core.executor.executor import Executor
@@ -48,7 +49,7 @@ class Room:
 
     @property
     def prompt(self) -> str:
-        return self.desk.prompt(self.desk.snapshot(), self.desk.session.now)
+        return prompt(self.desk, self.desk.snapshot(), self.desk.session.now)
 
     @property
     def section(self) -> MachineFileAcceptance:

@@ -12,7 +12,7 @@ from app.cli.figures.units import MM_PER_INCH, Json, length_of, seconds, volume_
 from core.language.source import Dialect
 
 if TYPE_CHECKING:
-    from app.cli.proofs.proof_work import ProofJob
+    from app.cli.proofs.proof_job import ProofJob
     from core.language.source import Source
     from core.proving.other_offsets import Pair
     from core.proving.proof_report import PartReport, Report

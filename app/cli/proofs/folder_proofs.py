@@ -18,14 +18,12 @@ from app.cli.part_options import with_kept
 from app.cli.program_options import read_source
 from app.cli.progress_bar import Progress
 from app.cli.proofs.proof_cache import ProofCache
+from app.cli.proofs.proof_job import FittingJobs, ProofJob, on_machine
 from app.cli.proofs.proof_pool import KILLED, Proving, Workers, WorkerSource, cores
 from app.cli.proofs.proof_work import (
-    FittingJobs,
     OtherVersionError,
     Proof,
-    ProofJob,
     code_version,
-    on_machine,
     proof_of,
 )
 from app.cli.proofs.report_file import ReportFile, report_file

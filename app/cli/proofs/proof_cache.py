@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 from app.cli.proofs.proof_work import Proof, code_version
 
 if TYPE_CHECKING:
-    from app.cli.proofs.proof_work import ProofJob
+    from app.cli.proofs.proof_job import ProofJob
     from core.language.source import Source
 
 LARGEST = 256 * 2**20  # bytes of all proofs together

@@ -1,55 +1,21 @@
-"""What is proved: the job that all programs share, on a machine that fits, and one program as a unit of work.
-
-Job, program and result can be sent to another process or computer. Without --machine each program is proved
-on a machine that can run it: Klartext on a shipped mill.
-"""
+"""One program to prove as a unit of work: it and its result can be sent to another process or computer."""
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
+
+from app.cli.proofs.proof_job import ProofJob
 
 if TYPE_CHECKING:
     from app.cli.figures.units import Json
     from app.report.run_record import RunRecord
-    from core.interpreter.job_setup import Setup
     from core.language.source import Source
-    from core.machine.machine_model import Machine
-    from core.proving.program_tools import PartSetting
     from core.proving.proof_report import PartReport, Report
-
-
-@dataclass(frozen=True)
-class OtherOffsets:
-    """Offsets to compare with: the name of their file, and the setup with them."""
-
-    name: str
-    setup: Setup
-
-
-@dataclass(frozen=True)
-class ProofJob:
-    """What is the same for all programs that are proved together."""
-
-    machine: Machine
-    setup: Setup
-    setting: PartSetting
-    ideal: bool = False
-    optional_stop: bool = False
-    reported: bool = False  # a section of a report is wanted too
-    other: OtherOffsets | None = None
-
-    @cached_property
-    def packed(self) -> bytes:
-        """The job as it is sent."""
-        import pickle
-
-        return pickle.dumps(self)
 
 
 _ROOT = Path(__file__).parents[3]
@@ -164,34 +130,3 @@ def code_version() -> str:
         for path in sorted((_ROOT / room).rglob("*.py")):
             total.update(path.relative_to(_ROOT).as_posix().encode() + b"\0" + path.read_bytes())
     return total.hexdigest()
-
-
-@dataclass(slots=True)
-class FittingJobs:
-    """The job of all programs, and one for each shipped machine that some of them need; ``make`` makes it."""
-
-    args: argparse.Namespace
-    make: Callable[[argparse.Namespace], ProofJob]
-    _made: dict[str, ProofJob] = field(default_factory=dict)  # by machine; empty: the one of the options
-
-    def machine_of(self, source: Source) -> str:
-        """The name of the shipped machine that is taken for this program; empty: the one of the options."""
-        if self.args.machine is not None:
-            return ""
-        from app.compose.machine.fitting_machine import fitting_machine
-
-        return fitting_machine(source)
-
-    def of(self, machine: str) -> ProofJob:
-        """The job on this machine. Raises CommandError."""
-        if machine not in self._made:
-            args = self.args
-            if machine:
-                args = argparse.Namespace(**{**vars(args), "machine": machine})
-            self._made[machine] = self.make(args)
-        return self._made[machine]
-
-
-def on_machine(what: str, machine: str) -> str:
-    """The line that says on which machine something is proved."""
-    return f"turndesk: {what} is proved on the shipped {machine}; --machine chooses another one\n"

@@ -15,6 +15,7 @@ from app.compose.stored_offsets import shapes_at_hand
 from app.compose.workshop import thumbnails
 from app.desk.kept_part import kept_part
 from app.desk.status.prompt_line import UNDER_WAY
+from app.desk.status.standing_prompt import time_left
 from app.extras.office.office_status import OfficeLook
 from app.extras.office.page_server import PageServer, listening_at
 from app.production.parts_watch import PartsWatch
@@ -63,7 +64,7 @@ def _look(desk: Desk, machine: Machine) -> OfficeLook:
     reader = FloorReader(machine, time.monotonic)
 
     def left(snapshot: Snapshot) -> float:
-        return desk.time_left(snapshot, desk.session.now)
+        return time_left(snapshot, desk.session.now)
 
     def stops() -> Sequence[StopRow]:
         watch = desk.attached(PartsWatch)
